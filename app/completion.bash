@@ -1,4 +1,4 @@
-# Completion of tanktread's options, and after --set of the keys of a deck and the words that they take.
+# Completes the options of tanktread, and after --set the keys of a deck and their allowed words.
 
 _tanktread_keys() { # Section/key=word, or Section/key= where any value may follow
   tanktread --reference | awk -F'|' '

@@ -1,4 +1,4 @@
-# Writes OUTPUT, the manual page, from what PROGRAM says of itself.
+# Writes the manual page OUTPUT from the help text of PROGRAM.
 execute_process(COMMAND ${PROGRAM} --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
 string(REPLACE "\\" "\\\\" help "${help}")
 string(REGEX REPLACE "(^|\n)([.'])" "\\1\\\\&\\2" help "${help}")

@@ -1,4 +1,4 @@
-# cmake --install, and a Debian package by cpack: the program, its manual page and completion, decks, the Python package with its commands, and the rooms of lib/ and app for find_package(tanktread).
+# cmake --install, and a Debian package by cpack: the program, its manual page and completion, decks, the Python package with its commands, and the modules of lib/ and app for find_package(tanktread).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/tanktread)
@@ -14,7 +14,7 @@ install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:t
   -P ${PROJECT_SOURCE_DIR}/app/manual_page.cmake COMMAND_ERROR_IS_FATAL ANY)")
 install(FILES ${made}/tanktread.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 
-# The rooms as tanktread::<room>, with what they need of others. Eigen's types depend on the processor that is built for.
+# Exports the modules as tanktread::<module> with their dependencies. The types of Eigen depend on the processor for which the program is built.
 get_property(rooms GLOBAL PROPERTY rooms)
 foreach(room ${rooms})
   set_target_properties(tanktread_${room} PROPERTIES EXPORT_NAME ${room})

@@ -34,7 +34,7 @@ namespace tanktread {
 
 namespace {
 
-enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // and `stopped`, 4
+enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in addition to `stopped`, 4
 
 struct Arguments {
   std::vector<std::string> decks, settings;
@@ -42,7 +42,7 @@ struct Arguments {
   bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false;
 };
 
-/// A deck that `--new` prints.
+/// A kind of deck that `--new` prints.
 struct Kind {
   std::string_view name, title, lists;
 };
@@ -70,7 +70,7 @@ constexpr std::array<Kind, 6> kinds{{
      "left: {center: [-3.0, 0.0, 0.5]}, right: {center: [3.0, 0.0, -0.5]}}, Time: {final time: 10.0}, Output: {interval: 0.5}"},
 }};
 
-/// Names of the decks that `--new` prints.
+/// Returns the names of the decks that `--new` prints.
 std::vector<std::string> kinds_of_decks() {
   std::vector<std::string> names;
   for (const Kind& kind : kinds) names.emplace_back(kind.name);
@@ -118,8 +118,9 @@ bool portable(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') 
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem(); }
 
-/// Of the directory of a run's results: `<deck>_<overlay>_<key>=<value>`, of files the name without its ending, of a key its last part, with `_` for
-/// all but letters, digits and `.-=`. A name above 100 characters is cut, and ends with a checksum of what it stands for.
+/// Returns the default name of the results directory: `<deck>_<overlay>_<key>=<value>`, with file names without extension and keys without their
+/// section. `_` replaces all characters except letters, digits and `.-=`. A name longer than 100 characters is cut and ends with a checksum of the
+/// decks and settings.
 std::string default_name(const std::vector<std::string>& decks, const std::vector<std::string>& settings) {
   constexpr std::size_t longest = 100;
   std::string laid_over;
@@ -140,21 +141,21 @@ std::string default_name(const std::vector<std::string>& decks, const std::vecto
   return name.substr(0, longest - end.size()) + end;
 }
 
-/// What may not differ from the deck of the checkpoint, which is read into `scene`.
+/// Reads the deck of the checkpoint into `scene`. Throws UserError if a key has changed that may not change when a run is resumed.
 void check_changes(const std::string& stored, const deck::Document& now, Scene& scene) {
   deck::Document before = deck::read_text(stored, "The stored deck");
   before.declare(scene);
   auto old_values = before.values();
   auto new_values = now.values();
-  new_values.insert(old_values.begin(), old_values.end());  // keys that are set no longer
+  new_values.insert(old_values.begin(), old_values.end());  // adds keys that are no longer set
   for (const auto& [path, value] : new_values)
     if (old_values[path] != value && !may_change_on_resume(path))
       throw UserError(path + " cannot change when a run goes on: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
                       ", and now is " + value + ".");
 }
 
-/// A file or directory that a deck names: what the run that goes on has kept of it, from where the program was started, or beside a deck; as it is
-/// named where there is none.
+/// Returns the path of a file or directory that a deck names: the copy that a resumed run has kept, or else relative to the working directory, or
+/// else relative to the directory of a deck. Returns the name if there is none.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -166,13 +167,13 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
-/// A file that the run keeps by the name `kept`.
+/// Replaces `file` by its path (see `found`), and adds it to the files of which the run keeps a copy with the name `kept`.
 void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
   file = found(file, kept, arguments);
   scene.files.emplace_back(file, kept);
 }
 
-/// The files that a particle's shapes and copies come from.
+/// Finds the files of the shapes and the copies of a kind of particle, and reads the shape.
 void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
   if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
@@ -180,7 +181,7 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   if (auto& file = kind.membrane.stress_free_file) find(*file, kept_stress_free(kind), arguments, scene);
   shape.read();
   auto& initial = shape.initial;
-  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has what became of it
+  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has the current shape
   if (initial)
     for (auto* name : {&initial->file, &initial->run})
       if (*name) *name = found(**name, {}, arguments);
@@ -243,20 +244,20 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   return simulate(scene, request);
 }
 
-/// Throws RunFailure when something did not get onto standard output.
+/// Throws RunFailure if writing to standard output has failed.
 void check_output() {
   if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout))
     throw RunFailure(std::string("cannot write to standard output: ") + std::strerror(errno));
 }
 
-/// One line of bearable length, whatever the message holds.
+/// Returns the message as one line of at most 1000 bytes.
 std::string one_line(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return deck::shortened(text, 1000);
 }
 
-/// The whole program on one rank; only the first one speaks. `message`: what an error is, for others.
+/// Runs the program on one rank, and returns the exit code. Only a rank that `speaks`, which is the first one, prints. `message` receives the error.
 int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::string& message) {
   const auto report = [speaks, &message](const char* text, int code) {
     message = one_line(text);
@@ -278,7 +279,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     }
     const int code = run(arguments, registry, speaks);
     const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
-                        !arguments.new_deck.empty();  // and nothing else: a run has its files
+                        !arguments.new_deck.empty();  // a run is not among these, because its output is files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

@@ -5,7 +5,7 @@
 
 namespace tanktread {
 
-/// What made a result: version, git_commit, compiler. (`/provenance` of run.h5 adds the number of ranks.)
+/// Returns the version, git_commit and compiler of the program. (`/provenance` of run.h5 also contains the number of ranks.)
 std::map<std::string, std::string> provenance();
 
 }  // namespace tanktread

@@ -1,5 +1,5 @@
 #pragma once
-// The runs that main starts once the deck is read.
+// The runs that the program starts after the deck is read.
 
 #include "record/results.hpp"
 #include "scene/scene.hpp"
@@ -9,14 +9,14 @@ namespace tanktread {
 /// Exit code of a run that was stopped and can be resumed.
 constexpr int stopped = 4;
 
-/// Runs the scene to its end, by one of the functions below if it is not a run in time. Exit code: 0 every expectation met, 1 one was missed, or
-/// `stopped`. Throws UserError, RunFailure, and motion::Stopped where the run is told to stop before its first step. Collective.
+/// Runs the scene to its end, by one of the functions below if it is not a run in time. Returns the exit code: 0 if every expectation is met, 1 if
+/// one is not, or `stopped`. Throws UserError, RunFailure, and motion::Stopped if a stop signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
-/// Does what Steady, Periodic or Spectrum ask for. Exit code and errors as of `simulate`. Collective.
+/// Runs the computation that Steady, Periodic or Spectrum request. Returns and throws like `simulate`. Collective.
 int find_steady(const Scene& scene, const RunRequest& request);
 
-/// Solves for the traction on a body that moves as the deck says; records one row and one snapshot. Exit code as of `simulate`. Collective.
+/// Solves for the traction on a body with prescribed motion, and records one row and one snapshot. Returns the exit code like `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);
 
 }  // namespace tanktread

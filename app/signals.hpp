@@ -1,16 +1,17 @@
 #pragma once
-// Signals to end, from the start of the program on.
+// Handling of stop signals.
 
 namespace tanktread {
 
-/// From now on SIGTERM, SIGINT and SIGHUP are noted, for the run to end with a checkpoint; the second of a kind ends the program at once. What is
-/// ignored stays so (nohup). To write into a closed pipe or beyond the limit of a file is an error like any other of writing.
+/// Installs handlers of SIGTERM, SIGINT and SIGHUP, so that the run ends with a checkpoint. The second signal of a kind ends the program immediately.
+/// Signals that are ignored, for example by nohup, stay ignored. Writing to a closed pipe or beyond a file size limit becomes an ordinary write
+/// error.
 void catch_signals();
 
-/// Whether this process was told to stop.
+/// Returns whether this process has received a stop signal.
 bool told_to_stop();
 
-/// Throws motion::Stopped on every rank when one was told to stop. Collective.
+/// Throws motion::Stopped on every rank if any rank has received a stop signal. Collective.
 void stop_where_told();
 
 }  // namespace tanktread

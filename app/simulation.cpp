@@ -27,10 +27,11 @@ namespace tanktread {
 
 namespace {
 
-/// Why a run ends before its time, as its status says it.
+/// Reasons for which a run ends before its final time, as in its status.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
 
-/// Steps that do not land on snapshots are no longer than the time between two of them, so that each has its own step.
+/// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so
+/// that each snapshot has its own step.
 motion::TimeOptions time_options(const Scene& scene) {
   motion::TimeOptions time = scene.time;
   time.unit = 1 / scene.rate();
@@ -44,14 +45,14 @@ bool adapts(const Scene& scene) {
   return std::ranges::any_of(scene.alone(), [](const Scene& one) { return one.adaptation.enabled; });
 }
 
-/// Returns the scene of the first particle that deforms, as if it were alone; of the first one if all are rigid.
+/// Returns the scene with only the first particle that deforms, or with only the first particle if all are rigid.
 Scene first_deforming(const Scene& scene) {
   std::vector<Scene> all = scene.alone();
   const auto found = std::ranges::find_if(all, [](const Scene& one) { return !one.particle.rigid(); });
   return std::move(found == all.end() ? all.front() : *found);
 }
 
-/// A run between its first and its last step.
+/// A run in time, from its first to its last step.
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
@@ -100,7 +101,7 @@ class Run {
     save();
   }
 
-  /// Particles that start side by side need a mesh for the film between them.
+  /// Adapts the initial mesh to thin films between particles, and between particles and a wall.
   void prepare() {
     if (!scene_.has_gaps() && !scene_.wall.present) return;
     for (int k = 0; k < 8 && particle_->adapt(state_, totals_); ++k) results_.remesh(particle_->body(), particle_->bezier());
@@ -118,8 +119,8 @@ class Run {
     earlier_kernel_ = {before.far - again.far, before.near - again.near, before.self - again.self};
   }
 
-  /// One step and its row, or nothing of either where the run is stopped within it, or where it fails, which ends the run. Says why the run is to end
-  /// before its time, if it is.
+  /// Makes one step and records its row. Returns the reason to end the run early, or an empty text. If a stop signal arrives within the step or the
+  /// step fails, discards the step. Throws RunFailure if it fails.
   std::string step() {
     const motion::State before = state_;
     const RunTotals totals = totals_;
@@ -144,7 +145,7 @@ class Run {
     return by_signal;
   }
 
-  /// What ends `act`, on any rank; empty where it comes to its end, or is told to stop.
+  /// Runs `act`. Returns the message of a failure on any rank, or an empty text if it succeeds or a stop signal interrupts it.
   std::string error_of(const std::function<void()>& act) {
     return coupling::failure_of_any([&] {
       try {
@@ -172,8 +173,8 @@ class Run {
     record();
   }
 
-  /// Another mesh where the rule says so, with the velocity there: loads of a finer mesh are others, and steps that went on with the velocity of the
-  /// mesh before were a tenth as long.
+  /// Adapts the mesh if the rule requires it, and evaluates the velocity on the new mesh. Loads on a finer mesh differ, and steps that continued with
+  /// the velocity of the old mesh were ten times shorter.
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
     results_.remesh(particle_->body(), particle_->bezier());
@@ -182,7 +183,7 @@ class Run {
     motion::begin(motion, state_);
   }
 
-  /// A step of the scheme; `before`: where it began, on this side of a kink of the motion.
+  /// Makes a step of the scheme. If it begins at a kink of the motion, sets `before` to the state after the kink.
   void integrate(double limit, motion::State& before) {
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     try {
@@ -197,7 +198,7 @@ class Run {
     }
   }
 
-  /// A step after which particles can be held apart, if they are to be.
+  /// Makes a step, and repeats it with half its size until the particles can be held apart, if the deck requests this.
   void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
@@ -206,13 +207,13 @@ class Run {
       if (scene_.time.fixed_step) throw RunFailure("after a step of fixed size particles are too close for Contact/limiter to hold them apart");
       Net frozen = std::move(state_.frozen);
       state_ = before;
-      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the operators before
+      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // secants of the old operators
       state_.frozen = std::move(frozen);
       state_.step = report_.step / 2;
     }
   }
 
-  /// What a step that is done leaves for a checkpoint.
+  /// Collects the totals of a finished step for a checkpoint.
   void settle() {
     totals_.work = particle_->work();
     totals_.phase_angle = particle_->phase_angle();
@@ -238,7 +239,7 @@ class Run {
                      ", for a newer one cannot be had: " + unsaved);
   }
 
-  /// The last snapshot's time within the step just made, and the state there.
+  /// Interpolates the state at the last snapshot time within the latest step.
   void picture_within(const motion::State& before) {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
@@ -258,14 +259,14 @@ class Run {
     warn_of_limits();
   }
 
-  /// The mesh's quality. Throws RunFailure when an element is folded.
+  /// Computes the quality of the mesh. Throws RunFailure if an element is folded.
   void judge() {
     if (first_.particle.rigid()) return;
     const auto clock = phases_.time("soundness");
     quality_ = soundness(particle_->bezier(), state_.x, ranks_);
   }
 
-  /// What the step has come near to.
+  /// Warns of limits of validity that the step has come close to.
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
     const auto n_elements = static_cast<int>(particle_->body().space.elements.size());
@@ -277,14 +278,14 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // the picture has taken work, and the next solution starts from its own
+    if (pictured_) settle();  // the snapshot has added to the totals, and the next solution starts from the solution of the snapshot
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);
     particle_->forget_recycled();
   }
 
-  /// The picture that is due, of the last step's end or of a moment within.
+  /// Returns the snapshot that is due, at the end of the last step or at a time within it.
   Results::Sampled sample() {
     const motion::State& pictured = pictured_ ? pictured_->state : state_;
     particle_->dynamics().at(pictured.time, began_);
@@ -296,14 +297,14 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
-  /// Of a particle with the wall, whose list in the deck this is.
+  /// Throws RunFailure if a particle touches the wall. `list` is the section of the wall in the deck.
   void end_at_wall(const std::string& list, double contact_gap) {
     const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
     fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
-  /// Of two of several particles.
+  /// Throws RunFailure if two particles touch.
   void end_at_contact() {
     const double gap = row_.value("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
@@ -311,7 +312,7 @@ class Run {
          formatted(": the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
   }
 
-  /// After a step that is done.
+  /// Returns the reason to end the run after a finished step, or an empty text. Throws RunFailure if there is a contact.
   std::string reason_to_stop() {
     if (scene_.tube.present) {
       end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
@@ -332,7 +333,7 @@ class Run {
     return {plan(scene_, particle_->body(), ranks_.size()), counts(totals_), status, {}, false, earlier_seconds_, {}, {}};
   }
 
-  /// `reason`: to have ended before its time, if it did.
+  /// Closes the results and returns the exit code. `reason` is the reason for an early end, or empty.
   int end(const std::string& reason) {
     if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
@@ -343,7 +344,7 @@ class Run {
     return last.whole ? code : stopped;
   }
 
-  /// A status without its colon.
+  /// Returns a status without its colon.
   static std::string spoken(std::string status) {
     std::erase(status, ':');
     return status;
@@ -352,31 +353,31 @@ class Run {
   const Scene& scene_;
   const RunRequest& request_;
   const Clock::time_point start_ = Clock::now();
-  double earlier_wall_seconds_ = 0;  // of a resumed run
+  double earlier_wall_seconds_ = 0;  // wall time of the earlier parts of a resumed run
   Phases phases_ = started();
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // of what no other phase counts
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // times everything outside of other phases
   coupling::Ranks ranks_;
   std::unique_ptr<ParticleSystem> particle_;
   Results results_;
   std::unique_ptr<motion::Integrator> scheme_;
   motion::State state_;
   motion::StepReport report_;
-  double began_ = 0;  // the last step
+  double began_ = 0;  // time at which the last step began
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
-  bool adapting_ = false;     // within a step, or done with it
-  bool interrupted_ = false;  // within a step, of which nothing is kept
-  stokes::Evaluations earlier_kernel_;        // in earlier parts of the run
+  bool adapting_ = false;     // whether the latest step has reached the adaptation of its mesh
+  bool interrupted_ = false;  // whether a step was interrupted and discarded
+  stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;
   struct Pictured {
     motion::State state;
-    std::optional<Results::Sampled> sampled;  // before the mesh changes
+    std::optional<Results::Sampled> sampled;  // snapshot on the mesh before its adaptation
   };
-  std::optional<Pictured> pictured_;  // where a snapshot is due within the last step
+  std::optional<Pictured> pictured_;  // set if a snapshot is due within the last step
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
-  Warnings warnings_{first_};  // of several particles by the numbers of the first that deforms
+  Warnings warnings_{first_};  // uses the parameters of the first particle that deforms
 };
 
 }  // namespace

@@ -35,13 +35,13 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   return a;
 }
 
-/// A scene, of a branch at one value of the parameter, and its motion.
+/// A scene and its motion. A branch has one system per value of its parameters.
 struct System {
   System(Scene of, coupling::Ranks& ranks, Phases& phases) : scene(std::move(of)), particle(deforming(scene, ranks, phases)) {
     begin(particle->start());
   }
 
-  /// With the mesh that the particle has by now, and a shape on it.
+  /// Sets up the equations on the current mesh of the particle. `x` is a shape on this mesh.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told_to_stop);
     const Body& body = particle->body();
@@ -54,7 +54,7 @@ struct System {
   std::optional<motion::SteadyEquations> equations;
 };
 
-/// The shapes that are looked at, one after another, and what is written of each.
+/// A run that computes shapes one after another and records the results of each.
 class SteadyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
@@ -82,7 +82,7 @@ class SteadyRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// One shape: the steady one that the first leads to, or that itself.
+  /// Computes one shape: a periodic or steady one from the initial shape, or if none is requested, the initial shape itself.
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
@@ -99,7 +99,7 @@ class SteadyRun {
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
-  /// The shape that comes back after a period.
+  /// Computes a shape that repeats after a period.
   void shoot() {
     const motion::PeriodicOptions& options = scene_.periodic;
     state_.x = motion::after_periods(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
@@ -115,7 +115,7 @@ class SteadyRun {
       throw RunFailure(formatted("no shape that comes back was found: after %d periods it misses that by %.2g", found.iterations, found.rest));
   }
 
-  /// Cuts and merges elements where the shape asks for it; whether the mesh is another one now. Coarsening might never end.
+  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening, since both could alternate forever.
   bool adapt() {
     if (totals_.coarsenings > 0 || !system_->particle->adapt(state_, totals_)) return false;
     results_.remesh(system_->particle->body(), system_->particle->bezier());
@@ -123,7 +123,7 @@ class SteadyRun {
     return true;
   }
 
-  /// The same at a point of a branch; other shapes of it go along.
+  /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all of them to the new mesh. Returns whether the mesh has changed.
   bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
     system_ = system_at(parameters);
     state_.history.clear(), state_.places.clear();
@@ -138,7 +138,7 @@ class SteadyRun {
     return true;
   }
 
-  /// All shapes of a branch.
+  /// Computes all shapes of a branch.
   void follow() {
     const Parameters first = first_parameters(scene_, request_.deck_text);
     systems_.emplace_front(first, system_);
@@ -161,14 +161,14 @@ class SteadyRun {
     std::printf("  %-11d %s%s\n", k, at({point.parameter, point.second}).c_str(), point.fold ? ", a fold" : "");
   }
 
-  /// The parameters as one reads them.
+  /// Returns the parameters as text.
   std::string at(const Parameters& parameters) const {
     const std::optional<std::string>& second = scene_.continuation.second_parameter;
     return formatted("%s %.8g", scene_.continuation.parameter.c_str(), parameters[0]) +
            (second ? formatted(", %s %.8g", second->c_str(), parameters[1]) : "");
   }
 
-  /// The latest few are kept, the one that is asked for in front.
+  /// Returns the system at these parameters. Keeps the systems used latest, with the returned one in front.
   std::shared_ptr<System> system_at(const Parameters& parameters) {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {
@@ -186,7 +186,7 @@ class SteadyRun {
     return made;
   }
 
-  /// Puts another system on the mesh that is kept there.
+  /// Puts another system on the mesh in `mesh`.
   void carry_to(System& system, const output::Checkpoint& mesh) const {
     Resumed resumed;
     resumed.state.x = state_.x, resumed.totals.phase_angle = system.particle->phase_angle(), resumed.checkpoint = mesh;
@@ -205,7 +205,7 @@ class SteadyRun {
     return {system, &*system->equations};
   }
 
-  /// Velocity, modes, row and snapshot of the present shape.
+  /// Computes the velocity and modes of the current shape, and records its row and snapshot.
   void write() {
     state_.history = {system_->motion->velocity(state_.x)};
     if (!state_.history.front().allFinite()) throw RunFailure("the velocity of this shape cannot be had: " + system_->motion->failure());
@@ -218,7 +218,7 @@ class SteadyRun {
     const auto clock = phases_.time("spectrum");
     motion::SpectrumOptions options = scene_.spectrum;
     const surface::Symmetry& shape = system_->particle->body().symmetry;
-    coupling::Ranks whole_ranks;  // of other rows
+    coupling::Ranks whole_ranks;  // distribution of the unknowns without symmetry reduction
     const coupling::CoupledMotion* on_it = system_->particle->fields();
     const bool apart = on_it && !on_it->knows_images(shape);
     if (apart && options.parity)
@@ -252,7 +252,7 @@ class SteadyRun {
     system_->motion->velocity(state_.x);
   }
 
-  /// Floquet exponents: the rates at which what the returns multiply grows over a period.
+  /// Returns the Floquet exponents: the logarithms of the multipliers of the return map, divided by the period.
   std::vector<coupling::Eigenpair> exponents(motion::ReturnMap& returns, const coupling::ShapeCoordinates& shapes) {
     Eigen::VectorXd start(shapes.size());
     for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = std::sin(1.0 + static_cast<double>(k * k % 7919));  // the same on every run
@@ -266,7 +266,7 @@ class SteadyRun {
     return pairs;
   }
 
-  /// The present system with nothing left out: modes of another parity than the shape's have velocities of all points.
+  /// Returns the current system without symmetry reduction. Modes of another parity than the shape need the velocities of all points.
   std::shared_ptr<System> whole(coupling::Ranks& ranks) {
     if (system_->particle->body().symmetry.order() == 1)
       throw UserError("Spectrum/parity is of modes of a symmetric scene, and this one has no symmetry.");
@@ -340,15 +340,15 @@ class SteadyRun {
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
-  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // of a branch, by its parameters, the latest first
-  std::optional<output::Checkpoint> mesh_;                          // that they are on, where it is not the deck's
+  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
+  std::optional<output::Checkpoint> mesh_;                              // mesh of these systems, if it is not the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
-  coupling::Work work_;          // of systems that are gone
-  stokes::Evaluations kernel_;
+  coupling::Work work_;         // work of systems that were dropped
+  stokes::Evaluations kernel_;  // kernel evaluations of systems that were dropped
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;
   std::string failure_;

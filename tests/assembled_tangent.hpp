@@ -1,5 +1,5 @@
 #pragma once
-// The second derivative of a membrane's energy as a matrix, to count its unstable modes.
+// Second derivative of a membrane's energy as an assembled matrix, for counting its unstable modes.
 
 #include <span>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace tanktread::membrane {
 
-/// H on all elements: row and column 3 A + c.
+/// Returns H assembled over all elements. Component c of control point A has row and column 3 A + c.
 inline Eigen::SparseMatrix<double> assembled_tangent(const Membrane& membrane, const Net& x) {
   const spline::Space& space = membrane.space();
   std::vector<Eigen::Triplet<double>> entries;

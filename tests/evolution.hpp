@@ -1,5 +1,5 @@
 #pragma once
-// A deck integrated in memory, without files, for tests that look at what a whole run comes to.
+// Run of a deck in memory, without files, for tests of the results of whole runs.
 
 #include <memory>
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace tanktread {
 
-/// A scene, its body, and the run so far. Settings are `Section/key=value`, as behind `--set`.
+/// Scene, its body, and the state of the run. Settings are `Section/key=value`, as for `--set`.
 class Evolution {
  public:
   explicit Evolution(const std::vector<std::string>& settings) {
-    std::vector<std::string> all = {"Time/final time=1"};  // where the settings say no other
+    std::vector<std::string> all = {"Time/final time=1"};  // default, which the settings may change
     all.insert(all.end(), settings.begin(), settings.end());
     deck::Document deck = deck::read({}, all);
     deck.declare(scene);
@@ -31,7 +31,7 @@ class Evolution {
   }
   Evolution(const Evolution&) = delete;
 
-  /// One step, not beyond `limit`. Throws RunFailure.
+  /// Advances by one step, not beyond the time `limit`. Throws RunFailure.
   motion::StepReport step(double limit) {
     const motion::StepReport report = scheme_->advance(*capsule, state, limit);
     ++steps;

@@ -1,5 +1,5 @@
 #pragma once
-// Layers at the collocation sites of their space, the shape given with each density.
+// Layer potentials at the collocation sites of their space; the shape is given with each density.
 
 #include <span>
 #include <utility>
@@ -36,7 +36,7 @@ struct DoubleLayer : Layer {
   }
 };
 
-/// Targets off the surfaces.
+/// Layer potential at targets off the surface.
 struct CrossLayer : Layer {
   CrossLayer(const spline::Space& space, const quadrature::Options& options, Kernel kernel) : Layer(kernel, space, {}, options) {}
 };

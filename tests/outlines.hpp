@@ -1,5 +1,5 @@
 #pragma once
-// Outlines that several tests look at.
+// Outlines that several tests use.
 
 #include <cmath>
 #include <numbers>
@@ -12,7 +12,7 @@ namespace tanktread {
 
 inline surface::Outline ellipse(double a, double b) { return surface::Outline({surface::Ellipse{surface::Vec2::Zero(), surface::Vec2(a, b)}}); }
 
-/// Straight sides between these corners, counter-clockwise.
+/// Returns a polygon with these corners, counter-clockwise.
 inline surface::Outline polygon(const std::vector<surface::Vec2>& corners) {
   std::vector<surface::PlaneCurve> sides;
   for (std::size_t k = 0; k < corners.size(); ++k)
@@ -20,7 +20,7 @@ inline surface::Outline polygon(const std::vector<surface::Vec2>& corners) {
   return surface::Outline(std::move(sides));
 }
 
-/// A trefoil, r = 1 + 0.3 cos 3t, as a spline through n points.
+/// Returns a trefoil, r = 1 + 0.3 cos 3t, as a spline through n points.
 inline surface::Outline trefoil(int n) {
   std::vector<double> breaks;
   std::vector<surface::Vec2> points;

@@ -1,5 +1,5 @@
 #pragma once
-// The steady problem of a rigid body solved in memory, for tests that hold it against an exact solution.
+// Steady problem of a rigid body, solved in memory, for comparisons with exact solutions.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace tanktread {
 
-/// A deck of inputs/ with settings `Section/key=value`, as behind `--set`.
+/// Solves a deck of inputs/ with settings `Section/key=value`, as for `--set`.
 inline RigidSolution rigid_solution(const std::string& deck_name, const std::vector<std::string>& settings) {
   Scene scene;
   deck::Document deck = deck::read({std::string(SOURCE_DIRECTORY) + "/inputs/" + deck_name}, settings);

@@ -1,5 +1,5 @@
 #pragma once
-// Columns of the record of a run (`/series` in run.h5). What a column belongs to declares it together with its value.
+// Columns of the record of a run (`/series` in run.h5). The object that a column describes declares it together with its value.
 
 #include <functional>
 #include <string>
@@ -15,20 +15,20 @@ struct Column {
   std::string name, unit;
   std::string description;
   std::string undefined_if = {};  ///< condition under which the value is NaN, as a clause; empty if the value is always defined
-  std::string where = {};         ///< for the manual: what a run must have, `; in a tube`
+  std::string where = {};         ///< condition on the run under which the column exists, for the manual: `; in a tube`
 };
 
 /// The columns of one row and their values.
 ///
-/// An owner (the run, a particle, a wall, a load, a field) adds its columns to this, in one function. The function is called at each recorded state,
-/// and once without a state if only the names are wanted: the values that it gives then, NaN too, are not used. Conditions on a column
-/// depend on the deck only, so that every row has the same columns.
+/// An owner (the run, a particle, a wall, a load, a field) adds its columns in one function. The function is called at each recorded state. If only
+/// the names are needed, it is called once without a state, and its values, which may be NaN, are ignored. Conditions on a column depend only on the
+/// deck, so that every row has the same columns.
 class Columns {
  public:
-  /// `every`: lists the columns of all decks, because `when` is always true.
+  /// If `every`, `when` is always true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
-  /// Returns whether a column with this condition is to be added.
+  /// Returns whether to add a column that has this condition.
   bool when(bool condition) const { return condition || every_; }
 
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.
@@ -37,7 +37,7 @@ class Columns {
   /// Adds one column per component, separated by spaces in `components`. The component is appended to the name and replaces `#` in the description.
   void add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view components, const Column& column);
 
-  /// Adds the columns of another row, each with the prefix before its name: of one of several particles, `<particle>/`.
+  /// Adds the columns of another row, with the prefix before each name: `<particle>/` if there are several particles.
   void append(const Columns& other, const std::string& prefix = {});
 
   /// Sorts by increasing rank of the name, and columns of equal rank in the order in which they were added.
@@ -52,15 +52,14 @@ class Columns {
   const std::vector<double>& values() const { return values_; }
   std::vector<double>& values() { return values_; }
 
-  /// Returns the value of one column. Throws std::out_of_range if there is none of this name.
+  /// Returns the value of one column. Throws std::out_of_range if no column has this name.
   double value(std::string_view name) const;
 
-  /// Returns the values of `<particle>/<name>` in the order of the particles. If no particle has a name, the value of `name`.
+  /// Returns the values of the columns `<particle>/<name>` in the order of the particles, or the value of the column `name` if there are none.
   std::vector<double> of_particles(std::string_view name) const;
 
-  /// Returns the smallest and the largest of them; 0 if there are none.
-  double smallest(std::string_view name) const;
-  double largest(std::string_view name) const;
+  double smallest(std::string_view name) const;  ///< returns the smallest value of `of_particles(name)`; 0 if there are none
+  double largest(std::string_view name) const;   ///< returns the largest value of `of_particles(name)`; 0 if there are none
 
  private:
   bool every_;

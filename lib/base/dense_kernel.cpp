@@ -8,7 +8,7 @@ namespace tanktread {
 inline namespace INSTRUCTIONS {
 namespace {
 
-using Matrix = Eigen::Map<Eigen::MatrixXd>;  // without a demand on its alignment, which differs between sets of instructions
+using Matrix = Eigen::Map<Eigen::MatrixXd>;  // unaligned, because the alignment that Eigen requires differs between instruction sets
 
 }  // namespace
 

@@ -7,12 +7,12 @@
 
 namespace tanktread {
 
-/// A mistake of the user's: one sentence that says what, where, what is allowed, what was given. Exit code 2.
+/// Error in the user's input. The message is one sentence: what is wrong, where, what is allowed, what was given. Exit code 2.
 struct UserError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Several of them, each with its sentence.
+/// Several errors in the user's input, one sentence each.
 struct UserErrors : UserError {
   explicit UserErrors(std::vector<std::string> sentences) : UserError(joined(sentences)), all(std::move(sentences)) {}
   std::vector<std::string> all;
@@ -25,13 +25,13 @@ struct UserErrors : UserError {
   }
 };
 
-/// Throws UserError or UserErrors unless there are none.
+/// Throws UserError for one mistake and UserErrors for several. Does nothing if there are none.
 inline void require_none(std::vector<std::string> mistakes) {
   if (mistakes.size() == 1) throw UserError(mistakes.front());
   if (!mistakes.empty()) throw UserErrors(std::move(mistakes));
 }
 
-/// Sentences about choices that cannot be made together, from the classes that know the reasons.
+/// Collects sentences about choices that contradict each other. They are added by the classes that know the reasons.
 class Rejections {
  public:
   /// Adds a sentence if both choices are made.
@@ -54,7 +54,7 @@ inline void refuse(bool both, const std::string& one, const std::string& other, 
   all.throw_if_any();
 }
 
-/// A run that went wrong (not a number, folded element, step too small, solver not converged). Exit code 3, after a checkpoint.
+/// Failure of a run (NaN, folded element, step too small, solver not converged). The program writes a checkpoint and ends with exit code 3.
 struct RunFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

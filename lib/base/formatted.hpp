@@ -4,7 +4,7 @@
 
 namespace tanktread {
 
-/// What printf would print.
+/// Returns the text that printf would print.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* pattern, ...);
 
 }  // namespace tanktread

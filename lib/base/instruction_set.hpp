@@ -1,6 +1,6 @@
 #pragma once
-// The instructions that kernels run with. Kernels are the source files *_kernel; where the program is built for any processor of a family, each
-// is compiled for several sets of instructions.
+// Instruction set that the kernels use. Kernels are the source files *_kernel. If the program is built for any processor of a family, each kernel is
+// compiled for several instruction sets.
 
 #include <string>
 
@@ -8,11 +8,12 @@ namespace tanktread {
 
 enum class InstructionSet { baseline, avx2, avx512 };
 
-/// The widest that this processor has of those that the kernels are compiled for, or the one that the environment variable TANKTREAD_INSTRUCTIONS
-/// names: baseline, avx2 or avx512. Throws UserError if it names another, or one that the processor or the program lacks.
+/// Returns the instruction set in use: the one that the environment variable TANKTREAD_INSTRUCTIONS names (baseline, avx2 or avx512), or otherwise
+/// the widest one that the processor has and the kernels are compiled for. Throws UserError if the variable has any other value, or names an
+/// instruction set that the processor does not have or the kernels are not compiled for.
 InstructionSet instruction_set();
 
-/// Its name and the width of its registers, for readers of a plan.
+/// Returns the name of the instruction set and the number of doubles in a register, for the plan that a run prints.
 std::string instructions();
 
 }  // namespace tanktread

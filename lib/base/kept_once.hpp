@@ -1,5 +1,5 @@
 #pragma once
-// Tables of numbers of which many are equal, as those of the elements of equal particles and of uniform meshes.
+// Storage that keeps equal tables of numbers only once. Elements of equal particles and of uniform meshes have many equal tables.
 
 #include <cstddef>
 #include <cstring>
@@ -9,10 +9,11 @@
 
 namespace tanktread {
 
-/// Where the tables in an array start, by what is in them.
+/// Start positions of the tables in an array, by the hash of their content.
 using Tables = std::unordered_multimap<std::size_t, std::size_t>;
 
-/// Where the table starts that lies from `first` to the end of `all`; if it is there already, to the last bit, the one at the end is taken away.
+/// Returns the start position of the table that was added to `all` from `first` to its end. If an earlier table is bitwise equal, removes the added
+/// table and returns the position of the earlier one.
 template <class Number>
 std::size_t kept_once(std::vector<Number>& all, std::size_t first, Tables& tables) {
   const std::size_t size = all.size() - first;

@@ -1,11 +1,11 @@
 #pragma once
-// What a kernel needs to be compiled for several sets of instructions: its functions live in a namespace INSTRUCTIONS of their room,
-// and KERNEL makes the room's own function, which calls the one of the set in use.
+// Compilation of kernels for several instruction sets. The functions of a kernel are in a namespace INSTRUCTIONS inside the namespace of their
+// module. KERNEL defines the function of the module, which calls the function for the instruction set in use.
 
 #include "base/instruction_set.hpp"
 #include "base/register.hpp"
 
-/// The function of the room: result type, name, parameters and arguments in parentheses.
+/// Defines the function of the module. Arguments: result type, name, parameters in parentheses, arguments in parentheses.
 #if defined(SEVERAL_INSTRUCTION_SETS)
 #define KERNEL(result, function, parameters, arguments)                                \
   namespace avx2 {                                                                     \

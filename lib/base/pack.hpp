@@ -1,21 +1,21 @@
 #pragma once
-// Numbers that kernels work on together, as the rest of the program keeps them.
+// Storage for the numbers of SIMD registers, for code that is not compiled for the instruction set of the kernels.
 
 namespace tanktread {
 
-/// The most doubles that fit a register.
+/// Largest number of doubles in a register of any instruction set.
 constexpr int most_lanes = 8;
 
-/// Room for one register's worth of numbers, however wide registers are. Registers lie one behind the other from the start of an array of packs:
-/// where they are narrower than a pack, its end is idle.
+/// Storage for the numbers of one register of any width. Registers are contiguous from the start of an array of packs. If registers are narrower than
+/// a pack, the end of the array is not used.
 struct alignas(sizeof(double) * most_lanes) Pack {
   double room[most_lanes];
 };
 
-/// Doubles in a register of the instructions in use.
+/// Returns the number of doubles in a register of the instruction set in use.
 int pack_lanes();
 
-/// The numbers in an array of packs: lane l of register k is number pack_lanes() k + l.
+/// Returns the numbers in an array of packs. Lane l of register k has index pack_lanes() k + l.
 inline double* numbers(Pack* packs) { return reinterpret_cast<double*>(packs); }
 inline const double* numbers(const Pack* packs) { return reinterpret_cast<const double*>(packs); }
 

@@ -1,7 +1,7 @@
 #pragma once
-// A register's worth of numbers that are worked on together. Operators +, -, *, / act lane by lane, so what a lane holds never depends on its
-// neighbours: results do not depend on how targets or elements are split over ranks. For kernels only: as wide as the registers of the set of
-// instructions that a file is compiled for, and in a namespace of its own for each set.
+// SIMD registers. Operators +, -, *, / act on each lane. A lane does not depend on its neighbours, so results do not depend on how targets or
+// elements are split over ranks. Only for kernels: the width is that of the instruction set for which a file is compiled, and each instruction set
+// has its own namespace.
 
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@
 #endif
 
 #ifndef INSTRUCTIONS
-#define INSTRUCTIONS baseline  // what the whole program is compiled for
+#define INSTRUCTIONS baseline  // instruction set for which the whole program is compiled
 #endif
 
 namespace tanktread {
@@ -36,17 +36,18 @@ using Register = RegisterOf<double>::Type;
 using FloatRegister = RegisterOf<float>::Type;
 constexpr int lanes = RegisterOf<double>::lanes;
 
-/// The registers in an array of packs, or in structs of packs.
+/// Returns the registers in an array of packs or of structs of packs.
 inline Register* registers(Pack* packs) { return reinterpret_cast<Register*>(packs); }
 inline const Register* registers(const Pack* packs) { return reinterpret_cast<const Register*>(packs); }
 
-/// A register from, and to, any place in memory.
+/// Returns a register loaded from memory of any alignment.
 template <class Real>
 typename RegisterOf<Real>::Type load(const Real* a) {
   typename RegisterOf<Real>::Type p;
   std::memcpy(&p, a, sizeof p);
   return p;
 }
+/// Stores a register to memory of any alignment.
 template <class R, class Real>
 void store(const R& p, Real* a) {
   static_assert(sizeof(R) == register_bytes);
@@ -60,9 +61,9 @@ inline Register sqrt(const Register& a) {
   return root;
 }
 
-/// 1 / sqrt(a) to rounding, and 0 where a <= least, at least 0: a target that coincides with a node takes nothing from it. With AVX-512 from the
-/// instruction's estimate y, good to 2^-14, by the series of (1 - e)^(-1/2), e = 1 - a y^2, up to e^3 (to 6e-17), in single precision by Newton's
-/// step. Elsewhere root and division are as fast.
+/// Returns 1 / sqrt(a) to round-off, or 0 if a <= least, with least >= 0. So a node that coincides with the target contributes nothing.
+/// With AVX-512, corrects the estimate y of the instruction, which is accurate to 2^-14, by the series of (1 - e)^(-1/2), e = 1 - a y^2, up to e^3
+/// (error 6e-17), or in single precision by one Newton step. With other instruction sets, square root and division are as fast.
 inline Register inverse_root(const Register& a, const Register& least = Register{}) {
 #if defined(__AVX512F__)
   const Register y = _mm512_maskz_rsqrt14_pd(_mm512_cmp_pd_mask(a, least, _CMP_GT_OQ), a);
@@ -83,7 +84,7 @@ inline FloatRegister inverse_root(const FloatRegister& a, const FloatRegister& l
 #endif
 }
 
-/// A difference that is not merged with other sums, though a kernel's sums may be reordered.
+/// Returns the difference, and prevents the compiler from merging it with other sums, although kernels are compiled so that sums may be reordered.
 inline FloatRegister as_it_stands(FloatRegister difference) {
 #if defined(__x86_64__)
   asm("" : "+v"(difference));
@@ -93,7 +94,7 @@ inline FloatRegister as_it_stands(FloatRegister difference) {
   return difference;
 }
 
-/// Sum of the lanes, neighbours first.
+/// Returns the sum of the lanes. Adds neighbours first.
 inline double sum(const Register& a) {
   Register part = a;
   for (int n = lanes / 2; n > 0; n /= 2)

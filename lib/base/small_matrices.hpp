@@ -1,20 +1,21 @@
 #pragma once
-// Decompositions of three by three matrices, compiled once.
+// Functions of 3 x 3 matrices that need matrix decompositions, which are compiled only once here.
 
 #include "base/types.hpp"
 
 namespace tanktread {
 
-/// exp(A).
+/// Returns exp(A).
 Mat3 exponential(const Mat3& a);
 
-/// The largest real part of the eigenvalues.
+/// Returns the largest real part of the eigenvalues.
 double largest_growth_rate(const Mat3& a);
 
-/// The largest singular value.
+/// Returns the largest singular value.
 double largest_stretch(const Mat3& a);
 
-/// The rotation nearest to a matrix; to the sum of y r^T, the one that takes places r nearest to places y (Kabsch 1976).
+/// Returns the rotation nearest to a matrix. For the matrix sum y r^T, this is the rotation that best maps the points r to the points y in the
+/// least-squares sense (Kabsch 1976).
 Mat3 nearest_rotation(const Mat3& a);
 
 }  // namespace tanktread

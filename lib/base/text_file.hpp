@@ -7,23 +7,23 @@
 
 namespace tanktread {
 
-/// The text of a file, which `what` names in messages (`The deck a.yaml`). Throws UserError where it is missing, unreadable, no regular file (a
-/// directory, a pipe, which might never end), or longer than `most` bytes.
+/// Returns the text of a file. `what` is the name of the file in messages (`The deck a.yaml`). Throws UserError if the file is missing, unreadable,
+/// not a regular file (a directory, or a pipe, which might never end), or longer than `most` bytes.
 std::string text_of_file(const std::filesystem::path& file, const std::string& what, std::size_t most);
 
-/// Without the blanks around it.
+/// Returns the text without blanks at its beginning and end.
 std::string trimmed(const std::string& text);
 
-/// What stands between the commas of one line, without blanks around it.
+/// Fields of one line, which are separated by commas, without blanks around them.
 struct CsvRow {
   int line;
   std::vector<std::string> fields;
 };
 
-/// All lines of a text with something on them: `#` begins a comment, and a first row that begins with `heading` names columns and is left out.
+/// Returns all lines of a text that are not empty. `#` begins a comment. The first row is left out if it begins with `heading`, the column names.
 std::vector<CsvRow> csv_rows(const std::string& text, const std::string& heading);
 
-/// Throws UserError, a sentence after `where`, unless the field is a number below 1e75 in size.
+/// Returns the number in a field. Throws UserError, with `where` before the sentence, if it is not a number or its magnitude is not below 1e75.
 double csv_number(const std::string& field, const std::string& where);
 
 }  // namespace tanktread

@@ -1,5 +1,5 @@
 #pragma once
-// Where the time goes: named timers that add up, for the closing table and for `seconds` of the summary.
+// Named timers of the phases of a run, for the table that is printed at its end and for `seconds` of the summary.
 
 #include <chrono>
 #include <string>
@@ -10,8 +10,8 @@ namespace tanktread {
 
 /// Seconds and calls of the phases of a run, in the order in which they were first entered.
 ///
-/// A scope that opens inside another one pauses it, so no second is counted twice and the phases add up to the time spent in any.
-/// One thread, scopes closed in the reverse order of opening.
+/// A scope that opens inside another one pauses the outer one. So no time is counted twice, and the sum over the phases is the time spent in any
+/// scope. All scopes must be in one thread and close in the reverse order of opening.
 class Phases {
  public:
   struct Phase {
@@ -22,7 +22,7 @@ class Phases {
 
   using Clock = std::chrono::steady_clock;
 
-  /// Runs the clock of one phase for as long as it lives, or from an earlier time when no other was running.
+  /// Runs the clock of one phase during its lifetime. If `since` is given, the phase begins at this earlier time, and no other phase may run then.
   class [[nodiscard]] Scope {
    public:
     Scope(Phases& phases, std::string_view name) : phases_(phases) { phases_.enter(name); }
@@ -35,12 +35,12 @@ class Phases {
     Phases& phases_;
   };
 
-  /// `auto clock = phases.time("far field");`
+  /// Returns a scope that times a phase: `auto clock = phases.time("far field");`
   Scope time(std::string_view name) { return Scope(*this, name); }
 
   const std::vector<Phase>& all() const { return phases_; }
-  double seconds(std::string_view name) const;  ///< 0 for a phase that never ran; a running one counts up to its last pause
-  double total() const;                         ///< sum over the phases
+  double seconds(std::string_view name) const;  ///< returns 0 if the phase never ran; if it is running, the time up to its last pause
+  double total() const;                         ///< returns the sum over the phases
 
  private:
   void enter(std::string_view name);
@@ -48,11 +48,11 @@ class Phases {
   void charge();
 
   std::vector<Phase> phases_;
-  std::vector<std::size_t> open_;  // positions in phases_, innermost last
+  std::vector<std::size_t> open_;  // indices in phases_ of the open scopes, innermost last
   Clock::time_point since_;
 };
 
-/// Phases of a run: the first one, `start`, holds what has passed since the program was started, but for the loading of libraries.
+/// Returns the phases of a run with a first phase `start`: the time since the program was started, without the loading of libraries.
 Phases started();
 
 }  // namespace tanktread

@@ -1,5 +1,5 @@
 #pragma once
-// Small vectors and control nets. All lengths in the deck's unit of length, unless stated.
+// Small vectors and control nets. Lengths are in the unit of length of the deck unless stated otherwise.
 
 #include <Eigen/Core>
 
@@ -8,10 +8,10 @@ namespace tanktread {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-/// A control net, or any field on it: one row (x1, x2, x3) a control point, contiguous. Shape (N, 3).
+/// Control net, or a vector field on it: one contiguous row (x1, x2, x3) per control point. Shape (N, 3).
 using Net = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// sum_ij a_ij b_ij; 0 where one is empty, as of a part that the scene does not have.
+/// Returns sum_ij a_ij b_ij, or 0 if a or b is empty because the scene does not have this part.
 inline double dot(const Net& a, const Net& b) { return a.size() == 0 || b.size() == 0 ? 0 : a.cwiseProduct(b).sum(); }
 
 }  // namespace tanktread

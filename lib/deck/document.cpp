@@ -26,7 +26,7 @@ const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const 
   return list && list->isSublist(name) ? &list->sublist(name) : nullptr;
 }
 
-/// Keys that `over` gives another value than `base` does, or that it adds.
+/// Appends to `changes` the path of each key of `over` that is not in `base` or has another value there. Skips Output and Expect.
 void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterList& over, const std::string& path,
                  std::vector<std::string>& changes) {
   for (const auto& item : over) {
@@ -40,7 +40,7 @@ void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterLis
   }
 }
 
-/// Lists laid over each other, and for each expectation the keys that were changed since it was stated.
+/// The merged layers of a deck, and for each expectation the keys that changed after it was declared.
 struct Layers {
   std::shared_ptr<Teuchos::ParameterList> merged = std::make_shared<Teuchos::ParameterList>(root_name);
   std::map<std::string, std::vector<std::string>> changed;
@@ -59,7 +59,7 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Whether the expectation's own time comes before the end of the run, which then may be any.
+  /// Returns whether the time of the expectation is not after the end of the run. If so, the expectation does not depend on the final time.
   bool before_end(const Teuchos::ParameterList& expectation) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// A deck as it was given: files one over the other, single keys over them; and what comes from holding it against the statements of the keys.
+// Input deck: merges files and single settings, reads them into options structs, and writes the effective deck, the manual and the JSON schema.
 
 #include <map>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace tanktread::deck {
 
-/// A deck: reads into options structs by their `declare`, and keeps what they stated.
+/// A merged deck. Fills options structs through their `declare`, and records the keys that they declare.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});
 ///   deck.declare(scene);                  // throws UserErrors with all wrong values, and unknown keys if all were read
@@ -22,32 +22,32 @@ class Document {
   ~Document();
   Document(Document&&) noexcept;
 
-  /// Reads every key that `options` states; once for one document.
+  /// Reads every key that `options` declares. Call it once per document.
   template <class Options>
   void declare(Options& options) {
     Section root = begin();
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // the error may follow from a default that stands for a wrong value
+      refuse_wrong_values();  // the error may be a consequence of a wrong value, whose key keeps its default
       throw;
     }
     finish();
   }
 
-  /// The effective deck as YAML text.
+  /// Returns the effective deck as YAML text.
   std::string effective() const;
 
-  /// The value of every key that is set, as text, by path.
+  /// Returns the value of every key that is set, as text, by path.
   std::map<std::string, std::string> values() const;
 
-  /// The manual of every key as Markdown.
+  /// Returns the manual of all keys as Markdown.
   std::string reference() const;
 
-  /// A JSON schema (draft 7) of decks, for editors: types, choices, bounds and meanings.
+  /// Returns a JSON schema (draft 7) of decks, for editors: types, choices, bounds and descriptions.
   std::string schema() const;
 
-  /// The deck as it was given, each key under its meaning.
+  /// Returns the given deck as YAML, with the description of each key above it.
   std::string commented() const;
 
  private:
@@ -58,19 +58,20 @@ class Document {
   std::unique_ptr<Held> held_;
 };
 
-/// The deck in `files` (YAML, or XML by extension), later ones over earlier ones key by key, then each `Section/key=value` of `settings`.
-/// `stored` (YAML text, of a checkpoint) lies under all of them; it may be empty. Throws UserError.
+/// Reads and merges a deck, key by key. Each of `files` (XML if its name ends with .xml, otherwise YAML) overrides `stored` and the files before it.
+/// `settings` (`Section/key=value`) override the files. `stored` is YAML text from a checkpoint and may be empty. Throws UserError.
 ///
-/// An expectation binds what it was stated for: where a later file, or the settings together, give another value to a key that results depend on
-/// (all but those of Output and Expect, and Time/final time where it comes after the expectation's `at`), and do not state a key of Expect/<name>
-/// again, `not binding` of that expectation names the keys. `excuse`, if it is not empty, is `not binding` of all.
+/// An expectation is binding only for the deck that states it. If a later file, or the settings together, change a key that results
+/// depend on and do not set a key of Expect/<name> again, `not binding` of the expectation names the changed keys. Results depend on all keys except
+/// those of Output and Expect, and except Time/final time if the expectation's `at` is not after it.
+/// If `excuse` is not empty, it is set as `not binding` of all expectations.
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored = {},
               const std::string& excuse = {});
 
-/// A deck from its YAML text; `origin` names it in messages.
+/// Reads a deck from YAML text. `origin` is the name of the deck in messages.
 Document read_text(const std::string& yaml, const std::string& origin = "the deck");
 
-/// The manual of everything that `options` states.
+/// Returns the manual of all keys that `options` declares.
 template <class Options>
 std::string manual(Options options) {
   Document document(nullptr, true);
@@ -78,7 +79,7 @@ std::string manual(Options options) {
   return document.reference();
 }
 
-/// The schema of everything that `options` states.
+/// Returns the JSON schema of all keys that `options` declares.
 template <class Options>
 std::string schema(Options options) {
   Document document(nullptr, true);

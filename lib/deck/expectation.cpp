@@ -10,7 +10,7 @@
 namespace tanktread::deck {
 
 void Expectation::declare(Section& section) {
-  if (name.front() != '<')  // the manual's placeholder
+  if (name.front() != '<')  // `<name>` is the placeholder in the manual
     for (const char* key : {"value", "tolerance"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
   section.key("series", series, Choice{}, "the series of the results, if it is not the list's own name");
@@ -38,7 +38,7 @@ void Expectations::declare(Section& section) {
 
 namespace {
 
-/// Times that differ by less are the same.
+/// Returns the difference up to which two times count as equal.
 double slack(double time) { return 1e-9 * std::max(1.0, std::abs(time)); }
 
 Verdict verdict(const Expectation& e, const SeriesTable& series, const UndefinedSeries& undefined) {
@@ -60,7 +60,7 @@ Verdict verdict(const Expectation& e, const SeriesTable& series, const Undefined
     out.value = values->second.back();
   }
   out.error = std::abs(out.value - e.value) / (e.kind == "relative" ? std::abs(e.value) : 1.0);
-  out.passed = out.error <= e.tolerance;  // false for not-a-number
+  out.passed = out.error <= e.tolerance;  // false if the error is NaN
   if (const auto condition = undefined.find(e.series); std::isnan(out.value) && condition != undefined.end())
     out.reason = e.series + " is undefined " + (e.at ? "at the time " + number_text(*e.at) : "at the end") + ", because " + condition->second;
   else if (!out.passed)
@@ -93,7 +93,7 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   const std::size_t rows = times.size();
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   if (above < rows && times[above] == t) return values[above];
-  std::size_t begin = above, end = above;  // of the rows without NaN around t
+  std::size_t begin = above, end = above;  // range of up to four rows without NaN on each side of t
   while (begin > 0 && above - begin < 4 && !std::isnan(values[begin - 1])) --begin;
   while (end < rows && end - above < 4 && !std::isnan(values[end])) ++end;
   if (begin == above || end == above) return std::numeric_limits<double>::quiet_NaN();

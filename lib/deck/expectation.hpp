@@ -1,5 +1,5 @@
 #pragma once
-// What a deck expects of its results: `Expect/<name>`.
+// Expected values of results that a deck states in `Expect/<name>`, and their comparison with the results.
 
 #include <map>
 #include <optional>
@@ -10,55 +10,55 @@
 
 namespace tanktread::deck {
 
-/// One expected value of a series.
+/// An expected value of a series.
 struct Expectation {
-  std::string name;               ///< the user's, of the list
-  std::string series;             ///< the name itself, unless the deck says otherwise
-  double value = 0;               ///< required
-  double tolerance = 0;           ///< required; absolute, or relative to `value`
-  std::string kind = "absolute";  ///< absolute, relative
-  std::optional<double> at;       ///< time; empty: the last one
-  std::string source;             ///< where the value comes from
-  std::string not_binding;        ///< why a miss is reported only; empty: it fails the run
+  std::string name;               ///< name of the section, chosen by the user
+  std::string series;             ///< name of the series; by default `name`
+  double value = 0;               ///< expected value (required)
+  double tolerance = 0;           ///< largest error that passes (required): absolute, or relative to `value`
+  std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
+  std::optional<double> at;       ///< time of the value; if not set, the last time
+  std::string source;             ///< source of the value, for example a publication
+  std::string not_binding;        ///< reason why a failure is only reported; if empty, a failure fails the run
 
   void declare(Section& section);
 };
 
-/// All of `Expect/*`.
+/// All expectations of a deck (`Expect/*`).
 struct Expectations {
   std::vector<Expectation> all;
   void declare(Section& section);
 };
 
-/// Throws UserError, with the name that was probably meant, where one that binds is of a series that is not among `names`.
+/// Throws UserError, with the name that was probably meant, if the series of a binding expectation is not among `names`.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// A sentence for each binding expectation at a time after `end`, which a run that ends there misses.
+/// Returns a sentence for each binding expectation whose time is after `end`: a run that ends there does not meet it.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
-/// What became of one expectation.
+/// Result of the comparison of one expectation with the results.
 struct Verdict {
   std::string name;
-  double value = 0;  ///< found; not a number when there was nothing to look at
+  double value = 0;  ///< value in the results; NaN if they have none
   double expected = 0;
-  double error = 0;  ///< |value - expected|, over |expected| when the kind is relative
+  double error = 0;  ///< |value - expected|, divided by |expected| if the kind is relative
   bool passed = false;
-  std::string reason = {};  ///< why nothing could be looked at, or how far it is off; empty when passed
-  std::string not_binding = {};  ///< the expectation's
+  std::string reason = {};       ///< reason of the failure: no value, or the value and the expected value; empty if passed
+  std::string not_binding = {};  ///< `not_binding` of the expectation
 };
 
-/// Series by name, rows in order of time, with the series `time` among them.
+/// Series of the results by name, including the series `time`. Rows are in the order of time.
 using SeriesTable = std::map<std::string, std::vector<double>>;
 
-/// For each series that may be NaN, the condition under which it is, as a clause. The names are those of a SeriesTable.
+/// Condition under which a series is NaN, as a clause, by name of the series. Contains only series that may be NaN.
 using UndefinedSeries = std::map<std::string, std::string>;
 
 /// Returns one verdict per expectation. A missing series, a time that was not reached, and a time at which the series is undefined are failures.
-/// Between rows the value is that of the cubic through the four rows around the time.
+/// Between rows the value is interpolated by the cubic through the four nearest rows (see `interpolated`).
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
 
 /// Returns the value at t of the polynomial of degree <= 3 through the (at most four) points nearest to t. `times` ascend and t is in their range.
-/// Values that are NaN, and what lies beyond them, are not used. The result is NaN if a row next to t is.
+/// Uses only points that no NaN value separates from t. The result is NaN if a value next to t is NaN.
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
 
 }  // namespace tanktread::deck

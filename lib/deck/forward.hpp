@@ -1,5 +1,5 @@
 #pragma once
-// Classes that many headers only refer to.
+// Forward declarations of classes that many headers refer to.
 
 namespace Teuchos {
 class ParameterEntry;

@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a scene that a program adds to those of the library, by names that decks use.
+// Registry of user-defined parts of a scene (loads, fields, flows, series), which decks choose by name.
 
 #include <algorithm>
 #include <functional>
@@ -16,7 +16,8 @@ namespace tanktread::deck {
 template <class Signature>
 class Parts;
 
-/// Parts of one kind, made for what they are on. The deck has a section with the name of each part that it uses, and the part's own keys in it.
+/// Registered parts of one kind, for example loads. A function makes the part `Made` from arguments `On...`, for example the surface it acts on.
+/// The deck has one section per part that it uses. The section has the name of the part and holds the keys of the part.
 template <class Made, class... On>
 class Parts<Made(On...)> {
  public:
@@ -24,19 +25,20 @@ class Parts<Made(On...)> {
   struct Chosen {
     std::string name;
     Maker make;
-    std::vector<Column> columns;  ///< with which it is registered
+    std::vector<Column> columns;  ///< columns that the part adds to the record of a run
 
-    /// Adds its columns to a row. Throws std::logic_error if there are more or fewer values.
+    /// Adds the columns and their values to a row. Throws std::logic_error if the number of values differs from the number of columns.
     void add_columns(const std::vector<double>& values, Columns& to) const {
       if (values.size() != columns.size()) throw std::logic_error(name + " gives another number of values than it has columns");
       for (std::size_t k = 0; k < values.size(); ++k) to.add(values[k], columns[k]);
     }
-    /// Adds them without values, for their names.
+    /// Adds the columns with value 0, if only their names are needed.
     void add_columns(Columns& to) const { add_columns(std::vector<double>(columns.size(), 0.), to); }
   };
 
-  /// Adds a part. `Options`: a struct with default values and `declare(Section&)`, which states its keys; `make(options, on...)` makes the part;
-  /// `columns`: what it adds to the record of a run. Throws std::invalid_argument if the name is taken.
+  /// Registers a part. `Options` is a struct with default values and a function `declare(Section&)`, which declares its keys.
+  /// `make(options, on...)` makes the part. `columns` are the columns that it adds to the record of a run.
+  /// Throws std::invalid_argument if the name is already registered.
   template <class Options, class Make>
   void add(const std::string& name, std::string meaning, Make make, std::vector<Column> columns = {}) {
     if (std::ranges::count(all_, name, &Part::name) > 0) throw std::invalid_argument("two parts have the name " + name);
@@ -56,14 +58,14 @@ class Parts<Made(On...)> {
     return names;
   }
 
-  /// The columns of all parts, for the manual.
+  /// Returns the columns of all registered parts, for the manual.
   std::vector<Column> columns() const {
     std::vector<Column> all;
     for (const Part& part : all_) all.insert(all.end(), part.columns.begin(), part.columns.end());
     return all;
   }
 
-  /// Reads the parts whose sections the deck has, in the order of registration.
+  /// Returns the parts whose sections the deck has, in the order of registration.
   std::vector<Chosen> read(Section& section) const {
     std::vector<Chosen> chosen;
     for (const Part& part : all_) {
@@ -73,7 +75,7 @@ class Parts<Made(On...)> {
     return chosen;
   }
 
-  /// Reads them from the section `name`, which only exists if there are parts to choose from.
+  /// Returns the parts whose sections are in the section `name` of the deck. Declares this section only if parts are registered.
   std::vector<Chosen> read(Section& outer, const char* name, const char* meaning) const {
     struct List {
       const Parts& parts;
@@ -84,7 +86,8 @@ class Parts<Made(On...)> {
     return std::move(list.chosen);
   }
 
-  /// Reads the part of this name, whose section the deck may leave out. Returns no function if there is no such part.
+  /// Returns the function that makes the part of this name, with its options read from the deck, whose section may be missing.
+  /// Returns an empty function if no part has this name.
   Maker read(Section& section, const std::string& name) const {
     const auto part = std::ranges::find(all_, name, &Part::name);
     if (part == all_.end()) return {};

@@ -1,5 +1,5 @@
 #pragma once
-// What has been stated about a deck: the tree of keys, filled by Section, read by the effective deck and the manual.
+// Tree of all declared keys and sections of a deck. Section fills it; the effective deck, the manual and the schema are written from it.
 
 #include <memory>
 #include <string>
@@ -9,58 +9,60 @@
 
 namespace tanktread::deck {
 
-/// One key as it was stated, everything as text.
+/// Declaration and value of one key, as text.
 struct Entry {
   std::string key;
-  std::string fallback;  ///< its default; empty: none
-  std::string values;    ///< its rule
+  std::string fallback;  ///< default value; empty if there is none
+  std::string values;    ///< rule for the values, in words
   std::string unit;
   std::string meaning;
-  std::string value;  ///< in YAML, as it stands after reading; empty: not set
+  std::string value;  ///< YAML text of the value after reading; empty if not set
 };
 
-/// One list of the deck as it was stated.
+/// Declaration of one section of the deck.
 struct List {
   std::string name;
-  std::string path;  ///< `Flow`, `Expect/volume`; empty for the root
+  std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;  ///< what the user gave for it, or nothing
-  const Teuchos::ParameterList* itself = nullptr;  ///< what the user gave for it, without what it shares with other lists
-  std::shared_ptr<Teuchos::ParameterList> merged;  ///< that with what it shares with other lists, where it does
+  const Teuchos::ParameterList* given = nullptr;   ///< section from the user, or `merged` if it is set; null if not given
+  const Teuchos::ParameterList* itself = nullptr;  ///< section from the user, without keys from `like` and `defaults`
+  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section from the user, with keys from `like` and `defaults`
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
-  std::vector<std::string> mistakes;   ///< a sentence for each value that is refused; its key keeps the default
-  bool alike = false;                  ///< whether lists in this one share keys by `like` and `defaults`
-  std::vector<std::string> mentioned;  ///< names of lists that may stand here, but do not
-  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< set when the list belongs to another library
+  std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
+  bool alike = false;                               ///< whether inner sections share keys by `like` and `defaults`
+  std::vector<std::string> mentioned;               ///< names that are allowed here but not declared
+  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null for a section of this program
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };
 
-/// The list that a section writes to, whether a manual is being made (then open lists are stated once, as `<name>`), and what its values' units are
-/// taken by, if the deck says.
+/// State of a Section: the list that it fills, whether the manual is being made, and the units of the deck (null if the deck defines none).
+/// In the manual, sections whose names the user chooses are declared once, as `<name>`.
 struct Section::State {
   List* list;
   bool documenting;
   std::shared_ptr<const Units> units = {};
 };
 
-/// The mistakes of a list and all below, each list's own first. What lists that share keys have in common is told once.
+/// Returns the mistakes of a section, then those of its inner sections. A mistake in keys that several sections share is reported once.
 std::vector<std::string> mistakes(const List& list);
 
-/// A sentence for each key of the user's that nobody has stated, with a guess of what was meant. `root` for keys of other lists. The same holds.
+/// Returns a sentence for each given key that is not declared, with the key that was probably meant, which may be in another section of `root`.
+/// An unknown key that several sections share is reported once.
 std::vector<std::string> unknown_keys(const List& list, const List& root);
 
-/// The values of a list and all below as YAML, indented by `depth` steps.
+/// Returns the values of a section and its inner sections as YAML, indented by `depth` steps.
 std::string yaml_text(const List& list, int depth);
 
-/// The statements of a list and all below as Markdown.
+/// Returns the manual of a section and its inner sections as Markdown.
 std::string markdown_text(const List& list);
 
-/// The same as a JSON schema, of which the lines after the first are indented by `depth` steps.
+/// Returns the JSON schema of a section and its inner sections. Lines after the first are indented by `depth` steps.
 std::string schema_text(const List& list, int depth);
 
-/// The keys of a list and all below that are given, in YAML, each under its meaning, and the names of those that are not.
+/// Returns the given keys of a section and its inner sections as YAML, with the description above each key. Keys that are not given are listed in a
+/// comment with their defaults.
 std::string commented_text(const List& list, int depth);
 
 }  // namespace tanktread::deck

@@ -11,7 +11,7 @@ namespace tanktread::deck {
 
 namespace {
 
-/// The words of `text` between the marks that a list of choices has.
+/// Returns the words of `text` that are enclosed in backticks.
 std::vector<std::string> quoted_words(const std::string& text) {
   std::vector<std::string> words;
   for (std::size_t begin = text.find('`'); begin != text.npos; begin = text.find('`', begin)) {
@@ -22,7 +22,7 @@ std::vector<std::string> quoted_words(const std::string& text) {
   return words;
 }
 
-/// `, "minimum": 3, "maximum": 200` of a rule's wording, that of `positive()` and its kind.
+/// Returns the bounds of a rule for the schema, `, "minimum": 3, "maximum": 200`. `rule` is the text of a Rule, `between 3 and 200`.
 std::string bounds(const std::string& rule) {
   if (rule.find("positive") != rule.npos) return R"(, "exclusiveMinimum": 0)";
   if (rule.find("not negative") != rule.npos) return R"(, "minimum": 0)";
@@ -35,7 +35,7 @@ std::string bounds(const std::string& rule) {
   return (low.empty() ? "" : ", \"minimum\": " + low) + (high.empty() ? "" : ", \"maximum\": " + high);
 }
 
-/// The type of a key's value, as its wording in the manual has it; what has a unit may be a text that says it.
+/// Returns the type of a key for the schema, from the wording of its values in the manual. A value with a unit may be a text.
 std::string type(const std::string& values, const std::string& unit) {
   if (values == "text") return R"("type": "string")";
   if (values == "true or false") return R"("type": "boolean")";
@@ -69,7 +69,7 @@ std::string schema_text(const List& list, int depth) {
   std::string properties, others = list.foreign ? "true" : "false";
   const auto add = [&](const std::string& text) { properties += (properties.empty() ? "\n" : ",\n") + indent + "  " + text; };
   for (const Entry& entry : list.entries) add(key_text(entry));
-  const bool shared = !list.mentioned.empty();  // its lists take keys of others, too, and may be called `defaults`
+  const bool shared = !list.mentioned.empty();  // inner sections may take keys from each other, and one may be named `defaults`
   for (const auto& inner : list.lists) {
     if (shared)
       others = R"({"type": "object"})";

@@ -23,10 +23,10 @@ namespace {
   throw UserError(path + " must be " + must + in + ", but is " + given + ".");
 }
 
-/// Powers of a larger number, or of a smaller one, leave the range of double precision.
+/// Returns whether powers of the number stay in the range of double precision.
 bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
-/// `a number, positive`; of several: `three numbers, each positive`.
+/// Returns `a number, positive`, or if `several`, `three numbers, each positive`.
 std::string with_rule(const std::string& numbers, const Rule& rule, bool several) {
   return rule.text == any().text ? numbers : numbers + (several ? ", each " : ", ") + rule.text;
 }
@@ -40,7 +40,7 @@ constexpr bool is_single = is_whole<Value> || std::is_same_v<Value, double>;
 template <class Value>
 constexpr bool is_row = std::is_same_v<Value, std::vector<double>>;
 
-/// What a value is made of, in words.
+/// Returns the kind of a value in words: `a whole number`, `three numbers`.
 template <class Value>
 std::string kind() {
   if constexpr (is_single<Value>) return is_whole<Value> ? "a whole number" : "a number";
@@ -48,14 +48,15 @@ std::string kind() {
   else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
 }
 
-/// Whether a text is a number with something behind it, which may be a unit.
+/// Returns whether a text begins with a number that other characters, such as a unit, follow.
 bool has_unit(const std::string& text) {
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && rest != text.data() + text.size();
 }
 
-/// Of texts some of which have units, in a deck that says what its own units stand for; of others none.
+/// Returns the numbers of an entry in the deck's units if at least one of its texts has a unit, otherwise none. Throws UserError if a unit is wrong
+/// or the deck has no section Units.
 std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
   const std::vector<std::string> texts = as_texts(entry);
   if (std::ranges::none_of(texts, has_unit)) return {};
@@ -69,7 +70,7 @@ std::vector<double> numbers_with_units(const std::string& path, const Teuchos::P
   return numbers;
 }
 
-/// The numbers of an entry as the value, of a matrix row by row.
+/// Returns the value of an entry; the numbers of a matrix are given row by row. Throws UserError if the entry does not satisfy the rule.
 template <class Value>
 Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, const Rule& rule, std::string_view unit, const Units* units) {
   std::vector<double> numbers;
@@ -90,7 +91,7 @@ Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, con
   else return Eigen::Map<const Eigen::Matrix<double, Value::ColsAtCompileTime, Value::RowsAtCompileTime>>(numbers.data()).transpose();
 }
 
-/// Values in YAML.
+/// Returns a value as YAML text.
 std::string yaml(double value) { return real_text(value); }
 std::string yaml(int value) { return std::to_string(value); }
 std::string yaml(bool value) { return value ? "true" : "false"; }
@@ -106,7 +107,7 @@ std::string yaml(const Eigen::Matrix<double, rows, columns>& values) {
   return yaml(std::vector<double>(by_rows.data(), by_rows.data() + by_rows.size()));
 }
 
-/// What a field holds, which may be optional.
+/// Value type and YAML text of a field, which may be optional.
 template <class Field>
 struct Held {
   using Value = Field;
@@ -118,7 +119,7 @@ struct Held<std::optional<Field>> {
   static std::string text(const std::optional<Field>& field) { return field ? yaml(*field) : std::string(); }
 };
 
-/// One statement of any type: `read` turns what was given into a value.
+/// Records the declaration of a key of any type. `read` converts the given entry to a value; if it throws UserError, the field keeps its default.
 template <class Field, class Read>
 void state(List& list, std::string_view name, Field& field, const std::string& values, std::string_view unit, std::string_view meaning,
            const Read& read) {
@@ -132,7 +133,8 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
-/// The list of this name with all that it shares; `above`: those that lead to it.
+/// Returns the section of this name merged with the keys that it takes from `like` or `defaults`. `above`: names of the sections whose `like` leads
+/// to this one.
 std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);

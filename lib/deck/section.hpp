@@ -1,6 +1,6 @@
 #pragma once
-// The one statement of each parameter: key, default, rule, unit, meaning, beside the struct that uses it.
-// From it come reading, checking, the effective deck and the manual (`--reference`).
+// Declaration of deck keys: name, default, rule, unit and description. The struct that uses a parameter declares it, and nothing else does.
+// Reading, checking, the effective deck and the manual (`--reference`) all use this declaration.
 
 #include <algorithm>
 #include <functional>
@@ -17,7 +17,7 @@ namespace tanktread::deck {
 
 class Units;
 
-/// What values a number may take: the test and its wording ("positive", "between 0 and 1").
+/// Rule for the values of a number: the test and its wording ("positive", "between 0 and 1").
 struct Rule {
   std::string text;
   std::function<bool(double)> holds;
@@ -28,29 +28,30 @@ Rule not_negative();
 Rule at_least(double low);
 Rule between(double low, double high);  ///< both ends included
 
-/// What values a word may take. An empty list: any text.
+/// Allowed values of a text. If empty, any text is allowed.
 using Choice = std::vector<std::string>;
 
-/// One list of the deck, being read, checked or documented. An options struct states its keys once:
+/// A section (YAML mapping) of the deck, which is being read, checked or documented. An options struct declares its keys once:
 ///
 ///   void Options::declare(deck::Section& s) {
 ///     s.key("tolerance", tolerance, deck::positive(), "1", "relative accuracy of every layer integral");
 ///     s.key("rule", rule, deck::Choice{"adaptive", "fixed"}, "how element integrals are taken");
 ///   }
 ///
-/// The field's value before the call is the default. Throws UserError (path, rule, unit, given value) on a wrong value;
-/// unknown keys are reported by the reader after all statements were made, with a guess of what was meant.
+/// The value of the field before the call is the default. If the given value is wrong, the field keeps its default, and Document::declare throws
+/// UserError (path, rule, unit, given value). It also reports unknown keys, with the key that was probably meant.
 class Section {
  public:
-  /// `Field`: a double, an int, three numbers, nine row by row, or one of these, two numbers, or a std::vector of any length, that is optional.
+  /// Declares a key with numbers. `Field`: double, int, Vec3, Mat3 (nine numbers row by row), or std::optional of one of these, of Eigen::Vector2d or
+  /// of std::vector<double> (any length).
   template <class Field>
   void key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning);
 
-  /// Text, which may be optional.
+  /// Declares a key with text. `Field`: std::string or std::optional<std::string>.
   template <class Field>
   void key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning);
 
-  /// One of the words, for which the enumerators stand in their order.
+  /// Declares a key whose value is an enumerator. `words` are the names of the enumerators in their order.
   template <class Field>
     requires std::is_enum_v<Field>
   void key(std::string_view name, Field& field, const Choice& words, std::string_view meaning) {
@@ -61,14 +62,14 @@ class Section {
 
   void key(std::string_view name, bool& field, std::string_view meaning);
 
-  /// A list inside this one, stated by `options.declare(Section&)`.
+  /// Declares a section inside this one by calling `options.declare(Section&)`.
   template <class Options>
   void section(std::string_view name, Options& options, std::string_view meaning) {
     Section inner = enter(name, meaning);
     options.declare(inner);
   }
 
-  /// A list that a deck may leave out, and whether it has it; what is left out stays as it is.
+  /// Declares a section that a deck may leave out. Returns whether the deck has it. If not, `options` does not change.
   template <class Options>
   bool optional_section(std::string_view name, Options& options, std::string_view meaning) {
     if (given(name) || documenting())
@@ -78,25 +79,25 @@ class Section {
     return given(name);
   }
 
-  /// A list handed to another library as it is (Belos, Amesos2, NOX); `field` keeps what the deck gives over its defaults.
+  /// Declares a section that is passed to another library (Belos, Amesos2, NOX) without checks. The given keys override the defaults in `field`.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 
-  /// From now on values in this list and those inside may have units.
+  /// Sets the units of the deck. Afterwards values in this section, and in sections declared inside it, may have units.
   void take(std::shared_ptr<const Units> units);
 
-  /// Names a list that this one may hold, and does not, in messages on names that it does not hold.
+  /// Marks a name as allowed in this section although it is not declared. Messages about unknown keys list it.
   void mention(std::string_view list);
 
-  /// Lists whose names the user chooses (Expect/<name>): `use` is called with each name and its section. Those that are `alike` take what they do not
-  /// say themselves from the list that their key `like` names, or from the one named `defaults`, which is none of them.
+  /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, a section takes
+  /// keys that it does not set from the section that its key `like` names, or otherwise from the section `defaults`, for which `use` is not called.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike = false);
 
-  /// Whether the user gave this key (for contradictory alternatives), and its path for messages.
+  /// Returns whether the user gave this key, to detect contradictory alternatives.
   bool given(std::string_view name) const;
-  /// Leaves a key of a list of `each` out that the list does not set itself, but takes from `like` or `defaults`.
+  /// Removes a key that this section takes from `like` or `defaults` (see `each`). A key that the section sets itself stays.
   void leave_out(std::string_view name);
-  bool documenting() const;  ///< whether the manual is being made: then every list is stated
-  std::string path(std::string_view name = {}) const;
+  bool documenting() const;                            ///< returns whether the manual is being made; if so, every section must be declared
+  std::string path(std::string_view name = {}) const;  ///< returns the path of a key, or of this section, for messages
 
   struct State;
   explicit Section(std::shared_ptr<State> state);

@@ -13,7 +13,7 @@ namespace tanktread::deck {
 
 namespace {
 
-/// How many elements of XML lie in each other at most; Teuchos' reader calls itself for each.
+/// Returns the nesting depth of the XML elements. It must be limited because the reader of Teuchos calls itself once per level.
 int levels_of_xml(const std::string& text) {
   int level = 0, most = 0;
   for (std::size_t at = text.find('<'); at != std::string::npos && at + 1 < text.size(); at = text.find('<', at + 1)) {
@@ -43,7 +43,7 @@ std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& 
 
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin) {
   if (levels_of_xml(text) > 100) throw UserError(origin + ": its elements lie more than 100 deep in each other.");
-  std::smatch name;  // the reader forgets the name of the outermost list
+  std::smatch name;  // name of the outermost list, which the reader of Teuchos does not return
   std::regex_search(text, name, std::regex("<ParameterList\\s+name=\"([^\"]{1,60})\""));
   Teuchos::ParameterList whole;
   try {
@@ -57,7 +57,7 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
   std::string text = text_of_file(file, "The deck " + shortened(file, 80), 1'000'000);
-  const std::string byte_order_mark = "\xEF\xBB\xBF";  // which some editors begin UTF-8 with
+  const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors put it at the beginning of UTF-8 files
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return file.ends_with(".xml") ? xml_list(text, file) : yaml_list(text, file);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Text of a deck to parameter lists, every mistake one sentence.
+// Readers that convert the text of a deck to parameter lists. Each error message is one sentence.
 
 #include <memory>
 #include <string>
@@ -11,21 +11,22 @@ namespace tanktread::deck {
 /// The name of the root list of every deck.
 inline constexpr const char* root_name = "Tanktread";
 
-/// The root list of the deck in a file: YAML, or XML by extension. Throws UserError also where the file is none or longer than 1 MB.
+/// Returns the root list of the deck in a file (XML if its name ends with .xml, otherwise YAML). Throws UserError if the file cannot be read, is
+/// longer than 1 MB, or holds no deck.
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file);
 
-/// The root list of a deck in XML, as Teuchos writes it; `origin` names it in messages.
+/// Returns the root list of a deck in the XML format of Teuchos. `origin` is the name of the deck in messages.
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin);
 
-/// The list named `Tanktread` of all that a deck holds. Throws UserError where it is missing or not alone.
+/// Returns the list named `Tanktread` of a deck. Throws UserError if it is missing or not the only outermost list.
 std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin);
 
-/// The root list of a deck in YAML 1.2, in which `origin` names the deck. A plain word is true or false (also yes, no), a whole number, a number, or
-/// text; brackets hold a row of one of these, or rows of equal length. Throws UserError with the line for what is not YAML, a key given twice,
-/// lists nested deeper than 20, and for what no deck holds.
+/// Returns the root list of a deck in YAML 1.2. `origin` is the name of the deck in messages. A word without quotes is true or false (also yes, no),
+/// a whole number, a number, or text. Brackets hold a row of numbers or words, or rows of equal length. Throws UserError, with the line, if the text
+/// is not valid YAML, a key is given twice, sections are nested deeper than 20, or a value has a type that no key of a deck has.
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin);
 
-/// The same for `Section/key=value`, the value read as YAML.
+/// Returns the root list of a deck with the one key of `setting`, which is `Section/key=value`. The value is read as YAML.
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting);
 
 }  // namespace tanktread::deck

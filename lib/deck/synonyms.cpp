@@ -9,7 +9,7 @@ namespace tanktread::deck {
 
 namespace {
 
-/// Small letters and digits, blanks for everything else: `t_end`, `t-end` and `T end` are one.
+/// Returns the name in lower case, with a blank for each character other than a letter, a digit or `/`: `t_end`, `t-end` and `T end` become equal.
 std::string plain(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -20,7 +20,7 @@ std::string plain(const std::string& name) {
 }
 
 struct Meaning {
-  std::string_view names;  ///< each between bars
+  std::string_view names;  ///< alternative names, each between bars
   std::string_view what;
 };
 
@@ -58,7 +58,7 @@ constexpr std::array<Meaning, 28> synonyms{{
     {"|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|membrane/viscosity|", "Membrane/shear viscosity"},
 }};
 
-/// By the whole path, by a list, or by the name of the key alone.
+/// Features that the program does not have. They are found by the full path of a key or section, or by its name without the path.
 constexpr std::array<Meaning, 10> features{{
     {"|wall|walls|plane wall|plane|plates|", "plane walls are not there; walls are those of a Tube or a Channel"},
     {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},

@@ -19,20 +19,20 @@ using Unit = std::unique_ptr<ut_unit, decltype(&ut_free)>;
 
 ut_system* in(const std::shared_ptr<void>& system) { return static_cast<ut_system*>(system.get()); }
 
-/// Null where the text is no unit.
+/// Returns the unit of a text, or null if the text is not a unit.
 Unit parsed(const std::shared_ptr<void>& system, std::string text) {
   ut_trim(text.data(), UT_UTF8);
   return {ut_parse(in(system), text.c_str(), UT_UTF8), ut_free};
 }
 
-/// How many `b` one `a` is; 0 where they measure different things.
+/// Returns the unit `a` divided by the unit `b`; 0 if they have different dimensions.
 double ratio(const Unit& a, const Unit& b) {
   if (!a || !b || !ut_are_convertible(a.get(), b.get())) return 0;
   const std::unique_ptr<cv_converter, decltype(&cv_free)> converter(ut_get_converter(a.get(), b.get()), cv_free);
   return cv_convert_double(converter.get(), 1);
 }
 
-/// The unit with other texts for the deck's words, first to last.
+/// Returns the unit `kind` with each word replaced by its text, one word after the other.
 std::string replaced(std::string_view kind, const std::vector<std::pair<std::string_view, std::string>>& words) {
   std::string text(kind);
   for (const auto& [word, by] : words)

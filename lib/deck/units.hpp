@@ -1,5 +1,5 @@
 #pragma once
-// Values with units, `5.3 uN/m`, by UDUNITS.
+// Conversion of values with units, `5.3 uN/m`, by the library UDUNITS.
 
 #include <memory>
 #include <string>
@@ -9,28 +9,28 @@ namespace tanktread::deck {
 
 class Section;
 
-/// What one unit of length, time and force in the deck's plain numbers, and in all results, stands for. As preset, a stress is in Pa, a modulus of a
-/// surface in uN/m, a viscosity in Pa s.
+/// Units of length, time and force of the plain numbers in the deck and of all results. With the defaults, the unit of stress is Pa, the unit of
+/// surface moduli is uN/m, and the unit of viscosity is Pa s.
 struct UnitOptions {
   std::string length = "1 um", time = "1 s", force = "1 pN";
 
   void declare(Section& section);
 };
 
-/// Conversions between units with names and the deck's own. A `kind` is the unit of a key or of a series in the deck's words: `force/length`.
+/// Converts between named units and the units of the deck. A `kind` is the unit of a key or of a series in the words of the deck: `force/length`.
 class Units {
  public:
-  /// Throws UserError where a text is no length, time or force.
+  /// Throws UserError if the option for a length, time or force is not one, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 
-  /// The number in the deck's units that `text`, a number and a unit or a plain number, stands for. Throws std::invalid_argument, with the rest of a
-  /// sentence on `text`, where it is not of this kind.
+  /// Returns the number in the deck's units for `text`, which is a number with a unit or a plain number. Throws std::invalid_argument if its unit is
+  /// not of this kind. The message completes a sentence that begins with `text`.
   double number(const std::string& text, std::string_view kind) const;
 
-  /// So many of this kind in SI units, `1e-06 N/m`; of a number without dimension nothing.
+  /// Returns a number of this kind, given in the deck's units, in SI units: `1e-06 N/m`. Empty if the kind is dimensionless.
   std::string in_si(std::string_view kind, double number = 1) const;
 
-  /// What the deck's units are, for the plan.
+  /// Returns the units of the deck in SI units, for the plan.
   std::string description() const;
 
  private:

@@ -24,7 +24,7 @@ std::vector<double> doubles(const Values& values) {
   return out;
 }
 
-/// Everything that Teuchos reads from YAML or XML and that a deck may hold, as YAML.
+/// Returns an entry as YAML text, for all types that Teuchos reads from YAML or XML and that a deck may hold.
 std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return real_text(*value);
   if (const auto* value = held<int>(entry)) return std::to_string(*value);
@@ -130,7 +130,7 @@ void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over) {
 
 namespace {
 
-/// What an entry holds, in words; empty: something that no deck can hold.
+/// Returns the type of an entry in words; empty if no deck can hold this type.
 std::string kind(const Teuchos::ParameterEntry& entry) {
   if (entry.isList()) return "a list of keys";
   if (entry.isType<double>()) return "a number with a point";

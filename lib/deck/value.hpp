@@ -1,5 +1,5 @@
 #pragma once
-// From an entry of a parameter list to a value of the type that was asked for.
+// Conversion of parameter list entries to values, and operations on parameter lists.
 
 #include <optional>
 #include <string>
@@ -9,25 +9,27 @@
 
 namespace tanktread::deck {
 
-/// The entry as the type, or nothing if it is of another one. Whole numbers are numbers, too.
+/// Each returns the value of the entry, or nothing if the entry has another type. Whole numbers are numbers, too.
 std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
-std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry);  ///< one or a row of them; of anything else none
-std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or rows of a table one after the other
+std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry);  ///< one text or a row of texts; empty for any other entry
+std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry);  ///< a row, or the rows of a table one after the other
 
-/// Whether both stand for the same value; whole numbers are numbers, too.
+/// Returns whether both entries have the same value. A whole number equals the same number of type double.
 bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);
 
-/// What was given, for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
+/// Returns the given value for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
 std::string description(const Teuchos::ParameterEntry& entry);
 
-/// A list of another library as YAML, and the merge of two lists, key by key: `over` wins.
+/// Returns a parameter list as YAML, indented by `depth` steps.
 std::string yaml_text(const Teuchos::ParameterList& list, int depth);
+
+/// Merges `over` into `base`, key by key. Values of `over` replace those of `base`.
 void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over);
 
-/// Holds a list that is handed to another library against what that library says it takes (its getValidParameters()). Throws UserError at
-/// the first parameter that it does not know, with a guess of what was meant, or that is of another type (number, whole number, truth, text).
+/// Checks a section for another library against the parameters that this library accepts (its getValidParameters()). Throws UserError at the first
+/// parameter that is unknown, with the name that was probably meant, or that has another type (number, whole number, truth value, text).
 void check_foreign(const std::string& path, const Teuchos::ParameterList& given, const Teuchos::ParameterList& valid);
 
 }  // namespace tanktread::deck

@@ -19,8 +19,8 @@ namespace tanktread::deck {
 
 namespace {
 
-constexpr int most_levels = 20;              // of lists in lists
-constexpr std::size_t most_nodes = 100'000;  // keys and values, counted again wherever an alias repeats them
+constexpr int most_levels = 20;              // nesting depth of sections
+constexpr std::size_t most_nodes = 100'000;  // keys and values; those of an alias count each time it is used
 constexpr std::size_t longest_key = 100;     // characters
 
 template <class Number>
@@ -30,7 +30,7 @@ bool reads(const std::string& text, Number& number) {
   return error == std::errc() && last == end;
 }
 
-/// A word as the first type that it can be read as, unless it stands in quotes.
+/// Returns a word as the first type that it can be read as: truth value, whole number, number, text. A word in quotes is text.
 Teuchos::ParameterEntry typed(const YAML::Node& node) {
   const std::string& text = node.Scalar();
   const bool plain = node.Tag() == "?" || node.Tag().empty();
@@ -54,7 +54,7 @@ Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries)
   return Teuchos::ParameterEntry(values);
 }
 
-/// Numbers or words in a row, as the first type that all of them can be read as.
+/// Returns a row as the first type that all its words can be read as: whole numbers, numbers, texts.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));
@@ -65,12 +65,12 @@ Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   return Teuchos::ParameterEntry(words);
 }
 
-/// From a tree of YAML to lists of entries.
+/// Converts a tree of YAML nodes to a parameter list.
 class Walk {
  public:
   explicit Walk(const std::string& origin) : origin_(origin) {}
 
-  /// The keys of `map` into `list`, which stands at `path`.
+  /// Adds the keys of `map` to `list`. `path` is the path of the list in the deck.
   void read(const YAML::Node& map, const std::string& path, int level, Teuchos::ParameterList& list) {
     std::map<std::string, int> lines;
     for (const auto& item : map) {
@@ -85,7 +85,7 @@ class Walk {
     }
   }
 
-  /// One key and what stands after it.
+  /// Adds one key and its value to `list`. `path` is the path of the key in the deck.
   void add(const std::string& name, const YAML::Node& value, const std::string& path, int level, Teuchos::ParameterList& list) {
     if (++nodes_ > most_nodes || level > most_levels)
       refuse(value, "lists lie more than " + std::to_string(most_levels) + " deep in each other, or hold more than 100,000 values");
@@ -94,7 +94,7 @@ class Walk {
     else if (value.IsSequence())
       list.setEntry(name, typed_row(words(value, path)));
     else
-      read(value, path, level + 1, list.sublist(name));  // an empty list where nothing follows the colon
+      read(value, path, level + 1, list.sublist(name));  // adds an empty list if nothing follows the colon
   }
 
  private:
@@ -102,7 +102,7 @@ class Walk {
     throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
   }
 
-  /// The words of a row, or of rows of equal length one after the other.
+  /// Returns the words of a row, or of rows of equal length one after the other.
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
     std::vector<YAML::Node> out;
     for (const YAML::Node& item : sequence) {
@@ -134,7 +134,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   throw UserError(origin + ", line " + std::to_string(line + 1) + ": " + what + ".");
 }
 
-/// What yaml-cpp lets pass: bytes that are no text, and a second document, which it would not read.
+/// Throws UserError for errors that yaml-cpp does not detect: control characters, and a second document, which yaml-cpp ignores.
 void check_lines(const std::vector<std::string>& lines, const std::string& origin) {
   bool content = false;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -147,7 +147,7 @@ void check_lines(const std::vector<std::string>& lines, const std::string& origi
   }
 }
 
-/// The line on which yaml-cpp stopped, or the last one before it with something on it.
+/// Throws UserError with the line at which yaml-cpp stopped, or with the last line before it that is not blank.
 [[noreturn]] void refuse_yaml(const std::vector<std::string>& lines, const std::string& origin, const YAML::Mark& mark,
                               const std::string& reason) {
   std::size_t number = std::min(static_cast<std::size_t>(std::max(mark.line, 0)), lines.size() - 1);
@@ -161,7 +161,7 @@ void check_lines(const std::vector<std::string>& lines, const std::string& origi
   refuse_line(origin, number, "this is not YAML that can be read (" + what + "): `" + line + "`");
 }
 
-/// yaml-cpp's tree of one document.
+/// Returns the tree of the document from yaml-cpp. Throws UserError if the text is not valid YAML.
 YAML::Node document(const std::string& text, const std::string& origin) {
   const std::vector<std::string> lines = lines_of(text);
   check_lines(lines, origin);

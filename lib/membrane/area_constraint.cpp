@@ -9,7 +9,7 @@ namespace tanktread::membrane {
 
 namespace {
 
-/// x_,s and x_,t.
+/// Returns x_,s and x_,t.
 std::array<Vec3, 2> tangents(const spline::Element& element, const spline::Basis& basis, const Net& x) {
   std::array<Vec3, 2> a{Vec3::Zero(), Vec3::Zero()};
   for (std::size_t k = 0; k < element.points.size(); ++k) {
@@ -41,7 +41,7 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
 }
 
-// dI2 = 2 (J_s^2 g^ab) (x,a . du,b), J_s^2 g^ab = cofactors of g_ab over |G|.
+// dI2 = 2 (J_s^2 g^ab) (x,a . du,b), where J_s^2 g^ab are the cofactors of g_ab divided by |G|.
 AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
   Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
   std::vector<Eigen::Triplet<double>> entries;
@@ -74,7 +74,7 @@ void AreaConstraint::factor(double time) {
   system_.factorize(system);
 }
 
-/// time m D'(1 + time D m D')^-1 of a number a point.
+/// Returns time m D'(1 + time D m D')^-1 applied to a vector with one entry per Gauss point.
 Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
   const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
   return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);

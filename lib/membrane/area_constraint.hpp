@@ -1,5 +1,5 @@
 #pragma once
-// Membranes that nearly keep their area: the stiff part of their tangent.
+// // Constraints of constant local area for nearly area-incompressible membranes: the stiff part of the membrane's tangent.
 
 #include <vector>
 
@@ -9,31 +9,33 @@
 
 namespace tanktread::membrane {
 
-/// What resists a change of area at points of its own (3.13), as conditions, one a point: the gradient of their energy is D't, the stiff part of its
-/// second derivative D'D. Where control point A gives way to a force by m_A of velocity over force,
+/// Elastic resistance to area changes, integrated by a separate quadrature (3.13) and written as one condition t per Gauss point. With D the scaled
+/// gradient of the conditions, the gradient of this energy is D't, and the stiff part of its second derivative is D'D. With the mobility m_A of
+/// control point A (velocity per force), the operator
 ///
 ///   P = (1 + time m D'D)^-1 = 1 - time m D'(1 + time D m D')^-1 D                                                                 (4.25)
 ///
-/// takes out of a displacement what changes these areas, the more of it the stiffer the membrane is: nearly the inverse of the system of an implicit
-/// step where that is stiff. And the t of a shape are brought to those of another one by the like of it.
+/// removes from a displacement the part that changes these areas; it removes more of that part the stiffer the membrane is. In the stiff directions,
+/// P approximates the inverse of the system of an implicit step. The same operator moves a shape until its t equal those of another shape.
 class AreaConstraint {
  public:
-  /// `mobility`: m, a number a control point.
+  /// Sets up the conditions. `mobility`: m, one entry per control point.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
-  /// Whether the membrane has no such points.
+  /// Returns true if no material of the membrane integrates its area elasticity separately.
   bool empty() const { return points_.empty(); }
 
-  /// Takes D and t at x.
+  /// Evaluates D and t at x.
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Takes the time of P.
+  /// Factors 1 + time D m D' for P.
   void factor(double time);
 
-  /// P r.
+  /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves x to where t are those at `like`, to the second order of what is missing, the time of P being `time`. Leaves x as its place.
+  /// Moves x by two steps until t(x) is close to t(`like`); the remaining difference is of second order in the initial one. P is formed with `time`.
+  /// Afterwards D and t are those of the new x.
   void bring(Net& x, const Net& like, double time);
 
  private:
@@ -41,7 +43,7 @@ class AreaConstraint {
     int element;
     spline::Basis basis;
     AreaElasticity law;
-    double inverse_det, area;  // of the unstressed surface: 1/|G| and the weight
+    double inverse_det, area;  // 1/|G| and the quadrature weight, on the unstressed surface
   };
   struct Rows {
     Eigen::SparseMatrix<double, Eigen::RowMajor> d;

@@ -27,23 +27,23 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 
-// Rows up to which the inverse is kept, and multiplied by: what Amesos2 does about a solve, maps and an import for several columns, takes
-// longer than the product. Measured with the mass and collocation matrices of spheres.
+// Number of rows up to which the explicit inverse is stored and multiplied by. For these sizes the overhead of Amesos2 per solve (maps, import of
+// several columns) exceeds the cost of the product. Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Rows from which iteration is as fast as substitution, and set up in a small part of the time. Measured likewise.
+// Number of rows from which iteration is as fast as substitution, and its setup takes a small part of the time. Measured with the same matrices.
 constexpr Eigen::Index worth_iterating = 5000;
 
-/// Where the blocks on its diagonal that a matrix falls into start, and after them where the last one ends.
+/// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.
 std::vector<Eigen::Index> block_starts(const RowMajor& a) {
   const Eigen::Index n = a.rows();
   const int *row = a.outerIndexPtr(), *column = a.innerIndexPtr();
-  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // least column of all rows from here on
+  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // least column index in row i and all later rows
   for (Eigen::Index i = n; i-- > 0;) {
     if (row[i] == row[i + 1]) return {0, n};
     least[static_cast<std::size_t>(i)] = std::min<Eigen::Index>(least[static_cast<std::size_t>(i) + 1], column[row[i]]);
   }
-  Eigen::Index most = 0;  // column of all rows so far
+  Eigen::Index most = 0;  // largest column index in all rows so far
   for (Eigen::Index i = 0; i < n; ++i) {
     most = std::max<Eigen::Index>(most, column[row[i + 1] - 1]);
     if (most <= i && least[static_cast<std::size_t>(i) + 1] > i) starts.push_back(i + 1);
@@ -51,7 +51,7 @@ std::vector<Eigen::Index> block_starts(const RowMajor& a) {
   return starts;
 }
 
-/// Whether two blocks of `size` rows are equal, to the round-off of places far from the origin.
+/// Returns whether two diagonal blocks of `size` rows are equal, up to the round-off of positions far from the origin.
 bool equal_blocks(const RowMajor& a, Eigen::Index one, Eigen::Index other, Eigen::Index size) {
   const int* row = a.outerIndexPtr();
   const int first = row[one], apart = row[other] - first, entries = row[one + size] - first;
@@ -71,7 +71,7 @@ std::string solvers_of_this_build() {
   return names;
 }
 
-// Tpetra needs Kokkos; a program that has not started it (a serial test) gets it here.
+// Initialises Kokkos, which Tpetra needs, if the program has not done so (serial tests).
 void start_kokkos() {
   if (!Kokkos::is_initialized()) Kokkos::initialize();
 }
@@ -90,18 +90,18 @@ struct DirectSolver::Impl {
   RowMajor a;
   Teuchos::RCP<const Map> map;
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
-  Eigen::MatrixXd inverse;                            // of a small matrix, else empty
-  std::optional<spline::IncompleteSolver> iterative;  // in place of the factors
+  Eigen::MatrixXd inverse;                            // inverse of a small matrix, otherwise empty
+  std::optional<spline::IncompleteSolver> iterative;  // incomplete factors, used instead of `solver`
 
-  /// Equal blocks: where each starts, and the solver of one of them.
+  /// A set of equal blocks: the first row of each, and one solver for all of them.
   struct Kind {
     std::vector<Eigen::Index> starts;
     Eigen::Index size;
     DirectSolver solver;
   };
-  std::vector<Kind> kinds;  // in place of all of the above, where blocks are equal
+  std::vector<Kind> kinds;  // used instead of all members above if there are equal blocks
 
-  /// Whether at least half of the blocks are equal to others before them; then those that are not are factored.
+  /// Factors one block of each kind if at least half of the blocks are equal to earlier ones. Otherwise does nothing and returns false.
   bool factor_equal_blocks() {
     kinds.clear();
     const std::vector<Eigen::Index> starts = block_starts(a);
@@ -118,17 +118,17 @@ struct DirectSolver::Impl {
     }
     if (2 * kinds.size() > n_blocks) kinds.clear();
     for (Kind& kind : kinds) kind.solver.factor(a.block(kind.starts.front(), kind.starts.front(), kind.size, kind.size));
-    if (!kinds.empty()) RowMajor().swap(a);  // an assignment would keep its room
+    if (!kinds.empty()) RowMajor().swap(a);  // a swap releases the memory, an assignment would not
     return !kinds.empty();
   }
 
-  /// A^-1 of columns.
+  /// Returns A^-1 times the columns.
   Eigen::MatrixXd solved(Eigen::MatrixXd all) const {
     if (iterative) {
       for (auto column : all.colwise()) column = iterative->solve(column);
     } else if (inverse.size() == 0) {
       all = substituted(all);
-    } else if (all.cols() <= 3) {  // a product with a few columns at once would copy the inverse first
+    } else if (all.cols() <= 3) {  // Eigen's product with a few columns would copy the inverse first
       for (auto column : all.colwise()) column = Eigen::VectorXd(inverse * column);
     } else {
       all = inverse * all;
@@ -136,7 +136,7 @@ struct DirectSolver::Impl {
     return all;
   }
 
-  /// The same by kinds, in place.
+  /// Replaces x by A^-1 x, block by block.
   void solve_blocks(Columns& x) const {
     for (const Kind& kind : kinds) {
       Eigen::MatrixXd all(kind.size, x.cols() * static_cast<Eigen::Index>(kind.starts.size()));
@@ -183,7 +183,7 @@ struct DirectSolver::Impl {
     inverse = std::move(all);
   }
 
-  /// By the factors.
+  /// Solves with the factors of Amesos2.
   Eigen::MatrixXd substituted(const Eigen::MatrixXd& right) const {
     MultiVector known(map, right.cols()), found(map, right.cols());
     for (Eigen::Index c = 0; c < right.cols(); ++c)
@@ -195,7 +195,7 @@ struct DirectSolver::Impl {
     return left;
   }
 
-  // Solves for a net without small or repeated entries and looks at what is left.
+  // Returns the relative residual of a solve with a known solution that has no small or repeated entries.
   double residual(const DirectSolver& self) const {
     Net known(a.rows(), 3);
     for (int i = 0; i < known.size(); ++i) known.data()[i] = 1 + 0.5 * std::sin(1.7 * i);
@@ -224,7 +224,7 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   if (impl_->iterates()) {
     if (impl_->iterative.emplace().factor(impl_->a) && impl_->residual(*this) < residual_of_iteration) return;
   }
-  impl_->iterative.reset();  // complete factors serve any matrix
+  impl_->iterative.reset();  // complete factors work for any matrix
   std::string trouble;
   try {
     impl_->factor();

@@ -1,5 +1,5 @@
 #pragma once
-// Sparse linear systems with the same scalar matrix for several right-hand sides, as the three components of a net.
+// Sparse linear systems with one scalar matrix and several right-hand sides, such as the three components of a net.
 
 #include <memory>
 
@@ -10,25 +10,26 @@
 
 namespace tanktread::membrane {
 
-/// Up to three right-hand sides or solutions, one a column.
+/// Up to three right-hand sides or solutions, one per column.
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, Eigen::Dynamic, 3>;
 
-/// A direct solver of Amesos2 on a matrix that every rank holds whole. Each rank solves for itself: short vectors are replicated, so
-/// there is no message, nothing depends on the number of ranks, and KLU2's faulty solve on several ranks (Trilinos 13.2) is never used.
+/// Direct solver of Amesos2 for a matrix that every rank holds completely. Each rank solves on its own, because short vectors are replicated. So
+/// there is no communication, the result does not depend on the number of ranks, and KLU2's faulty solve on several ranks (Trilinos 13.2) is never
+/// used.
 class DirectSolver {
  public:
-  /// Throws UserError for a solver that this Amesos2 does not have, or a list that it does not take.
+  /// Throws UserError if this build's Amesos2 does not have the solver. factor() throws UserError if the solver rejects its parameter list.
   explicit DirectSolver(const DirectSolverOptions& options = {});
   ~DirectSolver();
   DirectSolver(DirectSolver&&) noexcept;
   DirectSolver& operator=(DirectSolver&&) noexcept;
 
-  /// Factors A (square). Of blocks on its diagonal that are equal, as those of equal particles, one is factored. A solve with a known solution
-  /// follows, and a relative residual above 1e-8 throws: RunFailure for a singular matrix, UserError where the chosen solver does not suit the
-  /// matrix (Tacho is for symmetric positive definite ones).
+  /// Factors A (square). If diagonal blocks are equal, for example those of equal particles, only one of them is factored. Then a system with a known
+  /// solution is solved. If its relative residual exceeds 1e-8, this throws RunFailure for a singular matrix, or UserError if the chosen solver does
+  /// not suit the matrix (Tacho requires a symmetric positive definite one).
   void factor(const Eigen::SparseMatrix<double>& a);
 
-  /// x = A^-1 b, of one shape; they may be the same object.
+  /// Computes x = A^-1 b. b and x have the same shape and may be the same object.
   void solve(const Columns& b, Columns& x) const;
   Net solve(const Net& b) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers that carry their derivative along one direction, and vectors of any kind of number.
+// Dual numbers for forward differentiation along one direction, and vectors of any number type.
 
 #include <array>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace tanktread::membrane {
 
-/// A value and its slope; `Number` is double or a Register.
+/// Dual number: a value and its directional derivative `slope`. `Number` is double or a Register.
 template <class Number>
 struct Dual {
   Number value, slope;
@@ -40,7 +40,7 @@ struct Dual {
   friend Dual log(const Dual& a) { return {std::log(a.value), a.slope / a.value}; }
 };
 
-/// Vectors in space, of any kind of number.
+/// Vector in space, of any number type.
 template <class N>
 using Vector = std::array<N, 3>;
 template <class N>

@@ -31,10 +31,10 @@ class Field {
 
   virtual Net load() const = 0;                              ///< virtual work (3.6), shape (N, 3), added to dE/dx
   virtual Eigen::VectorXd rate(const Net& slip) const = 0;   ///< dq/dt
-  virtual double energy() const = 0;                         ///< stored in the field
+  virtual double energy() const = 0;                         ///< energy stored in the field
   virtual double dissipation() const { return 0; }           ///< power that the field turns into heat in the membrane, not in the surface flow
 
-  /// Keeps the state set last, and the slip there, for the four functions below.
+  /// Stores the state set last and the slip for the four functions below.
   virtual void linearise(const Net& slip) = 0;
 
   /// Returns the change of the field's values (the concentration, the strain) for changes of x and q.
@@ -42,38 +42,39 @@ class Field {
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
 
-  /// Keeps the shape for solve(), in addition to what linearise() keeps. May replace the state set last.
+  /// Stores the shape for solve(), in addition to what linearise() stores. May replace the state set last.
   virtual void freeze(const Net& /*x*/) {}
 
   /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.
   virtual Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const = 0;
 
-  /// Returns whether the field follows the shape within a short time of its own. Implicit solvers then eliminate the field.
+  /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that sums that J conserves agree with those of r to round-off.
+  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with those of r to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
 
   /// Returns q on this space with the shape x, transferred from a field of the same kind on another mesh of the surface, whose state was set. The
-  /// function maps a site of this space to the same place in the other one.
+  /// function maps a site of this space to the site at the same position in the other space.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
-  /// Returns the gradient by q of a sum that the motion conserves; empty if there is none.
+  /// Returns the gradient with respect to q of a sum that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns the values of the columns with which the field is registered, and what snapshots show of it, at the state set last.
+  /// Returns the values, at the state set last, of the columns registered with the field. snapshot() returns the fields that are written to
+  /// snapshots.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
-  /// Returns a function that gives the values of the field at a site of its space, scaled to order 1, at the state set last. The mesh is refined until
-  /// their interpolation error (1.5) is small. Empty: refinement does not consider the field.
+  /// Returns a function that evaluates the field at a site of its space, scaled to order 1, in the state set last. Refinement reduces the interpolation
+  /// error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
-  /// Returns which coefficient the image of each one is, and the sign by which it is multiplied. Empty: it is not known, and the field is not made
-  /// symmetric; modes (4.16) are then those of the whole surface.
+  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown, and
+  /// the field is not made symmetric; modes (4.16) are then those of the whole surface.
   virtual std::vector<std::pair<int, double>> images(const surface::Image&) const { return {}; }
 };
 

@@ -1,4 +1,4 @@
-// Fields on another mesh of their surface.
+// Transfer of fields to another mesh of the same surface.
 
 #include <cmath>
 
@@ -40,7 +40,7 @@ using Symmetric = Eigen::Vector3d;  // components 11, 12, 22
 
 Eigen::Matrix2d matrix(const Symmetric& a) { return (Eigen::Matrix2d() << a[0], a[1], a[1], a[2]).finished(); }
 
-/// A function of a symmetric matrix by its eigenvalues.
+/// Applies a function to a symmetric matrix by its eigenvalues.
 template <class Function>
 Symmetric function_of(const Eigen::Matrix2d& a, const Function& f) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> pairs(a);
@@ -48,10 +48,11 @@ Symmetric function_of(const Eigen::Matrix2d& a, const Function& f) {
   return {result(0, 0), result(0, 1), result(1, 1)};
 }
 
-/// L of g = L L^T, from the contravariant metric. Orthonormal frames turn with L; they do not depend on the size of the element.
+/// Returns the Cholesky factor L of the metric, g = L L^T, from the contravariant metric. L maps to an orthonormal frame that does not depend on the
+/// size of the element.
 Eigen::Matrix2d frame(const Symmetric& raised) { return matrix(raised).inverse().llt().matrixL(); }
 
-/// Values of the Lagrange polynomials on these nodes at s.
+/// Returns the values at s of the Lagrange polynomials on these nodes.
 Eigen::VectorXd lagrange(const Eigen::VectorXd& nodes, double s) {
   Eigen::VectorXd values = Eigen::VectorXd::Ones(nodes.size());
   for (Eigen::Index i = 0; i < nodes.size(); ++i)
@@ -62,13 +63,14 @@ Eigen::VectorXd lagrange(const Eigen::VectorXd& nodes, double s) {
 
 }  // namespace
 
-/// Gauss points per direction of an element.
+/// Returns the number of Gauss points per direction of an element.
 int MaxwellElement::order(std::size_t element) const {
   const Eigen::Index end = element + 1 < first_.size() ? first_[element + 1] : unit_.rows();
   return static_cast<int>(std::lround(std::sqrt(static_cast<double>(end - first_[element]))));
 }
 
-/// Gauss points are turned with their element: 11 and 22 change places if its parameters do, and 12 changes sign if one of them is turned around.
+/// Gauss points are permuted with their element. If the parameters are swapped, the components 11 and 22 are swapped. If one parameter is reversed,
+/// component 12 changes sign.
 std::vector<std::pair<int, double>> MaxwellElement::images(const surface::Image& image) const {
   std::vector<std::pair<int, double>> all;
   for (std::size_t e = 0; e < first_.size(); ++e) {
@@ -81,7 +83,7 @@ std::vector<std::pair<int, double>> MaxwellElement::images(const surface::Image&
   return all;
 }
 
-/// log(L^T C L) at each Gauss point of the state set last.
+/// Returns log(L^T C L) at each Gauss point of the state set last.
 Eigen::MatrixX3d MaxwellElement::logarithms() const {
   Eigen::MatrixX3d all(unit_.rows(), 3);
   const Eigen::MatrixX3d raised = raised_metric(x_);
@@ -92,7 +94,7 @@ Eigen::MatrixX3d MaxwellElement::logarithms() const {
   return all;
 }
 
-/// Returns what logarithms() has at the Gauss points, interpolated to a site.
+/// Interpolates `logarithms`, given at the Gauss points, to a site.
 Eigen::Vector3d MaxwellElement::interpolated(const Eigen::MatrixX3d& logarithms, const spline::Site& site) const {
   const auto element = static_cast<std::size_t>(site.element);
   const int n = order(element);

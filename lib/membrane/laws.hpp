@@ -1,9 +1,9 @@
 #pragma once
-// What membranes are made of. Constitutive laws: the stored energy per unstressed area as a function of the two surface invariants.
+// Materials of membranes. A constitutive law is the stored energy per unstressed area, Psi, as a function of the two surface invariants
 //
 //   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, less 2 there
 //
-// l1, l2: principal stretches. Psi is a force per length (energy per area), and so are all of its derivatives.
+// with the principal stretches l1 and l2. Psi is a force per length (energy per area), and so are all of its derivatives.
 
 #include <array>
 #include <memory>
@@ -43,7 +43,7 @@ struct NeoHookean {
   friend bool operator==(const NeoHookean&, const NeoHookean&) = default;
 };
 
-/// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening, C resists a change of area. (3.3)  P-8
+/// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening. C sets the resistance to area changes. (3.3)  P-8
 struct Skalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< C
@@ -63,8 +63,8 @@ struct Skalak {
   friend bool operator==(const Skalak&, const Skalak&) = default;
 };
 
-/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a sheet of Mooney's rubber that keeps its volume, for m = 1 the
-/// neo-Hookean one. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
+/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a thin sheet of incompressible Mooney-Rivlin rubber. m = 1 is the
+/// neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
 struct MooneyRivlin {
   double shear_modulus = 1;
   double share = 1;  ///< m
@@ -85,11 +85,11 @@ struct MooneyRivlin {
   friend bool operator==(const MooneyRivlin&, const MooneyRivlin&) = default;
 };
 
-/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area apart from dilatation. Evans & Skalak, *Mechanics and
+/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area and dilatation are independent. Evans & Skalak, *Mechanics and
 /// Thermodynamics of Biomembranes*, 1980.
 struct EvansSkalak {
   double shear_modulus = 1;
-  double area_dilatation = 1;  ///< C: K_s = (1 + 2 C) G_s, as Skalak's law has it for small strains
+  double area_dilatation = 1;  ///< C: K_s = (1 + 2 C) G_s, as in Skalak's law at small strains
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -108,10 +108,10 @@ struct EvansSkalak {
   friend bool operator==(const EvansSkalak&, const EvansSkalak&) = default;
 };
 
-/// What the laws of Skalak and of Evans & Skalak have beside shear: Psi = K/8 I2^2, or K/2 (J_s - 1)^2. Not a law of its own: it resists no shear.
+/// Area part of Skalak's law, Psi = K/8 I2^2, or of Evans & Skalak's law, Psi = K/2 (J_s - 1)^2. It is not a law by itself: it does not resist shear.
 struct AreaElasticity {
   double area = 1;      ///< K, force per length
-  bool squared = true;  ///< the first of the two
+  bool squared = true;  ///< true: Skalak's form, false: Evans & Skalak's form
 
   template <class Number>
   Number energy(const Number&, const Number& i2) const {
@@ -131,9 +131,9 @@ struct AreaElasticity {
   friend bool operator==(const AreaElasticity&, const AreaElasticity&) = default;
 };
 
-/// Psi = G_s times a strain energy of the user's own.
+/// Psi = G_s times a strain energy given by the user.
 struct UserLaw {
-  double unit = 1;  ///< G_s of the deck, which the energy and its moduli are over
+  double unit = 1;  ///< G_s of the deck, the unit of the energy and its moduli
   std::shared_ptr<const StrainEnergy> strain_energy;
 
   template <class Number>
@@ -150,7 +150,7 @@ struct UserLaw {
   friend bool operator==(const UserLaw&, const UserLaw&) = default;
 };
 
-/// Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2, the springs of a MaxwellElement (3.23): shear and dilatation apart, per present area.
+/// Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2: the springs of a MaxwellElement (3.23), with separate shear and dilatation, per current area.
 struct MaxwellSpring {
   double shear_modulus = 1;     ///< G, force per length
   double dilatation_modulus = 0;  ///< K
@@ -192,14 +192,14 @@ struct SurfaceTension {
   friend bool operator==(const SurfaceTension&, const SurfaceTension&) = default;
 };
 
-/// x_,s.x_,s, x_,s.x_,t and x_,t.x_,t of a surface.
+/// Metric of a surface: x_,s.x_,s, x_,s.x_,t and x_,t.x_,t.
 template <class Number>
 struct SurfaceMetric {
   Number s, st, t;
 };
 
-/// Squares of the principal stretches from the unstressed to the present surface, the larger first: the eigenvalues of the stretch tensor h in the
-/// orthonormal frame that starts with X_,s. So written, equal stretches stay equal to round-off.
+/// Returns the squared principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the stretch
+/// tensor h in the orthonormal frame whose first axis is along X_,s. In this form equal stretches stay equal to round-off.
 template <class Number>
 std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
   const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
@@ -209,47 +209,47 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
   return {larger, (h11 * h22 - h12 * h12) / larger};
 }
 
-/// A law of the deck's choice; visited once outside the hot loops.
+/// The law that the deck selects. It is visited once, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law in two parts, whose energies add up to its own: without its resistance to a change of area as far as that is apart, and this one.
+/// A law split in two, whose energies add up to that of the law: the law without its separable area elasticity, and the area elasticity.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;
 };
 
-/// Of Skalak's law and Evans & Skalak's; others have none.
+/// Returns the split of Skalak's and of Evans & Skalak's law; empty for all other laws.
 std::optional<SplitLaw> split(const Law& law);
 
-/// The modulus that tensions are reported over: G_s, or sigma of an interface. Force per length.
+/// Returns the modulus by which reported tensions are divided: G_s, or sigma of an interface. Force per length.
 double modulus(const Law& law);
 
-/// K_s = dT/d(ln A) of an unstressed membrane, 0 of an interface. Force per length.
+/// Returns K_s = dT/d(ln A) of an unstressed membrane, 0 for an interface. Force per length.
 double area_modulus(const Law& law);
 
-/// Psi at principal stretches l1, l2.
+/// Returns Psi at the principal stretches l1 and l2.
 double energy(const Law& law, double stretch1, double stretch2);
 
-/// Principal tensions (force per current length) at principal stretches l1, l2:
+/// Returns the principal tensions (force per current length) at the principal stretches l1 and l2:
 ///
 ///   T_i = (2/J_s) Psi_1 l_i^2 + 2 J_s Psi_2,   J_s = l1 l2                            from (3.2)
 std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2);
 
-/// E_b/2 int (2 chi - c0)^2 dGamma, chi = 1/2 div n: Helfrich's energy, in the weak form. It needs a surface that is C1, geometrically, across every
-/// element side. The term with the Gaussian curvature is constant on a closed surface and left out.
+/// Helfrich's bending energy E_b/2 int (2 chi - c0)^2 dGamma, chi = 1/2 div n, in the weak form. It needs a surface that is geometrically C1 across
+/// every element side. The Gaussian curvature term is constant on a closed surface and is left out.
 struct Bending {
   double modulus = 0;               ///< E_b, force x length; 0: no bending
-  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface, material point by material point
-  double spontaneous_curvature = 0;  ///< c0 otherwise, 1/length
+  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface at each material point
+  double spontaneous_curvature = 0;  ///< c0 if curved_when_relaxed is false, 1/length
 
   friend bool operator==(const Bending&, const Bending&) = default;
 };
 
-/// A membrane that flows as it stretches (Kelvin & Voigt's element): what joins the elastic stress is, of the rate of strain d of the surface,
+/// Surface viscosity of a Kelvin-Voigt membrane. This viscous stress, with d the rate of strain of the surface, is added to the elastic stress:
 ///
 ///   tau^ab = 2 eta_s (d^ab - g^ab d^c_c/2) + kappa_s g^ab d^c_c,   d_ab = (v,a.g_b + g_a.v,b)/2                            (3.10)
 ///
-/// Boussinesq and Scriven's; Barthes-Biesel & Sgaier, J. Fluid Mech. 160, 1985.
+/// It is the Boussinesq-Scriven law; Barthes-Biesel & Sgaier, J. Fluid Mech. 160, 1985.
 struct SurfaceViscosity {
   double shear = 0;        ///< eta_s, viscosity x length
   double dilatational = 0;  ///< kappa_s
@@ -262,15 +262,15 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points a direction of the area's elasticity, where `split` knows it apart; 0: as for the rest
+  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the same rule as for the rest
 
   friend bool operator==(const Material&, const Material&) = default;
 };
 
-/// The materials of a surface, and which of them each element is of.
+/// The materials of a surface, and the material of each element.
 struct Materials {
   std::vector<Material> all;
-  std::vector<int> of_element;  ///< none where there is one material
+  std::vector<int> of_element;  ///< material index of each element; empty if there is one material
 };
 
 }  // namespace tanktread::membrane

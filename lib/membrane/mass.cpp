@@ -17,7 +17,7 @@ std::vector<int> everything(const spline::Space& space) {
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
-/// Zeros where two functions meet on an element.
+/// Returns a zero matrix with an entry for every pair of functions that share an element.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
   std::vector<spline::LocalMatrix> local;
@@ -25,7 +25,7 @@ Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   return spline::assemble(space.n_points, local);
 }
 
-/// Where the values of a batch's functions start.
+/// Returns the index of the first value of a batch's functions.
 std::size_t values_of(const Group& g, const Batch& batch) {
   return batch.extraction / static_cast<std::size_t>(g.n_bernstein()) * static_cast<std::size_t>(g.n_gauss());
 }
@@ -48,8 +48,8 @@ std::vector<Pack> values_at_gauss_points(const Group& g) {
   return values;
 }
 
-/// Where the matrix keeps what is added to functions a, b and b, a of the elements in the lanes. Functions that an element lacks share slot 0 and add
-/// zero to it.
+/// Returns the positions in the matrix of the entries (a, b) and (b, a) for the elements in the lanes. Functions that an element does not have share
+/// position 0 and add zero to it.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
   const int *start = matrix.outerIndexPtr(), *row = matrix.innerIndexPtr();
   const auto slot = [&](int a, int b) { return static_cast<int>(std::lower_bound(row + start[b], row + start[b + 1], a) - row); };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_points = max_order * max_order;
 
-/// Of a surface at a Gauss point: g^11, g^12, g^22, 1/|g|, and the area that stands for the point.
+/// Metric of a surface at a Gauss point: g^11, g^12, g^22, 1/|g|, and the area associated with the point.
 struct Metric {
   Eigen::Vector3d raised;
   double inverse_det, area;
@@ -19,7 +19,7 @@ struct Metric {
 
 }  // namespace
 
-/// Calls use(group, batch, place of its first point in relaxed_, its tangents of x) for every batch.
+/// Calls use(group, batch, index of its first point in relaxed_, its tangents of x) for every batch.
 template <class Use>
 void MaxwellElement::each_batch(const Net& x, const Use& use) const {
   std::size_t first = 0;
@@ -32,7 +32,7 @@ void MaxwellElement::each_batch(const Net& x, const Use& use) const {
     }
 }
 
-/// Calls use(place of the batch in relaxed_, point, lane, row of q, metric of x) for the Gauss points of every lane; idle ones have no area.
+/// Calls use(index of the batch in relaxed_, point, lane, row of q, metric of x) for the Gauss points of every lane. Idle lanes have zero area.
 template <class Use>
 void MaxwellElement::each_point(const Net& x, const Use& use) const {
   each_batch(x, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {
@@ -67,7 +67,7 @@ MaxwellElement::MaxwellElement(const spline::Space& space, const Net& initial, i
   });
 }
 
-/// g^11, g^12, g^22 of the surface x at each Gauss point.
+/// Returns g^11, g^12, g^22 of the surface x at each Gauss point.
 Eigen::MatrixX3d MaxwellElement::raised_metric(const Net& x) const {
   Eigen::MatrixX3d all(unit_.rows(), 3);
   each_point(x, [&](std::size_t, int, int, Eigen::Index row, const Metric& g) { all.row(row) = g.raised; });

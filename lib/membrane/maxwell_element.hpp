@@ -1,5 +1,5 @@
 #pragma once
-// The membrane's viscosity with a memory: springs in series with its dashpots.
+// Maxwell element of a membrane: a viscosity with memory, that is, springs in series with dashpots.
 
 #include <vector>
 
@@ -14,27 +14,28 @@
 
 namespace tanktread::membrane {
 
-/// Maxwell's element beside an elastic membrane, which makes it a standard linear solid: springs G = eta_s/T, K = kappa_s/T that lie in the surface
-/// and forget within the time T, their stress-free metric following that of the surface,
+/// Maxwell element parallel to an elastic membrane; together they form a standard linear solid. Its springs G = eta_s/T and K = kappa_s/T lie in the
+/// surface. Their stress relaxes within the time T, because their stress-free metric C^-1 follows the metric of the surface:
 ///
 ///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dG,   t = C^ab g_ab,   J^2 = |C| |g|                                            (3.23)
 ///   T dC^ab/dt = (2 J^2/t) g^ab - (2 - 1/J) C^ab                                                                           (3.24)
 ///
-/// of which nothing but heat comes out (3.25), and which is (3.10) where T is short. The energy is that of a law (`MaxwellSpring`) on the surface of
-/// metric C^-1. C is kept at the Gauss points, its components over those at the start of the metric of `initial`. Serial.
+/// The power lost in the relaxation is dissipated as heat (3.25). If T is short, the element tends to the surface viscosity (3.10). The energy is
+/// that of the law `MaxwellSpring` on the reference surface of metric C^-1. The unknowns are the components of C at the Gauss points, scaled by those
+/// of the contravariant metric of `initial`. Uses no MPI.
 class MaxwellElement : public Field {
  public:
-  /// `order` Gauss points a direction as of a Membrane; `space` must outlive it. `time` T.
+  /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
   Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< C^11, C^12, C^22 of each Gauss point of each element
-  Eigen::VectorXd start(const Net& shape) const override;          ///< of an element without stress
+  Eigen::VectorXd start(const Net& shape) const override;          ///< state of an element without stress
   void set_state(const Net& x, const Eigen::VectorXd& q) override;
   Net load() const override;
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
   double energy() const override;
 
-  /// int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG: the power that the dashpots turn into heat.                              (3.25)
+  /// Returns the power that the dashpots dissipate as heat, int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG.                      (3.25)
   double dissipation() const override { return dissipation_; }
 
   void linearise(const Net&) override;
@@ -45,12 +46,12 @@ class MaxwellElement : public Field {
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
-  surface::FieldsAt values_at() const override;  ///< logarithm of C^ab x_a x_b, a tensor in space: twice the recoverable strain
-  /// Interpolates the logarithm of C in the orthonormal frames of the surface, so that C stays positive definite.
+  surface::FieldsAt values_at() const override;  ///< logarithm of the tensor C^ab x_a x_b in space, nine components
+  /// Interpolates the logarithm of C in orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
-  /// Metric, strain and tangents at a Gauss point.
+  /// Metric, strain and tangents at a Gauss point, with their changes.
   struct Point;
   int order(std::size_t element) const;
   Eigen::MatrixX3d raised_metric(const Net& x) const;
@@ -67,15 +68,15 @@ class MaxwellElement : public Field {
   MaxwellSpring spring_;
   double time_;
   std::vector<Group> groups_;
-  std::vector<Eigen::Index> first_;                     // of an element's Gauss points
-  Net unit_;                                            // g^11, sqrt(g^11 g^22), g^22 of `initial`, a row a Gauss point
+  std::vector<Eigen::Index> first_;                     // first row of an element's Gauss points
+  Net unit_;                                            // g^11, sqrt(g^11 g^22), g^22 of `initial`, one row per Gauss point
   Net x_;
-  std::vector<ReferencePoint> relaxed_;                 // the stress-free surface, batch after batch
+  std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
-  Eigen::VectorXd q_, known_q_;  // set last, and as linearised
+  Eigen::VectorXd q_, known_q_;  // coefficients set last, and those of the linearisation
   Net known_x_;
-  std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq of each Gauss point
+  std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq at each Gauss point
 };
 
 }  // namespace tanktread::membrane

@@ -1,4 +1,4 @@
-// Derivatives of the Maxwell element's load and rate (3.24), exact at the state that linearise() keeps, by numbers that carry a derivative.
+// Derivatives of the Maxwell element's load and rate (3.24), exact at the state stored by linearise(), by dual numbers.
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
 Changing determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
 
-/// Numbers and their changes of three packs in a row.
+/// Returns the vector of three consecutive packs in a lane, with their changes.
 Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, int lane) {
   const int lanes = pack_lanes();
   const auto number = [&](int k) { return Changing{numbers(packs)[(first + k) * lanes + lane], numbers(changes)[(first + k) * lanes + lane]}; };
@@ -27,7 +27,7 @@ Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, in
 
 }  // namespace
 
-/// A Gauss point: tangents, g_ab, g^ab, C^ab; sqrt |g|, sqrt |C|, J, t. All with their changes.
+/// Quantities at a Gauss point: tangents, g_ab, g^ab, C^ab, sqrt |g|, sqrt |C|, J and t, all with their changes.
 struct MaxwellElement::Point {
   Vector<Changing> a_s, a_t;
   Symmetric g, up, c;
@@ -40,13 +40,13 @@ struct MaxwellElement::Point {
     gamma = sqrt(det), kappa = sqrt(determinant(c)), j = gamma * kappa, t = c[0] * g[0] + 2.0 * (c[1] * g[1]) + c[2] * g[2];
   }
 
-  /// S^ab of E (3.23) per parametric area, dE = S^ab x_,a.dx_,b; k: 11, 12, 22.
+  /// Returns the stress S^ab of E (3.23) per parametric area, dE = S^ab x_,a.dx_,b; k = 0, 1, 2 for 11, 12, 22.
   Changing stress(const MaxwellSpring& spring, std::size_t k) const {
     const Changing dilatation = (spring.dilatation_modulus / 2) * ((j - 1.0) * (3.0 * j - 1.0)), metric = gamma * up[k];
     return spring.shear_modulus * (c[k] / kappa - metric) + dilatation * metric;
   }
 
-  /// Change of T dC^ab/dt (3.24).
+  /// Returns the change of T dC^ab/dt (3.24).
   Eigen::Vector3d rate_change() const {
     const auto rate = [&](std::size_t k) { return 2.0 * (j * j / t * up[k]) + (1.0 / j - 2.0) * c[k]; };
     return {rate(0).slope, rate(1).slope, rate(2).slope};

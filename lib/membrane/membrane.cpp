@@ -13,8 +13,8 @@
 namespace tanktread::membrane {
 namespace {
 
-constexpr std::size_t parts_kept = 3;       // all elements, a rank's own, and one more
-constexpr double compressed_below = -1e-9;  // of the modulus: a membrane at rest is not compressed by round-off
+constexpr std::size_t parts_kept = 3;       // all elements, the rank-owned ones, and one more set
+constexpr double compressed_below = -1e-9;  // in units of the modulus: round-off does not count as compression of a membrane at rest
 constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
@@ -22,22 +22,22 @@ constexpr int max_gauss = max_order * max_order;
 /// The elements that one caller works on, packed, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< of groups: those of the surface, then what is integrated apart of them
-  std::vector<Law> whole;           ///< the laws that tensions are of at a group's points, a material
-  std::vector<bool> sampled;        ///< whether they are looked at there, a material
+  std::vector<Material> materials;  ///< materials of the groups: those of the surface, then the separated area elasticities
+  std::vector<Law> whole;           ///< complete law from which tensions are computed, per material
+  std::vector<bool> sampled;        ///< whether tensions are evaluated at the Gauss points of a group, per material
   std::vector<Group> groups;
-  std::vector<std::vector<ReferencePoint>> reference;  ///< a group; point q of batch k at n_gauss k + q
-  std::vector<std::vector<Pack>> relaxed_curvature;    ///< c0 of `Bending` at the same places, a group; empty for groups without bending
+  std::vector<std::vector<ReferencePoint>> reference;  ///< per group; point q of batch k at n_gauss k + q
+  std::vector<std::vector<Pack>> relaxed_curvature;    ///< c0 of `Bending` at the same points, per group; empty for groups without bending
 
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
   void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);
 
-  /// A batch with what is known of its n Gauss points, the first of which is number `first` of group g; c0 is null without bending.
+  /// A batch with the data of its n Gauss points. Its first point has the index `first` in group g. c0 is null without bending.
   struct Points {
     const Group& group;
     const Batch& batch;
     const Material& material;
-    const Law& whole;  ///< the law, all of it
+    const Law& whole;  ///< complete law, before the separation of the area elasticity
     const ReferencePoint* reference;
     const Pack* c0;
     std::size_t g, first;
@@ -86,7 +86,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
   }
 }
 
-/// Gives the area's elasticity of material m groups of its own (3.13).
+/// Creates separate groups for the area elasticity of material m (3.13).
 void Part::split_material(const spline::Space& space, const Materials& of_surface, std::size_t m) {
   const Material& material = of_surface.all[m];
   const auto parts = split(material.law);
@@ -211,7 +211,7 @@ Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstress
 struct Tangent::Points {
   std::shared_ptr<const Part> part;
   std::vector<std::vector<TangentPoint>> of_group;
-  std::vector<std::vector<Pack>> jets;  // of x, where there is bending
+  std::vector<std::vector<Pack>> jets;  // jets of x in groups with bending
 };
 
 Tangent::Tangent(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}

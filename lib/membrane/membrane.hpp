@@ -1,5 +1,5 @@
 #pragma once
-// The elastic membrane (or fluid interface) in the weak form: stored energy, load by virtual work, tangent of the load.
+// The elastic membrane (or fluid interface) in the weak form: stored energy, load by virtual work, and tangent of the load.
 
 #include <memory>
 #include <span>
@@ -14,54 +14,54 @@ namespace tanktread::membrane {
 
 struct Part;
 
-/// Smallest principal tension over the modulus, the share of the current area where it is negative, and the largest |J - 1|, J the current over the
-/// unstressed area of a place (`smallest_tension`, `compressed_area`, `local_area_change` of the series); at the Gauss points. A tension counts as
-/// negative below -1e-9 of the modulus.
+/// Summary of tensions and area changes over the Gauss points: the smallest principal tension divided by the modulus, the fraction of the current
+/// area where it is negative, and the largest |J - 1|, with J the ratio of current to unstressed area (`smallest_tension`, `compressed_area`,
+/// `local_area_change` of the series). A tension counts as negative below -1e-9 of the modulus.
 struct TensionSummary {
   double smallest = 0, compressed_area = 0, area_change = 0;
 };
 
-/// What it is made of: the smallest tension and the largest |J - 1| on some elements, and of each element of the space the area and that with a
-/// negative tension, zero for elements that were not asked for.
+/// Parts of a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of the space its area and the
+/// area with negative tension. Both areas are zero for elements that are not given.
 struct ElementTensions {
   double smallest = 0, area_change = 0;
   std::vector<double> area, compressed;
 };
 
-/// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Serial; `elements` are those that the caller is to do,
-/// ascending. What a row of a load receives is summed in an order that does not depend on how elements are split over callers.
+/// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. `elements` are the elements to evaluate, in ascending
+/// order. The summation order of each row of a load does not depend on how the elements are distributed over callers.
 ///
-/// Not for concurrent calls: the elements of the latest calls are kept packed for the hot loops.
+/// Not safe for concurrent calls: the elements of the latest calls are kept packed for the innermost loops.
 class Membrane {
  public:
-  /// `order` Gauss points per direction at degree 3, one more for each degree beyond; 2 to 10. `space` must outlive the membrane.
+  /// `order`: Gauss points per direction at degree 3, plus one for each higher degree; 2 to 10. `space` must outlive the membrane.
   Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {})
       : Membrane(space, unstressed, Materials{{{law, bending}}, {}}, order) {}
 
-  /// A membrane whose elements are of several materials.
+  /// Creates a membrane of several materials.
   Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order = 4);
 
-  /// E = int Psi dGamma_0, and the bending energy, over all or the given elements. Units force x length.
+  /// Returns E = int Psi dGamma_0 plus the bending energy, over all or the given elements. Units force x length.
   double energy(const Net& x) const;
   double energy(const Net& x, std::span<const int> elements) const;
 
-  /// The energy of each element of the space, zero for those that are not asked for.
+  /// Returns the energy of each element of the space, zero for elements that are not given.
   std::vector<double> element_energies(const Net& x, std::span<const int> elements) const;
 
-  /// d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, shape (N, 3), zeroed first. (3.6)  P-31, P-32
-  /// Complete in the rows whose whole support is in `elements`. Units force.
+  /// Computes d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, shape (N, 3); d is set to zero first. (3.6)  P-31, P-32 A row is complete if the whole
+  /// support of its function is in `elements`. Units force.
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
-  /// Smallest principal tension over all Gauss points, and where it is compressive.
+  /// Returns the smallest principal tension over all Gauss points, and the area under compression.
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
-  /// The strong form t = -div_s tau at a site, bending left out, with second derivatives of both nets. Force per current area. P-3
+  /// Returns the strong form t = -div_s tau at a site, without bending, from second derivatives of both nets. Force per current area. P-3
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
-  /// The same at the collocation sites `targets` (rows of t; others are untouched), mean over the incident elements. The paper and
-  /// `tests/stability` show where this fails.
+  /// Evaluates the strong form at the collocation sites `targets` and averages over the incident elements. Only the rows `targets` of t are set. The
+  /// strong form fails in the cases shown in the paper and in `tests/stability`.
   void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
 
   const spline::Space& space() const { return *space_; }
@@ -80,13 +80,13 @@ class Membrane {
   Materials materials_;
   int order_;
   std::vector<int> all_;
-  mutable std::vector<std::shared_ptr<const Part>> parts_;  // the latest first
+  mutable std::vector<std::shared_ptr<const Part>> parts_;  // latest first
 };
 
-/// Principal tensions, smaller first, over the modulus, where the unstressed and the present surface are so. Shape (places, 2).
+/// Returns the principal tensions, smaller first, divided by the modulus, from jets of the unstressed and current surface. Shape (points, 2).
 Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstressed, std::span<const surface::Jet> now);
 
-/// H = d^2E/dx^2 at a configuration, symmetric, applied without being assembled.
+/// Hessian H = d^2E/dx^2 of the energy at a configuration. It is symmetric and applied without being assembled.
 class Tangent {
  public:
   explicit Tangent(const Membrane& membrane);
@@ -96,7 +96,7 @@ class Tangent {
   /// Linearises at x on the given elements.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Hu = H u, shape (N, 3), zeroed first, from the elements of the last update; rows complete as in Membrane::load.
+  /// Computes Hu = H u, shape (N, 3), set to zero first, from the elements of the last update. Complete rows are as in Membrane::load.
   void apply(const Net& u, Net& hu) const;
 
  private:
@@ -105,17 +105,17 @@ class Tangent {
   std::unique_ptr<Points> points_;
 };
 
-/// What the membrane's viscosity (3.10) does at a configuration: (C v)_A = int J tau^ab R_A,a g_b of the velocity v, C symmetric, v.C v dissipated.
+/// Viscous load (3.10) of the membrane at a configuration: (C v)_A = int J tau^ab R_A,a g_b for the velocity v. C is symmetric; v.C v is dissipated.
 class ViscousLoad {
  public:
   explicit ViscousLoad(const Membrane& membrane);
   ~ViscousLoad();
   ViscousLoad(ViscousLoad&&) noexcept;
 
-  /// Takes the shape, on the given elements.
+  /// Sets the shape and the elements.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Cv = C v, shape (N, 3), zeroed first, from the elements of the last update; rows complete as in Membrane::load.
+  /// Computes Cv = C v, shape (N, 3), set to zero first, from the elements of the last update. Complete rows are as in Membrane::load.
   void apply(const Net& v, Net& cv) const;
 
  private:
@@ -124,7 +124,7 @@ class ViscousLoad {
   std::unique_ptr<Points> points_;
 };
 
-/// The unstressed net of a membrane that is inflated to `rest`: X = centre + (x - centre)/(1 + alpha).
+/// Returns the unstressed net of a membrane that is inflated to `rest`: X = centre + (x - centre)/(1 + alpha).
 Net unstressed(const Net& rest, const Vec3& centre, double alpha);
 
 }  // namespace tanktread::membrane

@@ -20,7 +20,7 @@ void check_stress_free(const Options& options) {
                                              : shape + "file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
 }
 
-/// `Membrane/constants/<name>`.
+/// Named constants of the strain energy, `Membrane/constants/<name>`.
 struct Constants {
   std::map<std::string, double>& all;
 

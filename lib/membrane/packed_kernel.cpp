@@ -1,4 +1,4 @@
-// Control points -> Bezier points -> tangents at Gauss points, by sum factorisation, and the transpose of that chain.
+// Evaluation of tangents at Gauss points from control points, via Bezier points and sum factorisation, and its transpose.
 
 #include <cstring>
 
@@ -24,7 +24,7 @@ void extract(const Register* e, int across_r, int across_k, const Register* x, i
     for (int c = 0; c < 3; ++c) out[3 * (first + k) + c] = sum[k][c];
 }
 
-// For all n_k, several at a time.
+// Does the same for k = 0 .. n_k - 1, four at a time.
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int n_k, Register* out) {
   int k = 0;
   for (; k + 4 <= n_k; k += 4) extract<4>(e, across_r, across_k, x, n_r, k, out);
@@ -51,10 +51,10 @@ void scatter(const Group& g, const Batch& batch, const Register* f, Net& sum) {
     }
 }
 
-// How often each derivative is one by s, and by t: x_,s x_,t, and after them x_,ss x_,st x_,tt.
+// Order of each derivative in s and in t: x_,s x_,t x_,ss x_,st x_,tt.
 constexpr int times_s[] = {1, 0, 2, 1, 0}, times_t[] = {0, 1, 0, 1, 2};
 
-// The degree and the order are template arguments where they are usual, 0 where they are known at run time only.
+// The degree and the order are template arguments for the usual combinations, and 0 if they are known only at run time.
 template <int Degree, int Order>
 struct Rule {
   static constexpr int max_p = Degree ? Degree : max_degree, max_q = Order ? Order : max_order;
@@ -63,11 +63,11 @@ struct Rule {
   explicit Rule(const Group& g)
       : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), bernstein{g.value.data(), g.slope.data(), g.bend.data()} {}
 
-  // The first n derivatives at all nodes, a[3 (n node + derivative) + c], from Bezier points: sums over s first, then over t.
+  // Evaluates the first n derivatives at all nodes, a[3 (n node + derivative) + c], from Bezier points. Sums over s first, then over t.
   template <int n>
   void evaluate(const Register* bezier, Register* a) const {
     constexpr int m = n == 2 ? 2 : 3;
-    Register along[max_p + 1][max_q][m][3];  // value and derivatives by s, on each row j
+    Register along[max_p + 1][max_q][m][3];  // value and derivatives in s, in each row j
     for (int j = 0; j <= p; ++j)
       for (int k = 0; k < q; ++k) {
         Register sum[m][3] = {};

@@ -49,10 +49,10 @@ void PatchForces::check() const {
 
 namespace {
 
-/// Rules of a patch on elements are of this order, on parts of elements no longer than half its radius.
+/// Order of the patch quadrature, which divides elements into parts no longer than half the patch radius; largest number of parts per direction.
 constexpr int order = 6, most_parts = 32;
 
-/// Parts of an element, a direction, for a patch that it is about as near to as it is long; none where it is farther away.
+/// Returns the number of parts per direction of an element for the patch quadrature; 0 if the element is farther from the patch than its own length.
 int parts(const std::array<Vec3, 9>& places, const Vec3& ray, double radius) {
   double longest = 0, nearest = INFINITY;
   for (const Vec3& x : places) {
@@ -71,7 +71,7 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   Net work = Net::Zero(space.n_points, 3);
   for (const PatchForce& one : all) {
     const Vec3 ray = one.direction.normalized();
-    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0, w not scaled yet
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0, w not normalised yet
     for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
       const auto place = [&](double s, double t) { return surface::point(space, unstressed, {e, s, t}); };
       std::array<Vec3, 9> places;
@@ -96,7 +96,7 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   return work;
 }
 
-/// Whether the forces of images are the images of forces.
+/// Returns whether the forces are symmetric under the image.
 bool PatchLoad::admits(const surface::Image& image) const {
   double defect = 0;
   for (Eigen::Index a = 0; a < work_.rows(); ++a)

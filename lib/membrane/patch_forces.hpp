@@ -1,5 +1,5 @@
 #pragma once
-// Forces by which a membrane is held or pulled, as by beads in optical tweezers.
+// Forces that hold or pull a membrane, such as those of beads in optical tweezers.
 
 #include <span>
 #include <string>
@@ -12,19 +12,19 @@
 
 namespace tanktread::membrane {
 
-/// A force on the patch of a membrane that a cylinder cuts out of its unstressed surface, about the ray from the centroid in a direction:
-/// `Membrane/forces/<name>`. It stays on the same material points and keeps its direction. Per unstressed area it is, up to a factor,
-/// (1 - d^2/radius^2)^2 at the distance d from the ray.
+/// A force on a patch of a membrane, `Membrane/forces/<name>`. A cylinder cuts the patch out of the unstressed surface. Its axis is the ray from the
+/// centroid in the given direction. The force stays on the same material points and keeps its direction. Its density per unstressed area is
+/// proportional to (1 - d^2/radius^2)^2, with d the distance from the ray.
 struct PatchForce {
   std::string name;
-  Vec3 direction = Vec3::Zero();  ///< of the ray, of any length
-  double radius = 0;              ///< of the patch
+  Vec3 direction = Vec3::Zero();  ///< direction of the ray, of any length
+  double radius = 0;              ///< radius of the patch
   Vec3 force = Vec3::Zero();
 
   void declare(deck::Section& section);
 };
 
-/// `Membrane/forces`.
+/// All patch forces, `Membrane/forces`.
 struct PatchForces {
   std::vector<PatchForce> all;
 
@@ -32,15 +32,15 @@ struct PatchForces {
 
   Vec3 total() const;
 
-  /// One sentence (UserError) for a patch without direction, or two on one place.
+  /// Throws UserError, with a one-sentence message, if a patch has no direction or two patches coincide.
   void check() const;
 
-  /// Their virtual work for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3), where
-  /// int w dGamma_0 = 1 by the rule that is used: the rows add up to the forces to rounding. Throws UserError for a patch without membrane.
+  /// Returns the virtual work of all forces for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3).
+  /// int w dGamma_0 = 1 holds in the quadrature, so the rows add up to the total force to rounding. Throws UserError if a patch contains no membrane.
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
 };
 
-/// Patch forces as a load: their virtual work does not depend on the shape.
+/// Patch forces as a load. Their virtual work does not depend on the shape.
 class PatchLoad : public Load {
  public:
   PatchLoad(const PatchForces& forces, const spline::Space& space, const Net& unstressed)

@@ -46,13 +46,13 @@ struct Curved {
     curvature = -(dot(turned, normal) / (square * j));
   }
 
-  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, by the five vectors of the jet
+  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, as derivatives with respect to the five vectors of the jet
   void gradient(double modulus, const Register& c0, Vector<Number>* p) const {
     const Number excess = curvature - c0, inverse = 1.0 / j;
-    const Number by_m = -modulus * (excess * inverse * inverse);                                              // of M
-    const Number by_j = 0.5 * modulus * (excess * excess) - 3.0 * modulus * (excess * curvature);             // of J
+    const Number by_m = -modulus * (excess * inverse * inverse);                                              // derivative by M
+    const Number by_j = 0.5 * modulus * (excess * excess) - 3.0 * modulus * (excess * curvature);             // derivative by J
     const Number css = dot(ss, normal), cst = dot(st, normal), ctt = dot(tt, normal), by_n = by_j * inverse;  // dJ = N.dN/J
-    Vector<Number> n;                                                                                         // by N
+    Vector<Number> n;                                                                                         // derivative by N
     for (int c = 0; c < 3; ++c) n[c] = by_m * turned[c] + by_n * normal[c];
     const Vector<Number> ns = cross(t, n), nt = cross(n, s);
     for (int c = 0; c < 3; ++c) {
@@ -133,7 +133,7 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // of the change of K itself
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // from the change of K
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);

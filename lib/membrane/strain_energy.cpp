@@ -12,14 +12,14 @@
 
 namespace tanktread::membrane {
 
-/// Reads a text from left to right, one member a level of precedence, into operations.
+/// Recursive-descent parser that turns an expression into operations, with one member function per level of precedence.
 class ExpressionParser {
  public:
   ExpressionParser(const std::string& what, const std::string& text, const std::map<std::string, double>& constants, StrainEnergy& energy)
       : what_(what), text_(text), constants_(constants), energy_(energy) {}
 
   void parse() {
-    constexpr std::size_t longest = 2000;  // what is longer might be deeper than the stack
+    constexpr std::size_t longest = 2000;  // a longer text might exceed the stack
     if (text_.size() > longest)
       throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();
@@ -32,7 +32,7 @@ class ExpressionParser {
 
  private:
   using Kind = StrainEnergy::Kind;
-  /// What a piece of the text comes to: a number, or the result of an operation.
+  /// Value of a part of the text: a constant, or the result of an operation.
   struct Term {
     double number = 0;
     std::optional<std::size_t> slot = {};
@@ -170,7 +170,7 @@ StrainEnergy::StrainEnergy(const std::string& what, const std::string& text, con
   check(what);
 }
 
-/// Whether it is the energy of a membrane: finite at small strains, without stress at none, stable.
+/// Throws UserError if the text is not the energy of a membrane: finite at small strains, stress-free when unstretched, stable.
 void StrainEnergy::check(const std::string& what) const {
   for (const double one : {1.0, 0.95, 1.05})
     for (const double other : {1.0, 0.95, 1.05}) {

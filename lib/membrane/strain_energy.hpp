@@ -1,6 +1,6 @@
 #pragma once
-// A law by a strain energy of the user's own, an expression in the two invariants of the strain, differentiated exactly: every operation is
-// carried out on Taylor polynomials of second degree.
+// Strain energy given by the user as an expression in the two strain invariants. It is differentiated exactly: every operation acts on Taylor
+// polynomials of second degree.
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace tanktread::membrane {
 
-/// A function of I1 and I2 with its first and second derivatives; `Number` is double, a register or a dual number.
+/// Value of a function of I1 and I2 with its first and second derivatives. `Number` is double, a register or a dual number.
 template <class Number>
 struct Taylor {
   Number value, by1, by2, by11, by12, by22;
@@ -29,7 +29,7 @@ struct Taylor {
             a.value * b.by12 + a.by1 * b.by2 + a.by2 * b.by1 + a.by12 * b.value,
             a.value * b.by22 + 2.0 * (a.by2 * b.by2) + a.by22 * b.value};
   }
-  /// f(a), from f and its first two derivatives there.
+  /// Returns f(a), from f and its first two derivatives at a.
   static Taylor composed(const Number& f, const Number& slope, const Number& bend, const Taylor& a) {
     return {f,
             slope * a.by1,
@@ -40,13 +40,13 @@ struct Taylor {
   }
 };
 
-/// Psi(I1, I2) of a text: numbers, named constants, I1, I2, J = sqrt(I2 + 1), + - * / ^, exp, log, sqrt, parentheses; exponents are constants.
-/// The constructor throws UserError, a sentence that starts with `what`, the key that the text is of, where it is no energy of a membrane.
+/// Psi(I1, I2) from a text of numbers, named constants, I1, I2, J = sqrt(I2 + 1), + - * / ^, exp, log, sqrt and parentheses. Exponents are constants.
+/// The constructor throws UserError if the text is not the energy of a membrane. The message starts with `what`, the key that has the text.
 class StrainEnergy {
  public:
   StrainEnergy(const std::string& what, const std::string& text, const std::map<std::string, double>& constants);
 
-  /// Psi, 0 on an unstretched membrane, with its derivatives.
+  /// Returns Psi, shifted to 0 on an unstretched membrane, with its derivatives.
   template <class Number>
   Taylor<Number> at(const Number& i1, const Number& i2) const {
     std::array<Taylor<Number>, most_operations> results;
@@ -60,13 +60,13 @@ class StrainEnergy {
     return psi;
   }
 
-  double shear_modulus() const { return shear_modulus_; }  ///< of small strains, in the unit of the text
-  double area_modulus() const { return area_modulus_; }    ///< the same against a change of area
+  double shear_modulus() const { return shear_modulus_; }  ///< shear modulus at small strains, in the unit of the text
+  double area_modulus() const { return area_modulus_; }    ///< area modulus at small strains, in the unit of the text
 
  private:
   friend class ExpressionParser;
   enum class Kind { sum, product, shifted, scaled, power, root, exponential, logarithm };
-  /// Of earlier results `first` and `second`, the first two of which are I1 and I2, and a constant.
+  /// An operation on the earlier results `first` and `second` and a constant. Results 0 and 1 are I1 and I2.
   struct Operation {
     Kind kind;
     std::size_t first, second;
@@ -100,7 +100,7 @@ class StrainEnergy {
     return Taylor<Number>::composed(by_lane(a.value, [](const auto& x) { return log(x); }), slope, -slope * slope, a);
   }
 
-  /// A function of one number on each lane of a register.
+  /// Applies a function to each lane of a register, or to a single number.
   template <class Number, class Function>
   static Number by_lane(const Number& a, const Function& f) {
     if constexpr (std::is_same_v<Number, Register>) {
@@ -112,7 +112,7 @@ class StrainEnergy {
     }
   }
 
-  /// a^p, of whole p by products.
+  /// Returns a^p. Whole powers up to 32 are computed by products.
   template <class Number>
   static Number power(const Number& a, double p) {
     constexpr double most_products = 32;

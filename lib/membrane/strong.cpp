@@ -14,7 +14,7 @@ using Number = Dual<double>;
 using Tangents = std::array<Vector<Number>, 2>;
 Vector<Number> with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
 
-// Component `row` of sqrt(g) tau^{row b} g_b, a vector per local coordinate; X_,s X_,t in `r`, x_,s x_,t in `a`.
+// Returns the row of sqrt(g) tau^{ab} g_b with a = `row`, from the tangents X_,s X_,t in `r` and x_,s x_,t in `a`.
 template <class AnyLaw>
 Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int row) {
   const Number r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);
@@ -31,7 +31,7 @@ Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int
 
 }  // namespace
 
-// -1/sqrt(g) (sqrt(g) tau^ab g_b),a
+// Computes -1/sqrt(g) (sqrt(g) tau^ab g_b),a.
 Vec3 Membrane::strong_load(const Net& x, const spline::Site& site) const {
   const surface::Jet before = surface::jet(surface::ElementPoints(*space_, unstressed_, site.element).patch(), site.s, site.t);
   const surface::Jet now = surface::jet(surface::ElementPoints(*space_, x, site.element).patch(), site.s, site.t);

@@ -13,12 +13,12 @@
 namespace tanktread::membrane {
 
 namespace {
-constexpr int most_area_points = 144, most_functions = 64;  // of an element
+constexpr int most_area_points = 144, most_functions = 64;  // per element
 }  // namespace
 
 Surfactant::Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity)
     : space_(space), bezier_(space), options_(options), clean_tension_(clean_tension), diffusivity_(diffusivity), mass_(space), known_mass_(space) {
-  constexpr int order = 4;  // Gauss points a direction at degree 3, as the membrane's
+  constexpr int order = 4;  // Gauss points per direction at degree 3, as for the membrane
   for (const spline::Element& element : space.elements) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(order + std::max(0, element.degree - 3));
     ElementPoints& at = elements_.emplace_back();
@@ -43,7 +43,7 @@ Surfactant::Surfactant(const spline::Space& space, const Net& initial, const Sur
   share_ = mass * Eigen::VectorXd::Ones(initial.rows());
 }
 
-/// Contravariant components at Gauss point q.
+/// Returns contravariant components at Gauss point q from covariant ones.
 std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, double along_t) const {
   const double *g11 = &metric[static_cast<std::size_t>(q)], *g12 = g11 + n, *g22 = g12 + n;
   return {*g11 * along_s + *g12 * along_t, *g12 * along_s + *g22 * along_t};
@@ -51,7 +51,7 @@ std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, d
 
 void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
   x_ = x, q_ = q;
-  Net content = Net::Zero(x.rows(), 3);  // of which the solver takes three columns
+  Net content = Net::Zero(x.rows(), 3);  // the solver requires three columns
   content.col(0) = share_.cwiseProduct(q);
   concentration_ = solver_.solve(mass_.update(x), content).col(0);
   double largest = -INFINITY;
@@ -94,10 +94,10 @@ Net Surfactant::load() const {
 
 Eigen::VectorXd Surfactant::rate(const Net& slip) const { return transport(slip, diffusivity_); }
 
-/// Control points that slide with u have the slip -u in a fluid at rest.
+/// Control points that slide with velocity u have the slip -u in a fluid at rest.
 Eigen::VectorXd Surfactant::relabelled(const Net& mesh_velocity) const { return transport(-mesh_velocity, 0); }
 
-/// (3.17) with this diffusivity, divided by the share of each control point.
+/// Returns (3.17) with the given diffusivity, divided by the share of each control point.
 Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   for (std::size_t e = 0; e < elements_.size(); ++e) {

@@ -1,5 +1,5 @@
 #pragma once
-// Insoluble surfactant on a fluid interface: the load of its tension, its transport along a surface that moves.
+// Insoluble surfactant on a fluid interface: the load due to its tension, and its transport on a moving surface.
 
 #include <array>
 #include <memory>
@@ -17,15 +17,16 @@
 
 namespace tanktread::membrane {
 
-/// A concentration c on a moving surface x with the shape functions N_A: what is conserved is m_A = int c N_A dG, whose sum is the mass,
+/// A concentration c on a moving surface x with the shape functions N_A. The conserved quantities are m_A = int c N_A dG. Their sum is the total
+/// mass:
 ///
 ///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
 ///
-/// with u the velocity of the control points and v that of the fluid, both the same across the surface. Kept are q_A = m_A/int N_A dG of a
-/// surface `initial` on the same space, 1 at the start there. Serial.
+/// Here u is the velocity of the control points and v that of the fluid; their normal components are equal. The coefficients are q_A = m_A/int N_A
+/// dG, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
 class Surfactant : public Field {
  public:
-  /// `clean_tension` sigma(0); `space` must outlive it.
+  /// `clean_tension`: sigma(0). `space` must outlive this object.
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
   Eigen::Index size() const override { return share_.size(); }  ///< one per control point
@@ -36,13 +37,14 @@ class Surfactant : public Field {
 
   const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
 
-  /// What the surfactant adds to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).     (3.18)
+  /// Returns the load of the surfactant in addition to that of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).
+  /// (3.18)
   Net load() const override;
 
   Eigen::VectorXd rate(const Net& slip) const override;
 
-  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, an area
-  /// int (f(c) - sigma(0)) dG of the free energy f of the surface: what the surfactant adds to that of the clean interface.     (3.21)
+  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, in units of area
+  /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to that of the clean interface. f: free energy density.  (3.21)
   double energy() const override;
   surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
 
@@ -51,26 +53,26 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< with the diffusion on the frozen shape
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes diffusion on the frozen shape
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
   surface::FieldsAt values_at() const override;  ///< c divided by its mean
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
 
-  /// The concentration is sampled at the Gauss points and scaled to the same mass.
+  /// Samples the concentration at the Gauss points and scales it to the same mass.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
   /// Returns q for which the concentration on the surface x has the control values c.
   Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
  private:
-  /// The functions of an element at its n Gauss points, and the surface and the concentration there; arrays as surfactant_kernel.hpp has them.
+  /// The functions of an element at its n Gauss points, and the surface and the concentration there. Arrays have the layout of surfactant_kernel.hpp.
   struct ElementPoints {
     int n, functions;
     std::vector<double> value, by_s, by_t, weight;
-    std::vector<double> s, t;    // x and c by each parameter: four fields
-    std::vector<double> metric;  // contravariant, and weight times J
+    std::vector<double> s, t;    // derivatives of x and c with respect to each parameter: four fields
+    std::vector<double> metric;  // contravariant metric, and weight times J
     std::vector<double> c;
 
     const double* area() const { return &metric[3 * static_cast<std::size_t>(n)]; }
@@ -79,7 +81,7 @@ class Surfactant : public Field {
   struct Point;
   template <class Use>
   void each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const;
-  /// Adds what an element gives to the rows of its control points; as many numbers a point as `sums` has columns.
+  /// Adds the contributions of an element to the rows of its control points. Each point has as many values as `sums` has columns.
   template <class Sums>
   void add_rows(std::size_t element, const double* rows, Sums& sums) const {
     constexpr int n = Sums::ColsAtCompileTime;
@@ -96,14 +98,14 @@ class Surfactant : public Field {
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
-  Eigen::VectorXd share_, concentration_;  // int N_A dG of the initial surface
-  Eigen::VectorXd q_;                                     // set last
-  Net x_, known_x_;                                       // shapes set last and linearised at
-  std::vector<ElementPoints> known_;                      // as linearised
-  std::vector<std::vector<double>> known_slip_;           // at the Gauss points of each element, three fields; empty without slip
-  mutable MassMatrix known_mass_;                         // as linearised
+  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface
+  Eigen::VectorXd q_;                                     // coefficients set last
+  Net x_, known_x_;                                       // shapes set last and at the linearisation
+  std::vector<ElementPoints> known_;                      // elements_ at the linearisation
+  std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
+  mutable MassMatrix known_mass_;                         // mass matrix at the linearisation
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
-  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // of M + s D K on the frozen shape
+  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // factors of M + s D K on the frozen shape
   mutable double factored_shift_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// Derivatives of the surfactant's load (3.18) and transport (3.17), exact at the state that linearise() keeps, by numbers that carry a derivative.
+// Derivatives of the surfactant's load (3.18) and transport (3.17), exact at the state stored by linearise(), by dual numbers.
 
 #include <cmath>
 
@@ -10,10 +10,10 @@ namespace tanktread::membrane {
 
 namespace {
 
-constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // of an element
-constexpr double shift_ratio = 1.25;                           // of neighbouring shifts for which solve() has factors
+constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
+constexpr double shift_ratio = 1.25;                           // ratio of neighbouring shifts for which solve() computes factors
 
-/// Returns the neighbouring value in a geometric sequence, so that factors depend on the present shift only.
+/// Returns the nearest value in a geometric sequence, so that the factors depend only on the present shift.
 double rounded(double shift) { return std::pow(shift_ratio, std::round(std::log(shift) / std::log(shift_ratio))); }
 
 using Changing = Dual<double>;
@@ -21,7 +21,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 }  // namespace
 
-/// Surface and concentration at a Gauss point, by each parameter too, with their changes: weight times J, contravariant metric.
+/// Surface and concentration at a Gauss point with their derivatives in each parameter, weight times J, and contravariant metric, all with changes.
 struct Surfactant::Point {
   Vector<Changing> s, t;
   Changing c, c_s, c_t, area, g11, g12, g22;
@@ -30,7 +30,7 @@ struct Surfactant::Point {
   Changing up_t(const Changing& along_s, const Changing& along_t) const { return g12 * along_s + g22 * along_t; }
 };
 
-/// Calls use(element, its points as linearised, point), where point(q) has the changes at Gauss point q, for every element.
+/// Calls use(element, its points at the linearisation, point) for every element. point(q) returns the quantities at Gauss point q with their changes.
 template <class Use>
 void Surfactant::each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const {
   double s[4 * most_gauss_points], t[4 * most_gauss_points], c[most_gauss_points];
@@ -70,7 +70,7 @@ void Surfactant::linearise(const Net& slip) {
   }
 }
 
-/// M dc = dm - (dM) c.
+/// Solves M dc = dm - (dM) c.
 Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Eigen::VectorXd content = share_.cwiseProduct(dq);
   each_change(dx, Eigen::VectorXd::Zero(dq.size()), [&](std::size_t e, const ElementPoints& at, const auto& point) {
@@ -79,7 +79,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
     test(1, at.n, at.functions, at.value.data(), at.value.data(), spread, none, rows);
     add_rows(e, rows, content);
   });
-  Net columns = Net::Zero(space_.n_points, 3);  // the solver has three
+  Net columns = Net::Zero(space_.n_points, 3);  // the solver requires three columns
   columns.col(0) = content;
   return solver_.solve(known_mass_.update(known_x_), columns).col(0);
 }
@@ -132,7 +132,7 @@ void Surfactant::freeze(const Net& x) {
   factors_.reset();
 }
 
-/// int grad_s N_A.grad_s N_B dG of the shape set last.
+/// Returns the stiffness matrix int grad_s N_A.grad_s N_B dG of the shape set last.
 Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
@@ -154,7 +154,7 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   return matrix;
 }
 
-/// (M + shift D K) c = r, M c the contents.
+/// Solves (M + shift D K) c = r for the contents M c.
 Eigen::VectorXd Surfactant::solve(double shift, const Eigen::VectorXd& r) const {
   if (diffusivity_ == 0 || frozen_mass_.rows() != r.size()) return r;
   if (const double close = rounded(shift); !factors_ || factored_shift_ != close) {

@@ -1,16 +1,17 @@
 #pragma once
-// Sums over the functions of an element, and over its Gauss points, on plain arrays. Of k fields an array holds one after the other: [field n + q] at
-// n Gauss points, [function k + field] of control values. Tables of the functions, or of their derivatives: [function n + q].
+// Sums over the functions of an element and over its Gauss points, on plain arrays. Arrays of k fields store one field after the other, [field n + q]
+// at n Gauss points. Control values are stored as [function k + field]. Tables of functions or of their derivatives are stored as [function n + q].
 
 namespace tanktread::membrane {
 
-/// k = 1, 3 or 4 fields at the Gauss points, from their control values.
+/// Evaluates k = 1, 3 or 4 fields at the Gauss points from their control values.
 void sample(int k, int n, int functions, const double* table, const double* control_values, double* fields);
 
-/// rows[function k + field] = sum_q (N_A,s along_s + N_A,t along_t) of k = 1 or 3 fields.
+/// Computes rows[function k + field] = sum_q (N_A,s along_s + N_A,t along_t) for k = 1 or 3 fields.
 void test(int k, int n, int functions, const double* by_s, const double* by_t, const double* along_s, const double* along_t, double* rows);
 
-/// The contravariant metric g^11, g^12, g^22 of the tangents (three fields each), one array behind the other, and behind them weight times J.
+/// Computes the contravariant metric g^11, g^12, g^22 of the tangents (three fields each), followed by the weights times J, one array after the
+/// other.
 void metric(int n, const double* tangents_s, const double* tangents_t, const double* weight, double* metric_and_area);
 
 }  // namespace tanktread::membrane

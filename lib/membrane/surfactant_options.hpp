@@ -7,29 +7,29 @@
 
 namespace tanktread::membrane {
 
-/// `Interface/surfactant` of the deck. Concentrations c are over the uniform one that the run starts with.
+/// Options of the surfactant, `Interface/surfactant` of the deck. Concentrations c are divided by the uniform concentration at the start of the run.
 struct SurfactantOptions {
   std::string equation_of_state = "linear";  ///< linear, Langmuir
   double elasticity = 0.2;                   ///< E of the equation of state
-  std::optional<double> coverage;            ///< x of Langmuir's: the initial concentration over the largest one; given for this one alone
+  std::optional<double> coverage;            ///< x of Langmuir: initial divided by largest concentration; only for Langmuir
   std::optional<double> diffusivity;         ///< D_s, length^2/time; 0 if neither is given
   std::optional<double> peclet_number;       ///< rate R_C^2/D_s
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other, or a surfactant that takes all of the tension away.
+  /// Throws UserError, with a one-sentence message, if keys contradict each other or the surfactant removes all of the tension.
   void check() const;
 
-  /// sigma(c)/sigma(0): 1 - E c, or 1 + E ln(1 - x c); not above 0, or not a number, where there is no tension left.            (3.16)
+  /// Returns sigma(c)/sigma(0): 1 - E c, or 1 + E ln(1 - x c). The result is not positive, or NaN, if no tension is left.           (3.16)
   double tension(double c) const;
 
-  /// Derivative of tension(c).
+  /// Returns the derivative of tension(c).
   double tension_slope(double c) const;
 
-  /// f(c)/sigma(0) of the free energy f of the surface with sigma = f - c f' (3.21).
+  /// Returns f(c)/sigma(0), with f the free energy density of the surface, sigma = f - c f' (3.21).
   double free_energy(double c) const;
 
-  /// D_s; `rate` of the flow, `radius` R_C.
+  /// Returns D_s. `rate`: rate of the flow, `radius`: R_C.
   double diffusivity_of(double rate, double radius) const;
 };
 

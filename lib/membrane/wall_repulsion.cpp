@@ -14,7 +14,7 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
     : space_(space), repulsion_(std::move(repulsion)) {
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
     const spline::Element& element = space.elements[static_cast<std::size_t>(e)];
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(4 + std::max(0, element.degree - 3));  // as the membrane's
+    const quadrature::TensorRule& rule = quadrature::tensor_gauss(4 + std::max(0, element.degree - 3));  // as in Membrane
     auto& value = value_.emplace_back(rule.size(), static_cast<Eigen::Index>(element.points.size()));
     Eigen::VectorXd& area = area_.emplace_back(rule.size());
     for (int q = 0; q < rule.size(); ++q) {
@@ -24,9 +24,9 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
   }
 }
 
-/// Gauss points with what counts of their energy.
+/// Returns the Gauss points whose repulsion energy is not negligible.
 std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
-  constexpr double far = 40, step = 1e-4;  // in ranges; of the wall's slope, over its radius
+  constexpr double far = 40, step = 1e-4;  // far: in ranges; step: for the slope of the wall, divided by its radius
   std::vector<Place> found;
   for (const int e : elements) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(e)].points;

@@ -1,5 +1,5 @@
 #pragma once
-// A short-ranged repulsion of membranes by the wall of a round tube or channel.
+// Short-range repulsion of membranes by the wall of a round tube or channel.
 
 #include <functional>
 #include <span>
@@ -11,41 +11,41 @@
 
 namespace tanktread::membrane {
 
-/// The wall around the axis x1, and what it does: per unstressed area the energy stress x range x exp(-g/range), where
-/// g = radius(x1) - sqrt(x2^2 + x3^2). (3.22)
+/// A wall around the axis x1 and its repulsion. The energy per unstressed area is stress x range x exp(-g/range), with the gap g = radius(x1) -
+/// sqrt(x2^2 + x3^2). (3.22)
 struct Repulsion {
   std::function<double(double)> radius;
   double stress = 0, range = 1;
 };
 
-/// The load on a membrane. Its tangent has the stiff part only, along the normals of the wall.
+/// The repulsion as a load on a membrane. Its tangent contains only the stiff part, along the normals of the wall.
 class WallRepulsion : public Load {
  public:
-  /// `space` must outlive this.
+  /// `space` must outlive this object.
   WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion);
 
   double potential(const Net& x, std::span<const int> elements) const;  ///< energy (3.22), force x length; the membrane does not store it
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;
-  bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }  // along the axis only; the caller compares the wall
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // motions in a tube are those along it
+  bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }  // images that keep the axis; the caller checks the wall
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // in a tube, rigid motions are along the axis
   bool depends_on_labels() const override { return false; }
 
  private:
   struct Place {
     int element, point;
     double energy;
-    Vec3 gradient;  ///< of g
+    Vec3 gradient;  ///< gradient of g
   };
   std::vector<Place> places(const Net& x, std::span<const int> elements) const;
   auto row(const Place& at) const { return value_[static_cast<std::size_t>(at.element)].row(at.point); }
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // of the functions of an element, a row a Gauss point
-  std::vector<Eigen::VectorXd> area_;                                                          // unstressed, of each Gauss point
-  std::vector<Place> latest_;                                                                  // of linearise
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // function values, one row per Gauss point
+  std::vector<Eigen::VectorXd> area_;                                                          // unstressed area of each Gauss point
+  std::vector<Place> latest_;                                                                  // points at the linearisation
 };
 
 }  // namespace tanktread::membrane

@@ -1,15 +1,15 @@
 #pragma once
-// The weight of a particle that deforms.
+// Weight of a deformable particle.
 
 #include "membrane/load.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::membrane {
 
-/// A uniform body force f, force/length^3, on the volume inside the surface: -int f.x dV is its energy, from which its work follows.
+/// Load of a uniform body force f, force/length^3, on the enclosed volume. Its energy is -int f.x dV.
 class Weight : public Load {
  public:
-  /// `space` must outlive this.
+  /// `space` must outlive this object.
   Weight(const spline::Space& space, const Vec3& body_force) : geometry_(space), body_force_(body_force) {}
 
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> /*sums*/) const override {

@@ -1,5 +1,5 @@
 #pragma once
-// What a membrane resists as a whole: a change of its area, and of the difference between the areas of its two leaves.
+// Global elasticity of a membrane: resistance to changes of its total area, and of the area difference between its two leaflets.
 
 #include <optional>
 #include <span>
@@ -13,24 +13,24 @@
 
 namespace tanktread::membrane {
 
-/// Stiffnesses of a whole membrane; 0: none.
+/// Stiffnesses of the global elasticity; 0: none.
 struct WholeStiffness {
-  double area = 0;                        ///< K of the whole area (3.26), force/length
-  double leaves = 0;                      ///< kbar of the difference between its leaves' areas (3.27), force x length
-  std::optional<double> leaf_difference;  ///< without stress, over that of a sphere of its area; if not given, the unstressed surface's
+  double area = 0;                        ///< K of the total area (3.26), force/length
+  double leaves = 0;                      ///< kbar of the area difference of the leaflets (3.27), force x length
+  std::optional<double> leaf_difference;  ///< Q0 divided by that of a sphere of equal area; if not given, that of X
 
   bool any() const { return area > 0 || leaves > 0; }
 };
 
-/// The energies of two measures Q of the whole membrane, their load and their tangent:
+/// Load and tangent of the energies of two global measures Q of the membrane:
 ///
 ///   E = k/2 (Q - Q0)^2,   dE/dx = k (Q - Q0) q,   q = dQ/dx,   Q = x.q/m
 ///
-/// Area A: k = K/A0, m = 2 (3.26). Difference between the areas of leaves a unit apart, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27). A0 is
-/// that of the unstressed surface. Q is homogeneous in x, of degree m, so that its gradient q, which is the sum that each needs, gives Q.
+/// For the area A: k = K/A0, m = 2 (3.26). For the area difference per distance of the leaflets, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27).
+/// A0 is the area of the unstressed surface. Q is homogeneous of degree m in x, so Q follows from its gradient q. Only q is summed over ranks.
 class WholeMembrane : public Load {
  public:
-  /// `space` must outlive this. `radius`: R_C.
+  /// `space` must outlive this object. `radius`: R_C.
   WholeMembrane(const spline::Space& space, const Net& unstressed, double radius, const WholeStiffness& stiffness);
 
   std::size_t n_sums() const override { return measures_.size(); }
@@ -48,11 +48,11 @@ class WholeMembrane : public Load {
  private:
   struct Measure {
     int degree;                                      // m
-    std::vector<std::pair<double, Membrane>> parts;  // factors and membranes: Q is the sum of each factor times the energy
+    std::vector<std::pair<double, Membrane>> parts;  // factors and membranes: Q is the sum of factor times energy
     double stiffness = 0, relaxed = 0;               // k, Q0
-    std::vector<Tangent> tangents = {};              // of the parts
-    double tension = 0;                              // k (Q - Q0) where linearised
-    Net q = {};                                      // where linearised
+    std::vector<Tangent> tangents = {};              // tangents of the parts
+    double tension = 0;                              // k (Q - Q0) at the linearisation
+    Net q = {};                                      // q at the linearisation
 
     double operator()(const Net& x, const Net& gradient) const { return x.cwiseProduct(gradient).sum() / degree; }
     Net gradient_at(const Net& x, std::span<const int> elements) const;

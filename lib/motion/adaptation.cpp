@@ -80,7 +80,7 @@ AdaptationOptions AdaptationOptions::coarser(double factor) const {
 
 namespace {
 
-/// L_ref min{1, (phi_ref / phi)^kappa}.
+/// Returns L_ref min{1, (phi_ref / phi)^kappa}.
 double allowed_length(const surface::MidLine& line, const AdaptationOptions& options) {
   double factor = 1;
   const auto heed = [&](const std::optional<double>& reference, double variation) {
@@ -92,16 +92,16 @@ double allowed_length(const surface::MidLine& line, const AdaptationOptions& opt
   return options.reference_length.value() * factor;
 }
 
-/// The largest estimated error over its tolerance.
+/// Returns the largest ratio of an estimated error to its tolerance.
 double excess(const surface::Errors& errors, const AdaptationOptions& options) {
   const double load = options.load_tolerance ? errors.load / *options.load_tolerance : 0;
   return std::max({errors.surface / options.surface_tolerance, errors.fields * options.radius / options.surface_tolerance, load});
 }
 
-/// The length of an element beside a film of this width, at most.
+/// Returns the largest length of an element next to a film of this width.
 double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
-/// Marks or merges of those of n elements for which wanted(element, direction) holds along s or t.
+/// Returns marks or merges of those of n elements for which wanted(element, direction) holds along s or t.
 template <class Entry, class Wanted>
 std::vector<Entry> collected(std::size_t n, const Wanted& wanted) {
   std::vector<Entry> found;
@@ -127,7 +127,7 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
   const auto slender = [&](double ratio) { return ratio >= margin * options.limit_aspect_ratio.value(); };
   const auto is_short = [&](const surface::MidLine& line) { return 2 * line.length < margin * allowed_length(line, options); };
   const auto alone = [&](std::size_t e, int a) { return is_short(metrics[e].along[a]) && !slender(2 * metrics[e].aspect_ratio(a)); };
-  const auto both = [&](const surface::ElementMetrics& m) {  // which keeps the aspect ratio, whatever it would be in between
+  const auto both = [&](const surface::ElementMetrics& m) {  // keeps the aspect ratio, even if merging in one direction only would exceed its limit
     return !slender(std::max(m.aspect_ratio(0), m.aspect_ratio(1))) && is_short(m.along[0]) && is_short(m.along[1]);
   };
   return collected<spline::Merge>(metrics.size(),

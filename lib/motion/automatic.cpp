@@ -7,22 +7,22 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double stable = 2.3;       // dt rho of BS3, below its 2.51 because rho is measured from below
-constexpr double solve_share = 0.5;  // work of a linear solve over that of an evaluation: 0.4 to 1.5 on 218 and 866 control points
+constexpr double stable = 2.3;       // dt rho of BS3, below its limit of 2.51 because rho is measured from below
+constexpr double solve_share = 0.5;  // work of a linear solve divided by that of an evaluation: 0.4 to 1.5 on 218 and 866 control points
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
-constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // numbers, as State::memory keeps them
+constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // values of Choice::scheme
 
 }  // namespace
 
-/// State::memory begins with it; what follows is the chosen scheme's own.
+/// Memory of this scheme at the front of State::memory. The memory of the chosen scheme follows.
 struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;
-  double age = 0;         ///< steps since it was measured
-  double points = 0;      ///< control points then; 0: never
-  double work = 0;        ///< of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
+  double age = 0;         ///< steps since the stiffness was measured
+  double points = 0;      ///< number of control points at that measurement; 0: not measured yet
+  double work = 0;        ///< work of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
   double since = 0;       ///< steps since the last change of scheme
   double then = 0;        ///< stiffness at the last change
 };
@@ -43,7 +43,7 @@ void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choi
   choice.age = 0;
 }
 
-/// After an accepted step.
+/// Updates the choice of the scheme after an accepted step.
 void Automatic::reconsider(const State& state, const StepReport& report, Choice& choice) const {
   choice.age += 1;
   choice.since += 1;
@@ -75,13 +75,13 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   } else {
     const bool first = choice.points == 0;
     measure(dynamics, state, choice);
-    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would be bound already
+    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would already be limited by stability
       choice.scheme = tr_bdf2;
       choice.then = choice.stiffness;
     }
   }
 
-  // The scheme sees its own part of the memory only.
+  // Pass only the part of the memory that belongs to the chosen scheme.
   State inner = state;
   const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));

@@ -14,7 +14,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction this many times the tolerance is as small as the quadrature may let it become
+constexpr double noise = 30;  // a correction below this many times the tolerance may be limited by quadrature errors
 }
 
 void ContinuationOptions::declare(deck::Section& section) {
@@ -60,10 +60,10 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
 
-/// Where the branch meets the plane through `predicted` with this normal.
+/// Finds the intersection of the branch with the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 80;
-  constexpr double far = 4;  // from the predicted place, in steps
+  constexpr double far = 4;  // largest distance from the prediction, in steps
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
@@ -98,9 +98,9 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     if (!report.converged && !(least < noise * steady_.tolerance)) return {};
     solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
-    if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // of another branch, or of none
+    if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // what a G that is linear in p may be off by
+    solved.rest = moved * turned;  // error bound of the linearisation of G in p
     if (solved.rest < steady_.tolerance) return solved;
   }
   return {};
@@ -113,14 +113,14 @@ void Branch::keep(const Solved& solved) {
   ended_ = ends(solved);
 }
 
-/// Whether the parameter is where the branch is to end, or has come back to where it began.
+/// Returns whether the parameter has reached the end of the branch or returned to its start.
 bool Branch::ends(const Solved& solved) const {
   constexpr double rounding = 1e-12;
   const double gone = (solved.place.q * unit_ - start_) / (options_.to - start_);
   return gone >= 1 - rounding || (last_.size() > 2 && gone < rounding);
 }
 
-/// The end of the branch that this place lies beyond, a value of the parameter.
+/// Returns the value of the parameter at the end of the branch that this point has passed, if any.
 std::optional<double> Branch::end_before(const Place& place) const {
   const double gone = (place.q * unit_ - start_) / (options_.to - start_);
   if (gone > 1) return options_.to;
@@ -128,7 +128,7 @@ std::optional<double> Branch::end_before(const Place& place) const {
   return {};
 }
 
-/// A step further; shorter where that fails.
+/// Advances by one step; halves the step until it succeeds.
 std::optional<Branch::Solved> Branch::stepped() {
   constexpr double least = 1e-6;
   const Solved& now = last_.back();
@@ -153,7 +153,7 @@ std::optional<Branch::Solved> Branch::stepped() {
   return {};
 }
 
-/// Goes on from the two latest points, found again on a mesh that fits the last one: while there are finer ones.
+/// Refines the mesh as long as it can be improved, and recomputes the two latest points on each new mesh.
 void Branch::adapt() {
   constexpr int most = 6;
   for (int k = 0; k < most; ++k) {
@@ -179,7 +179,7 @@ void Branch::adapt() {
   }
 }
 
-/// Two points are held back: a fold may lie between the last one and the one before.
+/// Two points are held back, because a fold may lie between the last two points.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
@@ -199,7 +199,7 @@ std::optional<BranchPoint> Branch::next() {
   return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
-/// The first or the second point, at values of the parameter.
+/// Finds the first or the second point, at given values of the parameter.
 void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);

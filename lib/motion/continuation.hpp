@@ -1,5 +1,5 @@
 #pragma once
-// Branches of shapes at rest, along a parameter and around its folds.
+// Continuation of branches of steady shapes along a parameter and around folds.
 
 #include <array>
 #include <cmath>
@@ -15,67 +15,67 @@
 
 namespace tanktread::motion {
 
-/// `Continuation/*` of the deck.
+/// Options of the continuation, `Continuation/*` of the deck.
 struct ContinuationOptions {
-  bool present = false;              ///< whether the deck has this list
-  std::string parameter;             ///< path of a key of the deck that is a number
+  bool present = false;              ///< whether the deck has this section
+  std::string parameter;             ///< path of a numerical key of the deck
   double to = 0;                     ///< value of the parameter at which the branch ends
   std::string method = "arclength";  ///< arclength, natural
-  std::optional<double> step;        ///< of the parameter, the first; empty: a twentieth of the way
-  double largest_change = 0.05;      ///< of the shape from point to point, in the norm of `Time/tolerance`
-  int points = 100;                  ///< most
-  double fold_tolerance = 1e-6;      ///< of the parameter at a fold, relative
-  std::optional<std::string> second_parameter;      ///< path of another number, along which the first fold goes on
-  std::optional<std::vector<double>> second_values;  ///< of it, one after another; the deck's own comes before them
+  std::optional<double> step;        ///< first step of the parameter; empty: 1/20 of the interval
+  double largest_change = 0.05;      ///< change of shape from point to point, in the norm of `Time/tolerance`
+  int points = 100;                  ///< largest number of points
+  double fold_tolerance = 1e-6;      ///< relative tolerance of the parameter at a fold
+  std::optional<std::string> second_parameter;      ///< path of another numerical key, along which the first fold is continued
+  std::optional<std::vector<double>> second_values;  ///< its values in sequence, after the deck's own value
 
   void declare(deck::Section& section);
 };
 
-/// A shape at rest.
+/// A steady shape on a branch.
 struct BranchPoint {
   double parameter = 0, second = 0;
   Net x;
-  bool fold = false;   ///< the parameter turns round here
-  int iterations = 0;  ///< of NOX
-  double rest = 0;     ///< the correction that was left
+  bool fold = false;   ///< the parameter reverses its direction here
+  int iterations = 0;  ///< number of NOX iterations
+  double rest = 0;     ///< estimated error of the shape
 
   void add_columns(bool follows_fold, Columns& to) const;
 };
 
-/// The shapes at rest that hang together, from one on to a value of the parameter, or around a fold back to the first one. With t the direction from
-/// the point before last to the last one, in the norm of `Time/tolerance` and with the parameter p in units in which the first step is as long as the
-/// change of the shape, the next point is where
+/// A connected branch of steady shapes, from a start to a given value of the parameter, or around a fold back to the start. Let t be the direction
+/// from the second last point to the last one, in the norm of `Time/tolerance`. The parameter p is scaled so that it contributes as much to the
+/// length of the first step as the change of shape. The next point satisfies
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
-/// (x^, p^) one step further along t (`arclength`), or where p = p^ (`natural`). Both are solved as (4.17) is, the change of p being what brings the
-/// correction onto the plane; in the iteration G is linear in p, and taken anew at the p it ends with until that stays. A fold is the vertex of the
-/// parabola p(arclength) through three points, which is solved for and replaces one of them until p there stays.
+/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both are solved like (4.17); a change of p moves each iterate
+/// onto the plane. During the iteration G is linearised in p. It is evaluated again at the resulting p until p no longer changes. A fold is the
+/// vertex of the parabola p(arclength) through three points. It is solved for and replaces one of the three points until its p no longer changes.
 ///
-/// A fold goes on in a second parameter from one value of it to the next: expected where the two folds before point to, the values taken for evenly
-/// spaced, it lies between three points that (4.20) gives at a distance before, at and after that place, t being the direction of the branch at the
-/// fold before. Where nothing is found the way to the next value is halved. The mesh stays that of the first fold.
+/// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
+/// if the values were evenly spaced. Equation (4.20) then gives three points at, before and after the prediction, where t is the direction of the
+/// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh stays that of the first fold.
 class Branch {
  public:
-  /// The equations at a value of the parameter and one of the second, 0 where there is none. Collective.
+  /// Returns the equations at a value of the parameter and of the second one, which is 0 if there is none. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Carries shapes, the last of which is at rest at this parameter, to a mesh that fits that one better, and the family to it; whether there is one.
-  /// Collective.
+  /// Transfers shapes to a mesh that fits the last of them better, and changes the family to that mesh. The last shape is steady at this parameter.
+  /// Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
-  /// Begins with the shape that `x` leads to at `parameter`, and at `second` where the first fold is to go on in a second one.
+  /// Starts at `parameter` with the steady shape reached from `x`. `second`: value of the second parameter if the first fold is continued.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 
-  /// The next point, folds in between included; with a second parameter up to the first fold, then that at each of its values. None at the end.
-  /// Throws RunFailure where it cannot be found. Collective.
+  /// Returns the next point, including folds in between. With a second parameter, it returns points up to the first fold and then the fold at each
+  /// second value. Returns nothing at the end. Throws RunFailure if the point is not found. Collective.
   std::optional<BranchPoint> next();
 
  private:
   struct Place {
     Net x;
-    double q = 0;  // the parameter in its units
+    double q = 0;  // scaled parameter
     Place operator-(const Place& other) const { return {x - other.x, q - other.q}; }
     Place along(const Place& t, double ds) const { return {x + ds * t.x, q + ds * t.q}; }
   };
@@ -87,7 +87,7 @@ class Branch {
   };
   struct Fold {
     Solved at;
-    Place along;  // the direction of the branch there
+    Place along;  // direction of the branch at the fold
   };
   double inner(const Place& a, const Place& b) const;
   double length(const Place& a) const { return std::sqrt(inner(a, a)); }
@@ -112,14 +112,14 @@ class Branch {
   double start_, second_, unit_ = 1;  // q = parameter/unit
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
-  std::vector<Solved> last_;  // up to three, the latest last
-  std::vector<std::pair<Solved, bool>> ahead_;  // that next() has to give yet, by arclength, and whether each is a fold
-  std::vector<Fold> folds_;       // of the second parameter, the two latest
-  double last_share_ = 1;         // of the way between two values of it that lies between them
-  std::size_t values_ = 0;        // of it that were reached
+  std::vector<Solved> last_;  // up to three points, latest last
+  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, and whether each is a fold
+  std::vector<Fold> folds_;       // the two latest folds of the second parameter
+  double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
+  std::size_t values_ = 0;        // number of its values reached
   std::string failure_;
   double step_ = 0;
-  double heading_ = 0;  // how q changed on the last step; points found again on another mesh may have it otherwise
+  double heading_ = 0;  // change of q in the last step; points recomputed on another mesh may have another sign
   int count_ = 0;
   bool ended_ = false;
 };

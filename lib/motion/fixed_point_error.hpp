@@ -1,5 +1,5 @@
 #pragma once
-// How far an iterate is from the fixed point that it converges to.
+// Estimate of the distance of an iterate from the fixed point to which the iteration converges.
 
 #include <deque>
 #include <utility>
@@ -8,25 +8,26 @@
 
 namespace tanktread::motion {
 
-/// The estimated error of an iterate x_k of a fixed-point iteration, from the corrections f_j = g(x_j) - x_j of the last m iterates:
+/// Estimates the error of an iterate x_k of a fixed-point iteration from the corrections f_j = g(x_j) - x_j of the last m iterates:
 ///
 ///   x_k - x* = -f_k + (dX + dF) c,   c the least-squares solution of dF c = f_k,   dX, dF: columns x_k - x_j, f_k - f_j          (4.32)
 ///
-/// A correction alone is smaller than the error by the factor 1 - rho of the mode with contraction rate rho that decays most slowly, near a fold a
-/// hundredfold. The estimate is exact if g is affine and differs from the identity in m directions only; Anderson acceleration steps by it.
+/// The correction is smaller than the error by the factor 1 - rho, with rho the contraction rate of the slowest mode; near a fold this factor is
+/// about 1/100. The estimate is exact if g is affine and differs from the identity in m directions only. Anderson acceleration uses it as its step.
 class FixedPointError {
  public:
-  /// `most`: m.
+  /// `most`: m, the largest number of earlier iterates.
   explicit FixedPointError(int most) : most_(most) {}
 
-  /// Takes x_k and f_k, finite; returns the estimate of x_k - x*. Cost: a least-squares problem of m columns, no evaluation.
+  /// Stores x_k and f_k, which must be finite, and returns the estimate of x_k - x*. Cost: a least-squares problem with m columns, no evaluation of
+  /// g.
   Net operator()(const Net& x, const Net& f);
 
-  bool known() const { return before_.size() > 1; }  ///< whether the latest estimate is more than the correction
+  bool known() const { return before_.size() > 1; }  ///< returns whether the latest estimate uses earlier iterates
 
  private:
   int most_;
-  std::deque<std::pair<Net, Net>> before_;  // x_j, f_j, the latest last
+  std::deque<std::pair<Net, Net>> before_;  // x_j, f_j, latest last
 };
 
 }  // namespace tanktread::motion

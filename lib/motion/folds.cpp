@@ -11,7 +11,7 @@
 
 namespace tanktread::motion {
 
-/// The fold that three points of the branch are about, nothing where it is not found.
+/// Returns the fold near three points of the branch, or nothing if it is not found.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {
@@ -44,7 +44,7 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   return {};
 }
 
-/// The same of the branch that goes through this place nearly in this direction.
+/// Returns the fold of the branch that passes near the point `expected` in about the direction `along`.
 std::optional<Branch::Fold> Branch::fold_near(const Place& expected, const Place& along) {
   std::array<Solved, 3> three;
   Place from = expected;
@@ -59,7 +59,7 @@ std::optional<Branch::Fold> Branch::fold_near(const Place& expected, const Place
   return fold(std::move(three));
 }
 
-/// Goes on to the fold at the next value of the second parameter; whether there is another value.
+/// Continues the fold to the next value of the second parameter. Returns false if there is no further value.
 bool Branch::next_fold() {
   constexpr double least = 1. / 64;
   if (!options_.second_values || values_ == options_.second_values->size()) return false;

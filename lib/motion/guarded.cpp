@@ -10,13 +10,13 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // the worst of all ranks' counts
+enum Outcome { fine, told_to_stop, failed, exhausted };  // the largest value of all ranks is the common outcome
 
 Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 
 }  // namespace
 
-/// Whether `act`, which says whether its result is finite, succeeded on all ranks. `told`: to stop.
+/// Returns whether `act` succeeded on all ranks; `act` returns whether its result is finite. `told`: whether a stop signal was received.
 bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
   int mine = told ? told_to_stop : fine;
   std::string reason;

@@ -1,5 +1,5 @@
 #pragma once
-// A motion whose evaluations have one outcome on all ranks.
+// Wrapper of a motion whose evaluations have the same outcome on all ranks.
 
 #include <functional>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace tanktread::motion {
 
-/// What a velocity evaluation ends with that was told to stop. Not an error: no scheme takes it for one.
+/// Thrown by a velocity evaluation after a stop signal. It does not derive from std::exception, so no scheme treats it as an error.
 struct Stopped {};
 
-/// Another motion as integrators see it. What cannot be had at a trial shape (a solver that does not converge, a folded or open surface, numbers that
-/// are not finite), on one rank or more, is not a number on all of them, which every scheme answers with a shorter step. Memory that runs out is no
-/// such outcome: all ranks throw RunFailure. Norms, on which the decisions of a scheme rest, are the first rank's. Collective, as the motion is.
+/// Wraps another motion for the integrators. If an evaluation at a trial shape fails on one rank or more (a solver does not converge, the surface is
+/// folded or open, values are not finite), the result is NaN on all ranks, and every scheme then shortens its step. If memory runs out, all ranks
+/// throw RunFailure. Norms, on which the decisions of a scheme depend, are those of the first rank. Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
-  /// `told`: whether this rank was told to stop; a velocity evaluation then ends with Stopped, on every rank.
+  /// `told`: returns whether this rank has received a stop signal. A velocity evaluation then throws Stopped on every rank.
   GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> told) : motion_(motion), told_(std::move(told)) {}
 
   void at(double time, double start) override { motion_.at(time, start); }
@@ -42,7 +42,7 @@ class GuardedDynamics : public coupling::Dynamics {
   double distance(const Net& from, const Net& to) const override { return motion_.distance(from, to); }
   double norm(const Net& displacement) const override;
 
-  /// Why the latest evaluation that failed did; empty where none has.
+  /// Returns the reason of the latest failed evaluation; empty if none has failed.
   const std::string& failure() const { return failure_; }
 
  private:

@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double same_time = 1e-12;  // relative: limits and kinks are sums and products of a deck's numbers
+constexpr double same_time = 1e-12;  // relative tolerance, because limits and kinks are sums and products of numbers in a deck
 
 std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
   if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);
@@ -23,7 +23,7 @@ std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const 
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
 }
 
-/// A scheme whose steps end at kinks of the motion, and that begins anew there.
+/// Scheme whose steps end at kinks of the motion, and which restarts there.
 class PiecewiseSmooth : public Integrator {
  public:
   explicit PiecewiseSmooth(std::unique_ptr<Integrator> scheme) : scheme_(std::move(scheme)) {}
@@ -78,7 +78,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double trial = 1e-3 / speed;
   dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
-  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // the trial may have no velocity
+  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // the trial velocity may not be available
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 

@@ -41,7 +41,7 @@ Net turned_back(const coupling::Dynamics& dynamics, const Net& x, double degrees
   return dynamics.turned(x, Eigen::AngleAxisd(-degrees * std::numbers::pi / 180, Vec3::UnitY()).toRotationMatrix());
 }
 
-/// A run from x, until `done` says so after a step, or `most` is over.
+/// Integrates from x until `done` returns true after a step, or the time `most` has passed.
 State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox, const Net& x, double most,
           const std::function<bool(const State& before, const State& after)>& done) {
   State state;
@@ -124,7 +124,7 @@ std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& sta
   const auto product = [&](const Net& d) -> Net {
     const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
     const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
-    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));  // what breaks the symmetry would stay for ever, as 1
+    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));  // parts that break the symmetry would persist as a multiplier 1
   };
   const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));
   std::vector<Net> basis{admitted(start / start.norm())};

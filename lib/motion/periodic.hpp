@@ -1,5 +1,5 @@
 #pragma once
-// Periodic motions: shapes that come back after a period.
+// Periodic motions: shapes that return after a period.
 
 #include <complex>
 #include <functional>
@@ -20,34 +20,34 @@ class Section;
 
 namespace tanktread::motion {
 
-/// `Periodic/*` of the deck.
+/// Options of the search for periodic motions, `Periodic/*` of the deck.
 struct PeriodicOptions {
-  bool present = false;       ///< whether the deck has this list
-  double period = 0;          ///< expected
-  double turn = 0;            ///< by which the shape is turned about x2 when it is back, degrees
-  double tolerance = 1e-5;    ///< of what it misses of being back, in the norm of `Time/tolerance`
-  int iterations = 20;        ///< most
-  double difference = 1e-2;   ///< size of the displacements whose returns the multipliers are made of, over R_C
-  bool driven = false;        ///< whether the flow itself changes with this period, so that returns are at its end
+  bool present = false;       ///< whether the deck has this section
+  double period = 0;          ///< expected period
+  double turn = 0;            ///< rotation of the shape about x2 after a period, degrees
+  double tolerance = 1e-5;    ///< tolerance of the distance between start and return, in the norm of `Time/tolerance`
+  int iterations = 20;        ///< largest number of iterations
+  double difference = 1e-2;   ///< size of the displacements in the finite differences for the multipliers, divided by R_C
+  bool driven = false;        ///< whether the flow itself has this period; a return is then at its end
 
   void declare(deck::Section& section);
 };
 
-/// Where a motion comes back to a plane of shapes, one period T after x: with its motion phi and the turn R,
+/// Return map of a motion to a plane in the space of shapes, one period T after x. With the flow map phi of the motion and the rotation R:
 ///
 ///   P(x) = R^-1 phi_T(x),   n.(P(x) - c) = 0,   n along v(c)                                                        (4.27)
 ///
-/// T being between half and one and a half of the expected period. Within the last step the plane is met by DenseOutput. In a flow that changes in
-/// time T is the flow's period, and there is no plane.
+/// T lies between 0.5 and 1.5 expected periods. DenseOutput locates the crossing of the plane within the last step. If the flow itself is periodic, T
+/// is its period, and there is no plane.
 class ReturnMap {
  public:
-  /// Through c. Motion and options outlive it. Collective, as is all else.
+  /// Defines the plane through c. Motion and options must outlive this object. Collective, like all other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 
-  /// P(x). Throws RunFailure where x does not come back.
+  /// Returns P(x). Throws RunFailure if x does not return.
   Net operator()(const Net& x);
-  double period() const { return period_; }  ///< T of the latest
+  double period() const { return period_; }  ///< T of the latest return
 
   coupling::Dynamics& dynamics() { return dynamics_; }
   const PeriodicOptions& options() const { return options_; }
@@ -63,29 +63,29 @@ class ReturnMap {
   double period_ = 0;
 };
 
-/// What a search came to.
+/// Result of a search for a periodic motion.
 struct PeriodicReport {
   int iterations = 0;
   bool converged = false;
-  double rest = 0;  ///< what the shape misses of being back
+  double rest = 0;  ///< distance between the shape and its return
 };
 
-/// x where a motion is after three expected periods, each time turned back: a plane of returns may go through there. Collective.
+/// Returns the shape after three expected periods, rotated back after each: a suitable point for the plane of returns. Collective.
 Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
                   const PeriodicOptions& options, Net x);
 
-/// The fixed point of P that x leads to, by NOX (`anderson`). Collective. Throws RunFailure where a shape does not come back.
+/// Finds the fixed point of P reached from x, by NOX (`anderson`). Collective. Throws RunFailure if a shape does not return.
 PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox, Net& x);
 
-/// A displacement of the fixed point that P multiplies.
+/// An eigenvalue of the derivative of P, with its eigenvector, a displacement of the fixed point.
 struct Multiplier {
   std::complex<double> value;
   Net real, imaginary;
 };
 
-/// Those of largest size of the derivative of P at its fixed point x, by central differences and Arnoldi's method from the displacement `start` on:
-/// the Floquet multipliers but that of the time itself, 1. `admitted`: a displacement without what the symmetry of `start` does not admit. What is
-/// smaller than noise of a run over `difference` is noise. Collective.
+/// Returns the largest eigenvalues of the derivative of P at its fixed point x, by central differences and Arnoldi's method started from the
+/// displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted` removes from a displacement the parts that the
+/// symmetry of `start` does not allow. Values smaller than the noise of a run divided by `difference` are not significant. Collective.
 std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number);
 
 }  // namespace tanktread::motion

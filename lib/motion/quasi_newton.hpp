@@ -1,5 +1,5 @@
 #pragma once
-// Solution of the stages of implicit schemes: quasi-Newton iteration, its measured error, and what decides on a step.
+// Solution of the stages of implicit schemes: quasi-Newton iteration, its measured error, and acceptance of steps.
 
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace tanktread::motion {
 
-/// What the step controller remembers between steps, stored at the front of State::memory.
+/// Memory of the step controller between steps, stored at the front of State::memory.
 struct Memory {
   double error = 0;  ///< local error of the last accepted step divided by the tolerance; 0 before the first step
   double step = 0;   ///< size of that step
@@ -30,9 +30,9 @@ struct Stage {
 ///
 ///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
 ///
-/// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. The rate is one that was observed in the same step, where
-/// shape and shift are the same; before one was, it is taken as 1/2, so that a stage whose first correction is not itself small is evaluated a second
-/// time. It is never taken below the relative residual of the linear solves.
+/// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. A rate observed earlier in the same step is used, because
+/// shape and shift are the same. If none was observed yet, the rate is assumed to be 1/2, so a second evaluation is made unless the first correction
+/// is small. The rate is never taken below the relative residual of the linear solves.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
 /// Decision on an attempted step.
@@ -41,10 +41,10 @@ struct Verdict {
   double factor = 0.5;  ///< next step divided by this one
 };
 
-/// Decides on an attempt that ended with the stage `last` and has the local error `error`, divided by the tolerance, which falls with the given power
-/// of the step. Restores the volume of an accepted end; an attempt for which that fails is rejected. Assembles the layer operators anew at state.x,
-/// and forgets the secants, if the iteration failed or contracted too slowly and the shape has changed since the last time. Throws RunFailure if a
-/// step of fixed size was not solved.
+/// Decides on an attempted step that ended with the stage `last`. `error` is its local error divided by the tolerance, which scales with the given
+/// power of the step. Restores the volume at the end of an accepted step; if this fails, the step is rejected. If the iteration failed or contracted
+/// too slowly, and the shape has changed since the last assembly, assembles the layer operators again at state.x and deletes the secants. Throws
+/// RunFailure if a step of fixed size was not solved.
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory);
 

@@ -8,15 +8,15 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double margin = 1.1;    // power iteration stays below rho
-constexpr int lasting_steps = 25;  // for which a measured stiffness is used
+constexpr double margin = 1.1;    // power iteration approaches rho from below
+constexpr int lasting_steps = 25;  // number of steps for which a measured stiffness is used
 constexpr int most_stages = 200;
 
-/// State::memory.
+/// Content of State::memory.
 struct StiffnessMemory {
-  double stiffness = 0;  ///< measured
-  double age = 0;        ///< steps since
-  double error = 0;      ///< of the last accepted step over the tolerance
+  double stiffness = 0;  ///< measured stiffness
+  double age = 0;        ///< steps since the measurement
+  double error = 0;      ///< error of the last accepted step divided by the tolerance
   double points = 0;     ///< control points of the mesh on which it was measured
 };
 
@@ -31,7 +31,7 @@ void measure(coupling::Dynamics& dynamics, State& state, StiffnessMemory& memory
   report.iterations += iterations;
 }
 
-/// The value and the first two derivatives of the Chebyshev polynomials of degree 0 … s at w.
+/// Values and first two derivatives at w of the Chebyshev polynomials of degree 0 … s.
 struct Chebyshev {
   std::vector<double> t, d, dd;
   Chebyshev(int s, double w) : t{1, w}, d{0, 1}, dd{0, 0} {
@@ -43,9 +43,9 @@ struct Chebyshev {
   }
 };
 
-/// The step from x with slope v at `start` to start + dt, by s - 1 velocity evaluations at start + c dt.
+/// Computes the step from x with slope v at `start` to start + dt, with s - 1 velocity evaluations at start + c dt.
 Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start, double dt, int s) {
-  const double w0 = 1 + 2. / 13 / (s * s);  // damping of two parts in thirteen
+  const double w0 = 1 + 2. / 13 / (s * s);  // damping parameter 2/13
   const Chebyshev c(s, w0);
   const double w1 = c.d[s] / c.dd[s];
   std::vector<double> b(s + 1);

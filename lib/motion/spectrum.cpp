@@ -65,7 +65,7 @@ Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordi
     Eigen::VectorXd by_y(shapes.size());
     for (Eigen::Index k = 0; k < by_y.size(); ++k)
       by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
-    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // of another parity
+    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // the modes have another parity
     by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
     kept_.col(n++) = by_y.normalized();
   }
@@ -96,8 +96,8 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Orthonormal coordinates of the fields that symmetry admits and that are seen: the rotations of a sphere, or of labels on the interface of a drop,
-/// are not.
+/// Returns an orthonormal basis, in shape coordinates, of the fields that the symmetry admits. Fields that do not change the shape are left out: the
+/// rotations of a sphere, or of labels on the interface of a drop.
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
@@ -112,7 +112,7 @@ Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std:
   return all.leftCols(rank);
 }
 
-/// The same of the translations (first = 0) or rotations (3) of x.
+/// Returns such a basis for the translations (first = 0) or rotations (first = 3) of x.
 Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
   const Net net = x.topRows(shapes.n_points());
   const Vec3 centre = net.colwise().mean().transpose();
@@ -121,7 +121,7 @@ Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Ne
   return orthonormal(shapes, fields);
 }
 
-/// What tells the modes that are no change of shape.
+/// Recognises the modes that do not change the shape.
 class Recognition {
  public:
   Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
@@ -129,7 +129,7 @@ class Recognition {
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// What it is where it is not that of the volume.
+  /// Returns the kind of a mode that is not that of the volume or a mass.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();
@@ -142,13 +142,14 @@ class Recognition {
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
-/// What a mode gains of what the motion keeps and this is the gradient of, over its size. All but those of rate 0 gain none: rate x b.d = 0.
+/// Returns the change of a conserved quantity with the gradient `kept` by a mode, relative to both norms. It is zero for all modes of nonzero rate,
+/// because rate x b.d = 0.
 double gain(const Net& kept, const Mode& mode) {
   const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
   return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
 }
 
-/// As a field on the surface, turned in the complex plane so that it is as real as can be, at its largest 1.
+/// Returns the eigenvector as a field on the surface, with the phase that makes it as real as possible, scaled to a maximum of 1.
 Mode mode(const coupling::ShapeCoordinates& shapes, const Recognition& recognition, std::complex<double> rate, Eigen::VectorXcd y) {
   const std::complex<double> square = (y.array() * y.array()).sum();
   if (std::abs(square) > 0) y /= std::sqrt(square / std::abs(square));
@@ -166,7 +167,7 @@ namespace {
 
 using Pairs = std::vector<coupling::Eigenpair>;
 
-/// All of J, which is made column by column.
+/// Computes all eigenpairs of J, which is assembled column by column.
 Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
             const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
@@ -177,7 +178,7 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
   return coupling::eigenpairs(Eigen::Map<const Eigen::MatrixXd>(first.data(), n, n));
 }
 
-/// Those with the largest (1 - rate/shift)^-1: (I - J/shift)^-1 by GMRES, with what an implicit step has for it as preconditioner.
+/// Computes the eigenpairs with the largest (1 - rate/shift)^-1: applies (I - J/shift)^-1 by GMRES, preconditioned as an implicit step.
 Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
               const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
@@ -231,7 +232,7 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
-    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;  // near a fold it is hardly told by its shape
+    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;  // near a fold its shape hardly distinguishes it
   }
   return modes;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The linearised motion about a shape: how fast small changes of shape grow or decay, and which.
+// The linearised motion about a shape: growth rates and modes of small changes of shape.
 
 #include <complex>
 #include <functional>
@@ -20,26 +20,26 @@ class Section;
 
 namespace tanktread::motion {
 
-/// `Spectrum/*` of the deck.
+/// Options of the linear stability analysis, `Spectrum/*` of the deck.
 struct SpectrumOptions {
-  bool present = false;            ///< whether the deck has this list
-  int number = 12;                 ///< of modes that are reported
-  std::optional<double> near;      ///< those whose rate is nearest to this one, 1/time; empty: those that grow fastest
+  bool present = false;            ///< whether the deck has this section
+  int number = 12;                 ///< number of modes to report
+  std::optional<double> near;      ///< report the modes with rates nearest to this one, 1/time; empty: the fastest-growing modes
   std::string method = "dense";    ///< dense, krylov
-  std::optional<double> shift;     ///< of krylov, 1/time
-  int block = 3;                   ///< of krylov
-  std::optional<Vec3> parity;      ///< of the modes under mirror planes across x1, x2, x3; empty: that of the shape
-  double difference = 1e-5;        ///< size of the displacements whose velocities the Jacobian is made of, over R_C
+  std::optional<double> shift;     ///< shift for krylov, 1/time
+  int block = 3;                   ///< block size for krylov
+  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: that of the shape
+  double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by R_C
 
   void declare(deck::Section& section);
 };
 
-/// What a mode is beside a change of shape.
+/// Kind of a mode: a change of shape, or a neutral mode of another kind.
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
-/// A displacement, or a change of a state with fields, that grows like Re(mode e^{rate t}), its largest displacement 1; where nothing moves, its
-/// largest number.
+/// Mode of a displacement, or of the change of a state with fields, Re(mode e^{rate t}). It is scaled to a largest displacement of 1; if nothing
+/// moves, to a largest component of 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
@@ -48,22 +48,23 @@ struct Mode {
   void add_columns(const std::string& number, Columns& to) const;
 };
 
-/// Adds the columns of a spectrum, and of its modes from 1. `all_rigid`: no particle deforms, and rotations are what changes.
+/// Adds the columns of a spectrum; modes are numbered from 1. `all_rigid`: no particle deforms, so the modes are rotations.
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 
-/// J y for the coordinates y of a displacement of x, by a central difference of velocities:
+/// Computes J y, with y the coordinates of a displacement d of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
 ///
-/// v without the relabellings (Dynamics::relabellings) that it consists of at a shape at rest: modes are changes of shape as seen from outside.
-/// Before and after, what a displacement gains of what the motion keeps, the volume and the masses of surfactants, is taken away. At a fold two modes
-/// of rate 0 would else have one shape, and errors of J would move their rates by their square roots.
+/// The relabellings (Dynamics::relabellings) that make up the velocity of a steady shape are subtracted from v, because modes are changes of the
+/// shape as seen from outside. Displacements and results are projected so that they do not change the conserved quantities, the volume and the masses
+/// of surfactants. Otherwise two modes of rate 0 would have the same shape at a fold, and errors of J would change their rates by the square root of
+/// the errors.
 class Linearised {
  public:
-  /// About x, where `kept` are the gradients of what the motion keeps; the motion outlives it, as all else here. Collective.
+  /// Linearises about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
   Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept, double difference);
 
-  /// J y. Throws RunFailure where a velocity cannot be had. Collective.
+  /// Returns J y. Throws RunFailure if a velocity cannot be evaluated. Collective.
   Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
 
  private:
@@ -73,18 +74,18 @@ class Linearised {
   coupling::Dynamics& dynamics_;
   const coupling::ShapeCoordinates& shapes_;
   const Net& x_;
-  double difference_;            // a length
-  Eigen::VectorXd relabelling_;  // parts of v(x)
-  Eigen::MatrixXd kept_;         // orthonormal gradients by y, a column each
+  double difference_;            // length of the largest displacement
+  Eigen::VectorXd relabelling_;  // components of v(x) along the relabellings
+  Eigen::MatrixXd kept_;         // orthonormal gradients with respect to y, one per column
 };
 
-/// Eigenpairs in coordinates of shapes as fields on the surface, what is no change of shape recognised. `kept`: the gradients of what the motion
-/// keeps, first of the volume, which tell the modes that have the rate 0 only for that. Collective.
+/// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved
+/// quantities, first that of the volume. They identify the modes that have rate 0 only because of conservation. Collective.
 std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 
-/// The leading modes of the motion about x, as `options` ask, whose shift is given. `solver`: of the shift-inverted systems. Collective. Throws
-/// RunFailure where a velocity or the eigenvalues cannot be had.
+/// Returns the leading modes of the motion about x that `options` ask for; `options.shift` must be set for krylov. `solver`: options for the
+/// shift-and-invert systems. Collective. Throws RunFailure if a velocity or the eigenvalues cannot be computed.
 std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver);
 

@@ -24,7 +24,7 @@ void SteadyOptions::declare(deck::Section& section) {
 
 namespace {
 
-/// Joins to orthonormal fields the part of another that they lack, where that is more than this share of it.
+/// Adds to orthonormal fields the component of a field that is orthogonal to them, if it is more than the fraction `least` of the field.
 void join(std::vector<Net>& all, Net field, double least) {
   const double size = field.norm();
   for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
@@ -37,7 +37,7 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  constexpr double rounding = 1e-6, between_meshes = 0.05;  // a mesh that turns with an axisymmetric drop is the same but for the mesh's error
+  constexpr double rounding = 1e-6, between_meshes = 0.05;  // mesh error of an axisymmetric drop on a rotated mesh
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
   for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
@@ -67,7 +67,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Takes shorter implicit steps until one of full length moves x by little.
+/// Takes shorter implicit steps until a step of full length changes x by little.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
@@ -108,7 +108,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const coupling::FixedPoint::Norm left = [&](const Net&) {  // a first correction is no estimate, unless it is 0
+  const coupling::FixedPoint::Norm left = [&](const Net&) {  // a first correction is not an error estimate, unless it is 0
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);

@@ -12,21 +12,21 @@ namespace tanktread::motion {
 namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
-constexpr double worth_an_order = 0.7;  // a higher order is taken if it reduces the error of the prediction by this factor
-constexpr double accuracy = 4;  // error of the second-order result divided by that of the extrapolated one, at the least
+constexpr double worth_an_order = 0.7;  // a higher order is chosen if it reduces the error of the prediction by this factor
+constexpr double accuracy = 4;  // lower bound of the error of the second-order result divided by that of the extrapolated one
 
-/// Orders of the extrapolations of slopes that would have predicted the second and the third stage of a step best.
+/// Orders of extrapolation of the slopes that would have given the best predictions of the second and the third stage of a step.
 struct Orders {
   double second = 1, third = 1;
 };
 
-/// Content of State::memory. Memory comes first, where Bdf3 reads it.
+/// Content of State::memory. `step` comes first, because Bdf3 reads it.
 struct Remembered {
   Memory step;
   Orders orders;
 };
 
-/// Extrapolates slopes at earlier times, from the start of the step, by polynomials through the latest of them.
+/// Extrapolates slopes from earlier times, relative to the start of the step, by polynomials through the latest slopes.
 class Prediction {
  public:
   Prediction(const State& state, const Memory& memory, std::size_t most) : times_{0, (2 * d - 1) * memory.step, -memory.step}, most_(most) {
@@ -40,7 +40,7 @@ class Prediction {
     return interpolated(times_, std::span(slopes_).first(n), time);
   }
 
-  /// Returns the order that would have predicted this slope best.
+  /// Returns the order that would have given the best prediction of this slope.
   double best_order(const coupling::Dynamics& dynamics, double time, const Net& slope) const {
     double least = std::numeric_limits<double>::infinity(), best = 0;
     for (std::size_t order = 0; order < slopes_.size(); ++order)

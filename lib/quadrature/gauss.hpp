@@ -13,11 +13,11 @@ struct GaussRule {
   int size() const { return static_cast<int>(nodes.size()); }
 };
 
-/// The n-point rule, n >= 1, by Newton's method on the Legendre polynomial; good to a few units of round-off.
-/// Made once and kept: the reference stays valid for the whole run.
+/// Returns the n-point rule, n >= 1, from the roots of the Legendre polynomial by Newton's method. The error is a few units of round-off.
+/// Each rule is computed once and stored; the reference stays valid for the whole run.
 const GaussRule& gauss(int n);
 
-/// The number of points that integrates polynomials of this degree exactly.
+/// Returns the number of points that integrates polynomials of this degree exactly.
 constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
 
 /// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i.
@@ -27,10 +27,10 @@ struct TensorRule {
 };
 TensorRule tensor(const GaussRule& in_s, const GaussRule& in_t);
 
-/// The n x n Gauss rule. Made once and kept.
+/// Returns the n x n Gauss rule. Each rule is computed once and stored.
 const TensorRule& tensor_gauss(int n);
 
-/// Points (s, t) of the unit square and their weights, in no particular arrangement.
+/// Points (s, t) of the unit square and their weights, in any order.
 struct Rule {
   std::vector<double> s, t, weights;
 

@@ -36,7 +36,7 @@ struct Bezier {
     return value;
   }
 
-  /// The part's flat picture, and how far its corners are from it.
+  /// Returns the planar approximation of a part, and the largest distance of the corners of the part from those of the approximation.
   std::pair<Patch, double> patch(const Part& p) const {
     const auto [x, xs, xt] = at(p.s + p.width / 2, p.t + p.height / 2);
     const Patch flat{x, xs * p.width / 2, xt * p.height / 2};
@@ -57,14 +57,14 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
       rule.add(p.s + p.width * gs.nodes[i], p.t + p.height * gt.nodes[j], p.width * p.height * gs.weights[i] * gt.weights[j]);
 }
 
-/// Parts below this share of the element's side are not cut again: the target is as good as on the element.
+/// Smallest side of a part divided by the side of the element. Smaller parts are not bisected, because the target is practically on the element.
 constexpr double smallest = 1e-8;
 
-/// A part whose squares of the sides differ by less than this factor is cut both ways: of one that is square, as symmetric shapes have them, rounding
-/// would choose the side, and with it what the rule errs by.
+/// A part is bisected in both directions if its squared side lengths differ by less than this factor. Otherwise, in a square part of a symmetric
+/// shape, rounding would choose the direction and so change the error of the rule.
 constexpr double square = 1.01;
 
-/// Far more than a target on the element takes (some hundreds): the shape is beyond repair.
+/// Largest number of parts. A target on the element needs some hundreds, so an element that needs more is not usable.
 constexpr int most_parts = 100'000;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Rules for a target that lies on the element: the 1/r of a weakly singular integrand is taken up by the coordinates.
+// Singular quadrature, for a target that lies on the element. Polar coordinates cancel the 1/r of a weakly singular integrand.
 
 #include <array>
 
@@ -8,42 +8,44 @@
 
 namespace tanktread::quadrature {
 
-/// The metric at the target up to a factor, in bins, so that one rule serves many elements; what a bin is off by costs a point or two and
-/// no accuracy: |x_,t|^2 / |x_,s|^2 is about 2^doublings, and the tangents meet at about `steps` times 15 degrees, 1 to 11.
+/// Metric at the target up to a factor, rounded to bins, so that one rule serves many elements. The rounding costs one or two points and no accuracy.
+/// |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to 11.
 struct Shear {
   int doublings = 0, steps = 6;
 
-  double ratio() const;  ///< |x_,t| / |x_,s|
-  double angle() const;
+  double ratio() const;  ///< returns |x_,t| / |x_,s|
+  double angle() const;  ///< returns the angle between the tangents in radians
   auto operator<=>(const Shear&) const = default;
 };
 
-/// The bin of g_ab = x_,a . x_,b; the unit metric where that is not one.
+/// Returns the bin of the metric g_ab = x_,a . x_,b, or of the unit metric if g is degenerate or not finite.
 Shear shear(double g_ss, double g_st, double g_tt);
 
-/// Gauss points of a polar rule: outwards, and around over each side of the square (t = 0, s = 1, t = 1, s = 0; 0 where the target is
-/// on it).
+/// Numbers of Gauss points of a polar rule: in the radial direction, and in the angular direction over each side of the square (t = 0, s = 1, t = 1,
+/// s = 0). The number is 0 for a side that contains the target.
 struct PolarOrders {
   int radial = 0;
   std::array<int, 4> angular{};
   auto operator<=>(const PolarOrders&) const = default;
 };
 
-/// Orders for a target at (s, t) of an element that is nearly affine. In the angular coordinate mu of polar() the integrand has poles at
-/// +- i pi / 2, the directions in which r^2 = 0. Measured on deformed surfaces (tests/verify/layers.cpp), the angular order must be the
-/// one for tolerance^1.25 exp(-range of mu / 2).
+/// Returns the orders for a target at (s, t) of an element that is nearly affine. In the angular coordinate mu of polar() the integrand has poles at
+/// +- i pi / 2, the directions in which r^2 = 0. Measurements on deformed surfaces (tests/verify/layers.cpp) show that the angular order must be the
+/// order for the error tolerance^1.25 exp(-range of mu / 2).
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
-/// Raised where an element is so distorted that the corners it really has, seen from the target, bring poles nearer than those of its
-/// tangents. Corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: the real ones, and where the tangents put them.
+/// Returns orders that are larger if the element is so distorted that its actual corners cause poles closer than those of the affine element.
+/// Both arrays hold the corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: `corner` the actual positions, `affine` the positions
+/// predicted by the tangents at the target.
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
                          const std::array<Vec3, 4>& affine);
 
-/// Polar rule about (s, t) in the closed unit square: up to four triangles with their apex there, in the plane of the metric; Gauss points
-/// outwards and in mu, where h sinh(mu) is the way along the far side and h its distance.
+/// Returns the polar rule about (s, t) in the closed unit square. It consists of up to four triangles with apex (s, t) in the plane of the metric,
+/// with Gauss points in the radial coordinate and in mu. h is the distance of the side opposite the apex, and h sinh(mu) is the arc length along this
+/// side, measured from the foot of the perpendicular.
 Rule polar(double s, double t, Shear shear, const PolarOrders& orders);
 
-/// The paper's rule: the same triangles in the parameter plane, n x n Gauss points each under Lachat and Watson's map.
+/// Returns the rule of the paper: the same triangles in the parameter plane, each with n x n Gauss points under the map of Lachat and Watson.
 Rule lachat_watson(double s, double t, int n);
 
 }  // namespace tanktread::quadrature

@@ -30,7 +30,7 @@ std::vector<double> line(double low, double high) {
   return out;
 }
 
-/// One call for all the points inside.
+/// Returns v_1 at all grid points, by one call for all points inside; NaN outside.
 std::vector<double> velocities(const stokes::DuctFlow& flow, const std::vector<double>& x2, const std::vector<double>& x3) {
   std::vector<double> out(x2.size() * x3.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<std::size_t> inside;
@@ -66,14 +66,15 @@ namespace {
 
 constexpr int places_along = 301, sections = 10;
 
-/// Places, a row each.
+/// Returns the components of points, one row per point.
 std::vector<double> flat(const std::vector<Vec3>& rows) {
   std::vector<double> out;
   for (const Vec3& row : rows) out.insert(out.end(), row.data(), row.data() + 3);
   return out;
 }
 
-/// Along the wall where the outline begins: the way, the tangential traction's size, and the pressure.
+/// Data along the line of the wall where the outline begins: the coordinate along the centre line, the magnitude of the tangential traction, and the
+/// pressure.
 struct WallLine {
   std::vector<double> s, shear, pressure;
 };

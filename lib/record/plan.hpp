@@ -1,5 +1,5 @@
 #pragma once
-// The plan: what a run has chosen, a line each.
+// Plan of a run: the methods and sizes that it has chosen, one line each, and the numbers of its scene.
 
 #include <span>
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace tanktread {
 
-/// A number that a scene has, or not: not a number.
+/// Derived or dimensionless number of a scene; NaN if it has no meaning for the scene.
 struct Number {
   const char *name, *unit, *description;
   double (*value)(const Scene& scene, const Body& body);
 };
 std::span<const Number> all_numbers();
 
-/// Those that this scene has.
+/// Returns the numbers that have a meaning for this scene.
 output::Entries<double> numbers(const Scene& scene, const Body& body);
 
-/// The same in one line of the plan.
+/// Returns these numbers as the text of one line of the plan.
 std::string numbers_text(const output::Entries<double>& numbers);
 
-/// Unknowns, kernels, memory, scheme, and what the scene made superfluous. `body`: all that the scene has, on this many ranks.
+/// Returns the plan: unknowns, kernels, memory, scheme, and the parts that the scene makes superfluous. `body`: stacked body of all particles.
+/// `ranks`: their number.
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);
 
-/// The same before a run. Throws UserError where the particles do not fit in where they start.
+/// Returns the plan of a scene before a run. Throws UserError if the particles overlap, or do not fit into the scene, in their initial positions.
 output::Entries<std::string> plan(const Scene& scene, int ranks);
 
-/// A plan as it is printed.
+/// Returns the plan as it is printed.
 std::string plan_text(const output::Entries<std::string>& plan);
 
 }  // namespace tanktread

@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::chrono::seconds second(1);
 
-/// The most bytes that processes have had: of the rank with most, of all. Collective.
+/// Returns the peak memory in bytes: the largest of a rank, and the sum of all ranks. Collective.
 output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -41,7 +41,7 @@ output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
   return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
 }
 
-/// Ranks act; if one fails, every rank throws: UserError for a mistake of the user's, RunFailure for anything else. Collective.
+/// Runs `action` on the ranks with `acts`. If one fails, every rank throws: UserError for a mistake of the user, otherwise RunFailure. Collective.
 template <class Act>
 void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
   std::string error;
@@ -60,7 +60,7 @@ void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
   throw RunFailure(error);
 }
 
-/// Of a run, unlike any other's: sixteen hexadecimal digits.
+/// Returns a new, practically unique identifier of a run: sixteen hexadecimal digits.
 std::string identifier() {
   std::random_device random;
   output::Checksum sum;
@@ -125,7 +125,7 @@ void check_vacant(const RunRequest& request) {
   });
 }
 
-/// The first rank does.
+/// Runs `action` on the first rank; all ranks throw if it fails.
 template <class Write>
 void Results::write(const Write& action) {
   together(ranks_, writes_, action);
@@ -152,7 +152,7 @@ Results::Results(const Scene& scene, const RunRequest& request, const Body& body
   remesh(body, map);
 }
 
-/// The files of a new run.
+/// Creates the files of a new run.
 void Results::begin() {
   if (!request_.overwrite) output::check_vacant(directory_);
   output::start_directory(directory_);
@@ -200,7 +200,7 @@ std::optional<Resumed> Results::resumed() {
   return resumed;
 }
 
-/// The record up to a checkpoint. Throws UserError where it is not the one that the checkpoint was saved with.
+/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if they are not those with which the checkpoint was saved.
 void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
   if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
   run_ = checkpoint.texts.at("run");
@@ -216,7 +216,7 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
   declare_series();
 }
 
-/// Files that a run would have gone on from, had they been whole: they stay, under other names.
+/// Renames damaged snapshots that are newer than the chosen checkpoint, and warns about them.
 void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen) {
   for (const auto& [path, reason] : damaged)
     warn(path.filename().string() + " is damaged (" + reason + ") and now is called " + output::set_aside(path).filename().string() +
@@ -239,7 +239,7 @@ void Results::write_record() {
   due_ = Clock::now() + std::max<Clock::duration>(second, 50 * (Clock::now() - begun));
 }
 
-/// What a shorter run has written is sooner written again than waited for.
+/// Returns whether files are flushed to the disk. During the first second of a run they are not, because writing them again is faster than waiting.
 output::Durable Results::durable() const { return Clock::now() - start_ < second ? output::Durable::no : output::Durable::yes; }
 
 void Results::warn(const std::string& sentence) {
@@ -294,7 +294,7 @@ int Results::close(const Account& account, const Phases& phases) {
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
-/// Writes the summary; warns of what was missed and does not bind; returns what was missed and does, in one line.
+/// Writes the summary and warns about missed expectations that do not fail the run. Returns the missed expectations that do, in one line.
 std::string Results::finish(const Account& account, const Phases& phases) {
   output::Summary summary;
   summary.status = account.status;

@@ -1,5 +1,5 @@
 #pragma once
-// Everything that a run writes, and how a run finds its way back from it.
+// Results of a run: all files that it writes, and their use when it is resumed.
 
 #include <chrono>
 #include <filesystem>
@@ -21,72 +21,73 @@
 
 namespace tanktread {
 
-/// What the command line says beside the deck.
+/// Options of the command line, and the deck.
 struct RunRequest {
   std::string output;           ///< directory of the results
-  bool resume = false;          ///< go on from the newest checkpoint there
-  bool overwrite = false;       ///< delete the results of an earlier run there
-  bool another_scheme = false;  ///< than the checkpoint's, of whose memory only shape, slope and step mean something to it
+  bool resume = false;          ///< resume from the newest checkpoint there
+  bool overwrite = false;       ///< delete the results of an earlier run there first
+  bool another_scheme = false;  ///< true if the time scheme differs from the checkpoint's; only shape, slope and step of its state are then kept
   bool quiet = false;           ///< no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
-  std::map<std::string, std::string> provenance;  ///< of the program: version, git_commit, compiler
+  std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// What a run keeps in its directory of the files that its deck names, for it goes on without them.
+/// Names under which a run keeps copies, in its directory, of the files that its deck names. It can be resumed without the originals.
 constexpr const char* kept_flow_history = "flow_history.csv";
-std::string kept_surface(const ParticleKind& kind);  ///< of a particle's file
-std::string kept_stress_free(const ParticleKind& kind);  ///< of its membrane's stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< of its copies
-std::string kept_name(const std::string& file);      ///< of an outline or of the points of a channel: without its folder
+std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
+std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of its membrane's stress-free shape
+std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file of its copies
+/// Returns the name for the file of an outline or of a channel's points: the original's without its folder
+std::string kept_name(const std::string& file);
 
-/// What a run says of itself when it ends.
+/// Data of a finished run for its summary and its messages.
 struct Account {
   output::Entries<std::string> plan;
   output::Entries<long> counts;
-  std::string status = "done";  ///< or `steady`, `stopped: ...`, `failed: ...`, as summary.yaml has it
-  std::string remark;           ///< why it ended before its time, if it did; shares the one line on standard error with the expectations missed
-  bool whole = true;            ///< it came to its end, so that expectations bind
-  output::Entries<double> earlier;  ///< seconds of earlier parts of a resumed run
-  output::Entries<Vec3> vectors;    ///< for `final`, made of the last row
-  output::Entries<std::string> modes;  ///< of a spectrum
+  std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
+  std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
+  bool whole = true;            ///< true if the run reached its end, so that missed expectations fail it
+  output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
+  output::Entries<Vec3> vectors;    ///< vectors from the last row, for `final`
+  output::Entries<std::string> modes;  ///< modes of a spectrum
 };
 
-/// Seconds by phase, those of earlier parts of the run included.
+/// Returns the seconds by phase, including earlier parts of the run.
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
-/// The newest sound checkpoint of a directory: the first rank finds it, and every rank reads the one that it names. Throws UserError when there is
-/// none, RunFailure when one cannot be read. Collective.
+/// Returns the newest undamaged checkpoint of a directory. The first rank finds it, and every other rank reads the same file. Throws UserError if
+/// there is none, RunFailure if one cannot be read. Collective.
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks);
 
-/// The effective deck that the newest checkpoint of a directory holds. Throws as newest_checkpoint does. Collective.
+/// Returns the effective deck from the newest checkpoint of a directory. Throws like newest_checkpoint. Collective.
 std::string stored_deck(const std::string& directory);
 
-/// Throws UserError where the directory holds results that the request does not allow to delete, or another run writes to it. Collective.
+/// Throws UserError if the directory holds results that the request does not allow to delete, or if another run writes to it. Collective.
 void check_vacant(const RunRequest& request);
 
-/// The files of a run (README.md, Results). The first rank evaluates pictures and writes all files; every call is made
-/// by all ranks, and all of them throw: RunFailure when the disk refuses, UserError where a run cannot begin in its directory.
+/// Files of a run (README.md, Results). The first rank samples snapshots and writes all files. Every call is collective, and all ranks throw
+/// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
-/// From the first second of a run on, a snapshot and the record up to it are on the disk itself before `run.hdf.series` names the snapshot, and all
-/// that a run has written is when it ends. In the first second the file is not written.
+/// When a run has lasted a second, every snapshot and `run.h5` up to it are flushed to the disk before `run.hdf.series` names the snapshot. At the
+/// end of such a run, all its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
-  /// The newest checkpoint of the directory when the run is resumed; the record is cut back to it. Throws UserError when there is none.
+  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is none.
   std::optional<Resumed> resumed();
 
-  /// The body that is drawn from now on, and its extraction.
+  /// Sets the body of the next snapshots, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// One finished step: a row of the record, which is written at every snapshot and otherwise once a second, or, where that takes long, after fifty
-  /// times as much. Sets the row to the first rank's numbers on every rank: what is decided by it is decided alike.
+  /// Adds the row of a finished step to `run.h5`. The file is written at every snapshot and otherwise once a second, or less often: at intervals of
+  /// at least fifty times the duration of writing. Sets the row on every rank to the first rank's values, so that all ranks decide alike.
   void record(Columns& row);
 
-  /// A sentence about what the run has come near to, on standard error and in the summary.
+  /// Prints a warning on standard error and adds it to the summary.
   void warn(const std::string& sentence);
 
-  /// Fields of a picture at the nodes of the present mesh, on the first rank. They can be written after the mesh has changed.
+  /// Fields of a snapshot at the nodes of the current mesh, on the first rank. They can still be written after the mesh has changed.
   struct Sampled {
     double time = 0;
     output::LagrangeMesh mesh;
@@ -94,17 +95,18 @@ class Results {
   };
   Sampled sample(const SurfacePicture& picture, double time);
 
-  /// Checkpoint of the present step and a picture, of the same moment or of one within the step. `checkpoint` holds what else the run goes on from.
+  /// Saves a checkpoint of the current step and a snapshot of the same time or of a time within the step. `checkpoint` holds the other data that a
+  /// resumed run needs.
   void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
 
-  /// The surface as Bezier-extraction text, `surface.iga`.
+  /// Writes the surface as Bezier-extraction text, `surface.iga`.
   void write_surface(const Net& surface);
 
-  /// Holds the record against `Expect`, writes the summary and the closing table. Returns the exit code: 0 every expectation was met, or the run did
-  /// not come to its end; 1 one was missed.
+  /// Compares the series with `Expect`, writes the summary, and prints the closing table. Returns the exit code: 1 if an expectation was missed and
+  /// the run reached its end, otherwise 0.
   int close(const Account& account, const Phases& phases);
 
-  /// Step of the last checkpoint; -1 before the first.
+  /// Returns the step of the last checkpoint, -1 before the first one.
   int last_saved() const { return last_saved_; }
   const std::filesystem::path& directory() const { return directory_; }
 
@@ -126,23 +128,23 @@ class Results {
   const RunRequest& request_;
   const Body* body_;
   const coupling::Ranks& ranks_;
-  const Columns columns_;  // of every row
+  const Columns columns_;  // columns of every row
   bool writes_;
-  std::string run_;  // its identifier
+  std::string run_;  // identifier of the run
   std::filesystem::path directory_;
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
-  std::optional<output::Nodes> nodes_;  // of the pictures
+  std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::string> warnings_;
-  output::Entries<long> memory_;  // of the summary
+  output::Entries<long> memory_;  // peak memory, for the summary
   int last_saved_ = -1;
   using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now(), due_ = start_;  // the latter: when the record is to be written
+  Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next
 };
 
-/// What of `Expect` is missed whatever the run finds: a sentence for each time that it does not reach. Throws UserError where a series is expected
-/// that the scene does not record.
+/// Returns a sentence for each expectation that the run cannot meet because it does not reach its time. Throws UserError if an expected series is not
+/// recorded in this scene.
 std::vector<std::string> check_expectations(const Scene& scene);
 
 }  // namespace tanktread

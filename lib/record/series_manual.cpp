@@ -13,7 +13,7 @@ namespace tanktread {
 
 namespace {
 
-/// A field of the snapshots, or an entry of the summary.
+/// Field of the snapshots, or entry of the summary.
 struct Entry {
   const char *name, *unit, *of, *description;
 };
@@ -57,7 +57,7 @@ constexpr Entry entries[] = {
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
-/// Runs or particles that have the same columns. `extends`: the kind before has the others of these columns too.
+/// Kind of runs or particles with the same columns. `extends`: only columns that the previous kind does not have are listed for this one.
 struct Kind {
   const char* name;
   Columns columns;

@@ -40,7 +40,7 @@ std::string FlowPlane::description() const {
 FlowPlane plane_normal_to(Vec3 normal) {
   normal.normalize();
   for (double& component : normal)
-    if (std::abs(component) < 1e-12) component = 0;  // so that planes through two axes of space are exact
+    if (std::abs(component) < 1e-12) component = 0;  // makes planes through two coordinate axes exact
   const Vec3 first = std::abs(normal[0]) < 1 - 1e-9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 a = (first - normal * normal.dot(first)).normalized();
   Vec3 b = a.cross(normal).normalized();
@@ -49,14 +49,15 @@ FlowPlane plane_normal_to(Vec3 normal) {
   if (b[largest] < 0) b = -b;
   FlowPlane plane;
   plane.axes << a.transpose(), b.cross(a).transpose(), b.transpose();
-  plane.axes.array() += 0.0;  // no negative zeros
+  plane.axes.array() += 0.0;  // removes negative zeros
   return plane;
 }
 
 FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   if (flow.type != "linear" || flow.gradient->isZero(0)) return {};
   const Mat3& l = *flow.gradient;
-  const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());  // along n: |L n|^2 + |L^T n|^2
+  // for a unit vector n the quadratic form is |L n|^2 + |L^T n|^2
+  const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());
   const Vec3 values = varies.eigenvalues();
   if (values[0] < 1e-12 * values[2]) return plane_normal_to(varies.eigenvectors().col(0));
   const Vec3 vorticity(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));

@@ -1,5 +1,5 @@
 #pragma once
-// A scene made into spaces, nets and a coupled system.
+// Body: the spline space, control nets and material data of a particle, built from its scene.
 
 #include <memory>
 #include <string>
@@ -19,67 +19,72 @@
 
 namespace tanktread {
 
-/// A plane through the centroid. Rows of `axes`: its first direction a, its normal b x a, its second direction b: the plane x1 x3 has those of space.
+/// Plane through the centroid in which D and tank-treading are measured. The rows of `axes` are the first in-plane direction a, the normal b x a and
+/// the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  bool holds_flow = true;  ///< a flow that is not planar is in no plane: D is then taken in that of the longest and the shortest axis of inertia
+  bool holds_flow = true;  ///< false if the flow is not planar; D is then measured in the plane of the longest and the shortest axis of inertia
 
-  bool fixed() const { return axes.isIdentity(0); }                     ///< x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< components along a, b x a, b
+  bool fixed() const { return axes.isIdentity(0); }                     ///< returns true for the plane x1 x3
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components along a, b x a, b
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };
 
-/// The plane with this normal: a is the first axis of space that is not along the normal, projected; the largest component of b is positive.
+/// Returns the plane with this normal. a is the projection onto the plane of x1, or of x2 if the normal is along x1. The largest component of b is
+/// positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
-/// x1 x3 of every flow but `linear`; of that, the plane in which it moves and changes. Where there is none, the plane normal to its vorticity, in
-/// which points of the surface go round.
+/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane that contains the velocity and its variation. If
+/// there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
 FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
 
-/// What the deck describes, before anything moves.
+/// Particle as the deck describes it, before it moves.
 struct Body {
-  spline::TMesh mesh;  ///< empty for one from a file
+  spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
-  std::shared_ptr<const spline::Space> plain;  ///< with the same control points and poles as they are, for poles by the Bezier transform
+  /// Space with the same control points but degenerate poles; null unless `space` has poles by the Bezier transform and the mesh may adapt
+  std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
-  Net initial;     ///< of the shape that the run starts with
-  Net unstressed;  ///< smaller by the pre-inflation
+  Net initial;     ///< control net of the shape at the start of the run
+  Net unstressed;  ///< control net of the unstressed shape, which is smaller by the pre-inflation
   stokes::AmbientFlow flow;
-  FlowPlane plane;     ///< that D and tank-treading are measured in
+  FlowPlane plane;     ///< plane in which D and tank-treading are measured
   membrane::Law law;
   double radius = 1;   ///< R_C
-  double volume = 0;   ///< V0, of the resting shape, or the initial one, on the first mesh, whatever mesh the run goes on with
-  double initial_area = 0;  ///< int c dG of a surfactant at the start of the run, on the first mesh; 0 until it is known
-  double refit_error = 0;  ///< sum of what changes of the mesh have moved the present and the unstressed surface by, over R_C
-  double modulus = 1;  ///< G_s, or sigma of an interface
-  surface::Symmetry symmetry;                       ///< of all this, and of the shapes that it takes
-  std::shared_ptr<const stokes::DuctFlow> duct;     ///< of the tube, if there is one
+  /// Reference volume V0: that of the resting shape, or of the initial one if it keeps its own volume, on the first mesh (also after mesh changes)
+  double volume = 0;
+  double initial_area = 0;  ///< initial int c dG of the surfactant on the first mesh; 0 until it is computed
+  double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
+  double modulus = 1;  ///< G_s, or the surface tension sigma of an interface
+  surface::Symmetry symmetry;                       ///< common symmetry of the scene, the particle and its shapes in time
+  std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// The space whose refinements contain it: fields go over from mesh to mesh in it.
+  /// Returns the space that is nested under refinement. Fields are transferred between meshes in it.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Of a scene of one particle. `alike`: an equal particle elsewhere, or none, whose mesh and resting shape are taken.
+/// Builds the body of a scene with one particle. If `alike` is given, its mesh and resting shape are copied and moved to this particle's position.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Whether a particle's mesh and resting shape can be had from one of the other scene.
+/// Returns true if the mesh and the resting shape of one scene's particle can be copied from the other's.
 bool alike(const Scene& one, const Scene& other);
 
-/// Gives the body a mesh, and the spline space that the deck wants on it.
+/// Gives the body a mesh and the spline space that the deck asks for on it.
 void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 
-/// The symmetry of the scene, as far as the deck wants it to be used, and of the shape x that the particle has by now.
+/// Returns the symmetry shared by the scene and the current shape x, as far as the deck allows its use.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// Makes the loads of a particle, in addition to elasticity and bending, on its present mesh; of a rigid one only the repulsion. `wall`: of its tube,
-/// or null.
+/// Makes the loads of a particle on its current mesh, in addition to elasticity and bending. A rigid particle only has the repulsion from the wall.
+/// `wall`: of its tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
-/// What the load is measured on: that of a drop, which has no unstressed state, and the strong one are always per current area.
+/// Returns whether the load is a density per reference or per current area. For a drop, which has no unstressed state, and for the strong form it is
+/// always per current area.
 stokes::Measure load_measure(const Scene& scene);
 
 }  // namespace tanktread

@@ -24,7 +24,7 @@ double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) 
 namespace {
 
 constexpr int most_sweeps = 20000, thermal_sweeps = 200;
-constexpr double clear = 1.01;  // of the least distance: so far apart those that overlap are pushed
+constexpr double clear = 1.01;  // distance, divided by the least distance, to which overlapping pairs are pushed apart
 
 class Packing {
  public:
@@ -62,10 +62,10 @@ class Packing {
  private:
   struct Neighbour {
     std::size_t number;
-    Vec3 image;  // to be added to its centre
+    Vec3 image;  // vector that is added to the neighbour's centre
   };
 
-  /// Those that may come to overlap until one has moved by the skin; found again only then.
+  /// Finds, for each sphere, the spheres that may overlap it before one has moved by the skin. Does so again only after a move of half the skin.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());
@@ -87,7 +87,7 @@ class Packing {
 
   Vec3 apart(std::size_t i, const Neighbour& other) const { return spheres_[other.number].centre + other.image - spheres_[i].centre; }
 
-  /// Whether they do not overlap; if they do, moves them apart, in a random direction where they are at one place.
+  /// Returns true if the two spheres do not overlap. Otherwise moves them apart, in a random direction if their centres coincide.
   bool push(std::size_t i, const Neighbour& other) {
     PackedSphere &a = spheres_[i], &b = spheres_[other.number];
     const Vec3 between = apart(i, other);
@@ -100,7 +100,7 @@ class Packing {
     return false;
   }
 
-  /// Whether a random step of sphere i was taken.
+  /// Makes a random step of sphere i. Returns false if it was undone because of an overlap or a move by more than the skin.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;
@@ -141,7 +141,7 @@ bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, 
 
 namespace {
 
-/// A copy's centre and orientation, a rotation vector in degrees.
+/// Centre and orientation of a copy; the orientation is a rotation vector in degrees.
 struct Copy {
   Vec3 centre, orientation = Vec3::Zero();
 };
@@ -167,7 +167,7 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   return copies;
 }
 
-/// About the origin.
+/// Returns the copies on a lattice about the origin.
 std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   std::vector<Copy> copies;
   for (int i = 0; i < counts[0]; ++i)
@@ -176,7 +176,7 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Places that are drawn one after the other, of which those too close to an earlier one are thrown away.
+/// Draws random positions one by one and discards those too close to an earlier one.
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
@@ -205,7 +205,7 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   return std::max(1, static_cast<int>(std::lround(*how.volume_fraction * room / of_one)));
 }
 
-/// Anywhere in the cell, one over the other: `pack` is to follow.
+/// Draws random positions in the cell that may overlap. `pack` separates them afterwards.
 std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
                           std::vector<PackedSphere>& taken) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
@@ -272,7 +272,7 @@ void CopiesOptions::check(const std::string& list, bool cell) const {
 
 namespace {
 
-/// Of all kinds; those in the cell packed together.
+/// Returns the copies of all kinds. Copies at random in the cell are packed together.
 std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<std::vector<Copy>> all;
   std::vector<PackedSphere> taken;

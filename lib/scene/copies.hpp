@@ -1,5 +1,5 @@
 #pragma once
-// One particle of the deck placed many times.
+// Copies of a particle: `Particles/<name>/copies`, and random packings of spheres.
 
 #include <algorithm>
 #include <cstdint>
@@ -15,51 +15,55 @@
 
 namespace tanktread {
 
-/// A sphere, by how much of its radius another one keeps away from it, and whether it stays where it is.
+/// Sphere of a packing: its size, the gap that it keeps to others divided by its radius, and whether it may move.
 struct PackedSphere {
   Vec3 centre;
   double radius = 1, least_gap = 0;
   bool fixed = false;
 };
 
-/// Numbers between 0 and 1, the same with every standard library.
+/// Returns a uniform random number in [0, 1). The sequence is the same with every standard library.
 double uniform(std::mt19937_64& random);
 
-/// The distance that the centres of two spheres keep: their radii, and `gap` times the larger one; by default the larger of their own gaps.
+/// Returns the least distance of the centres of two spheres: the sum of their radii plus `gap` times the larger radius. By default, `gap` is the
+/// larger of their own gaps.
 double least_distance(const PackedSphere& a, const PackedSphere& b, double gap);
 inline double least_distance(const PackedSphere& a, const PackedSphere& b) { return least_distance(a, b, std::max(a.least_gap, b.least_gap)); }
 
-/// Moves spheres that start anywhere to where none overlaps any other or its images, as hard spheres in thermal equilibrium: those that do are pushed
-/// apart, two by two, until none do (after Jodrey & Tory 1985), and then all take random steps of which those that end in an overlap are taken back
-/// (Metropolis et al. 1953). Equal spheres go up to a volume fraction of about 0.6, their gaps included. Whether there is room.
+/// Moves spheres from arbitrary positions to an arrangement in which none overlaps another one or an image, distributed as hard spheres in thermal
+/// equilibrium. First, overlapping pairs are pushed apart until none overlap (after Jodrey & Tory 1985). Then all take random steps, and steps that
+/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres it works up to a volume fraction of about 0.6, gaps included. Returns
+/// false if the overlaps cannot be removed.
 bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed);
 
 struct ParticleKind;
 
-/// `Particles/<name>/copies`. The particle's centre is the origin of file, lattice and packing; its orientation comes before a copy's own.
+/// `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The particle's orientation is applied
+/// before a copy's own.
 struct CopiesOptions {
-  std::optional<std::string> file;    ///< CSV: a centre a row, and a rotation vector in degrees or nothing
-  std::optional<Vec3> lattice;        ///< counts along x1, x2, x3
-  std::optional<Vec3> spacing;        ///< of the lattice
-  std::optional<int> number;          ///< placed at random
-  std::optional<double> volume_fraction;  ///< which gives the number
-  std::optional<Vec3> box;            ///< side lengths of what they lie in, whole
-  std::optional<double> ball;         ///< its radius; of neither: all of the cell of a lattice of three directions, across its faces
-  double least_gap = 0.05;            ///< between the spheres around them, over the radius of those
+  std::optional<std::string> file;    ///< CSV file: per row a centre, and optionally a rotation vector in degrees
+  std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3
+  std::optional<Vec3> spacing;        ///< distances of neighbouring centres on the lattice
+  std::optional<int> number;          ///< number of copies placed at random
+  std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
+  std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
+  /// Radius of the ball that contains all copies; without box and ball they fill the cell of a lattice with three directions
+  std::optional<double> ball;
+  double least_gap = 0.05;            ///< gap between circumscribed spheres, divided by the larger radius
   int seed = 1;
-  bool present = false;               ///< whether the deck has this list at all
+  bool present = false;               ///< true if the deck has this section
 
   void declare(deck::Section& section);
   bool random() const { return number || volume_fraction; }
   bool in_cell() const { return random() && !box && !ball; }
 
-  /// One sentence (UserError) for keys that contradict each other; `cell`: whether there is one of three directions.
+  /// Throws UserError, with one sentence, if keys contradict each other. `cell`: true if the lattice has three directions.
   void check(const std::string& list, bool cell) const;
 };
 
-/// The kinds with every copy as one of its own, `<name> 1`, `<name> 2`, …. What is placed at random in a box or ball keeps clear of all that is
-/// placed before it, as far as the spheres around them tell; what is placed in the cell, all of it together, of everything. Throws
-/// UserError for a file that does not hold places, or where there is no room.
+/// Returns the kinds with every copy as a kind of its own, named `<name> 1`, `<name> 2`, …. Copies at random in a box or ball keep clear of the
+/// circumscribed spheres of all particles placed before them. Copies at random in the cell are packed together and keep clear of all particles.
+/// Throws UserError if a file does not hold positions, or if the copies do not fit.
 std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain);
 
 }  // namespace tanktread

@@ -1,5 +1,5 @@
 #pragma once
-// What the solution of a rigid body is held against where the exact one is known.
+// Exact solutions for rigid bodies, with which numerical solutions are compared.
 
 #include <optional>
 
@@ -11,39 +11,40 @@
 
 namespace tanktread {
 
-/// A sphere, spheroid or ellipsoid in a flow without strain: force and traction depend on its motion relative to the flow alone.
+/// Exact solution for a sphere, spheroid or ellipsoid in a flow without strain. Force and traction depend only on the motion relative to the flow.
 struct ExactBody {
   stokes::Ellipsoid ellipsoid;
-  Mat3 axes;  ///< columns: the principal axes in space
+  Mat3 axes;  ///< principal axes in space, as columns
   Vec3 centre;
-  Vec3 velocity, angular_velocity;  ///< relative to the flow, in the principal axes
+  Vec3 velocity, angular_velocity;  ///< velocities relative to the flow, in components along the principal axes
   double viscosity;
 
-  Vec3 force() const;   ///< on the body
-  Vec3 torque() const;  ///< on the body, about its centre
+  Vec3 force() const;   ///< returns the force on the body
+  Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// At the point of the exact surface in the direction of x: pressure p = -t.n without its constant, t the traction on the body, and normal.
+  /// Return the pressure p = -t.n without its constant (t: traction on the body) and the unit normal, at the point of the exact surface in the
+  /// direction of x from the centre.
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
-  /// Whether there is any pressure: a body that only turns about axes of revolution makes none.
+  /// Returns true if the pressure is not zero everywhere. It is zero if the body only rotates about axes of revolution.
   bool presses() const;
 
  private:
   Vec3 local(const Vec3& x) const { return axes.transpose() * (x - centre); }
 };
 
-/// `Particle/velocity` and `Particle/angular velocity`.
+/// Returns the motion given by `Particle/velocity` and `Particle/angular velocity`.
 coupling::RigidMotion prescribed_motion(const Scene& scene);
 
-/// Empty where no exact solution is known: another shape, a flow that strains, a tube.
+/// Returns the exact solution of a body with prescribed motion; nothing if none is known: for another shape, a flow with strain, a tube or a wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
-/// Errors over the surface with control net `surface`, for the force density f on the fluid (control values); n_h its own normal.
+/// Errors of the force density f on the fluid (control values) and of the normal n_h, on the surface with the control net `surface`.
 struct SurfaceErrors {
-  double pressure = 0;  ///< p = f.n_h with the constant fixed by int (p - p_exact) dG = 0: L2 norm of p - p_exact over that of p_exact (6.3)
-  double normal = 0;    ///< L2 norm of n_h - n over that of n
-  double constant = 0;  ///< to be added to f.n_h
+  double pressure = 0;  ///< L2 norm of p - p_exact divided by that of p_exact (6.3); p = f.n_h, its constant fixed by int (p - p_exact) dG = 0
+  double normal = 0;    ///< L2 norm of n_h - n divided by that of n
+  double constant = 0;  ///< constant that is added to f.n_h
 };
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact);
 

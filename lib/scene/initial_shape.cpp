@@ -19,19 +19,20 @@ namespace {
 
 const std::string key = "Particle/initial shape/";
 
-/// The image of a surface about a middle: to the bit the same one where the map is the identity.
+/// Returns the image of a surface under a linear map about the point `middle`. If the map is the identity, the result is bitwise the same.
 Net image(const Net& net, const Vec3& middle, const Mat3& map) {
   return net + (net.rowwise() - middle.transpose()) * (map - Mat3::Identity()).transpose();
 }
 
 bool same_space(const spline::Space& one, const spline::Space& other) {
   const auto same = [](const spline::Element& a, const spline::Element& b) {
-    return a.points == b.points && a.degree == b.degree && (*a.extraction - *b.extraction).cwiseAbs().maxCoeff() < 1e-6;  // digits of a file
+    // 1e-6 allows for the digits written to a file
+    return a.points == b.points && a.degree == b.degree && (*a.extraction - *b.extraction).cwiseAbs().maxCoeff() < 1e-6;
   };
   return one.n_points == other.n_points && std::ranges::equal(one.elements, other.elements, same);
 }
 
-/// `path`: of the key that names the file.
+/// Reads a control net from the file `name`. `path`: path of the key that names the file.
 Net net_of_file(const spline::Space& space, const std::string& name, const std::string& path) {
   const spline::SplineSurface surface = spline::read_iga(name);
   if (!same_space(surface.space, space))
@@ -40,7 +41,7 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-/// Whatever the particle is made of may change from run to run, but not its mesh; nor, where that was adapted, the resting shape on it.
+/// Throws UserError if the run's mesh options differ from the scene's or, if the mesh adapts, its resting shape. Material properties may differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene before;
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
@@ -52,14 +53,14 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
-/// The control points of a run; behind them, a drop with surfactant has what is on it.
+/// Returns the shape of a run. The rows of x after the shape, if any, are coefficients of the surfactant.
 Net shape_of(const output::Checkpoint& run) {
   const Eigen::MatrixXd& x = run.arrays.at("x");
   const auto alone = run.arrays.find("unstressed");
   return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
 }
 
-/// One of the modes that a run has found, as a displacement of its control points.
+/// Returns a mode from the Spectrum of a run, as a displacement of its control points.
 Net mode_of_run(const output::Checkpoint& run, int number) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
   if (found == run.arrays.end())

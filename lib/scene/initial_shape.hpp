@@ -1,5 +1,5 @@
 #pragma once
-// The shape that a run starts with where it is not the resting one: Particle/initial shape.
+// Initial shape of a run, if it is not the resting one: Particle/initial shape; and the stress-free shape of the membrane.
 
 #include <optional>
 
@@ -9,15 +9,16 @@
 
 namespace tanktread {
 
-/// The end of the run that the deck starts from; nothing where it names none. Throws UserError where there is none, or its surface is another one.
+/// Returns the last checkpoint of the run that the deck starts from; nothing if the deck names none. Throws UserError if there is no checkpoint, or
+/// if its surface differs from the scene's.
 std::optional<output::Checkpoint> run_before(const Scene& scene);
 
-/// Control net of the initial shape on the body's mesh; the resting one where the deck has no other. `before`: run_before, or nothing. Throws
-/// UserError where a file holds another surface.
+/// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: result of run_before, or null. Throws
+/// UserError if a file or run holds another surface.
 Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before);
 
-/// Control net of the membrane's stress-free shape on the body's mesh, before any pre-inflation: the resting one where the deck has no other. Throws
-/// UserError where a file holds another surface, or the resting shape has no axis.
+/// Returns the control net of the membrane's stress-free shape on the body's mesh, before any pre-inflation; by default the resting shape. Throws
+/// UserError if a file holds another surface, or if the resting shape has no axis.
 Net stress_free_shape(const Scene& scene, const Body& body);
 
 }  // namespace tanktread

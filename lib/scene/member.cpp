@@ -25,20 +25,21 @@ Eigen::MatrixXd numbers_of(const auto& values) {
   return numbers;
 }
 
-/// Whether they are the same in all that values and derivatives of a field are made of; equal extraction matrices are one (spline::share_extraction).
+/// Returns true if the spaces are equal in everything that determines values and derivatives of fields. Equal extraction matrices share one pointer
+/// (spline::share_extraction).
 bool same(const spline::Space& a, const spline::Space& b) {
   return a.n_points == b.n_points && std::ranges::equal(a.elements, b.elements, [](const spline::Element& one, const spline::Element& other) {
     return one.degree == other.degree && one.points == other.points && one.extraction == other.extraction;
   });
 }
 
-/// Whether they differ by a translation, to the round-off of their places.
+/// Returns true if the nets differ only by a translation, up to round-off.
 bool translated(const Net& a, const Net& b) {
   const Net change = b - a;
   return (change.rowwise() - change.row(0)).cwiseAbs().maxCoeff() < 1e-14 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
 }
 
-/// For the measures of the body of member p: what an equal one before it has, or its own.
+/// Sets geometry and membrane of member p: shared with an equal earlier member, or new.
 void share_or_make(std::vector<Member>& members, std::size_t p) {
   Member& member = members[p];
   const Body& body = *member.body;
@@ -75,7 +76,7 @@ std::vector<Member> members(const Scene& scene) {
   }
   if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
     only.wall = wall(all.front().scene, only);
-    only.symmetry = surface::Symmetry(only.space.n_points);  // none is looked for in a tube
+    only.symmetry = surface::Symmetry(only.space.n_points);  // no symmetry is determined in a tube
   }
   return all;
 }
@@ -92,9 +93,9 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // the system's are its own
+    if (members.size() == 1) continue;  // the coupled system makes its geometry and membrane itself
     Body& body = *member.body;
-    body.symmetry = surface::Symmetry(body.space.n_points);  // of one particle alone it is none of the scene's
+    body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is not one of the whole scene
     share_or_make(members, p);
   }
 }
@@ -144,7 +145,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // a measure in common costs less, and the areas of a rigid body do not change
+  for (coupling::Particle& one : parameters.particles)  // a common measure is cheaper, and the areas of a rigid body do not change
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

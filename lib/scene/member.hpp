@@ -1,5 +1,5 @@
 #pragma once
-// One particle of a run among the others.
+// Member: one particle of a run that may have several.
 
 #include <memory>
 #include <string>
@@ -17,51 +17,54 @@
 
 namespace tanktread {
 
-/// A particle: its scene as if it were alone, what that makes, and its rows of the nets of all.
+/// One particle of a run: its own scene, its body, and its rows in the nets of all particles.
 struct Member {
-  std::string name;  ///< empty: it is the only one
+  std::string name;  ///< empty if it is the only particle
   Scene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::shared_ptr<const surface::Geometry> geometry;  ///< this and the next are one of all members that are equal
+  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; equal members share it and `membrane`
   std::shared_ptr<const membrane::Membrane> membrane;
-  spline::Place place;    ///< of the material point whose phase is told, in the nested space
-  spline::Site followed;  ///< the same on the present mesh
+  spline::Place place;    ///< material point whose phase is recorded, as a parametric point of the nested space
+  spline::Site followed;  ///< site of this material point on the current mesh
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }   ///< in checkpoints and sentences
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }                ///< in sentences, as its section is called
-  std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }  ///< in the record
+  /// Returns the name in checkpoints and messages
+  std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
+  /// Returns the name of a column in the results
+  std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
-/// What drives a rigid body; its weight is a force.
+/// Returns what drives a rigid body: its prescribed motion, or its force, weight included, and torque.
 coupling::Rigid rigid(const Scene& scene, const Body& body);
 
-/// All particles of a scene in their resting shapes.
+/// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
-/// Finds the followed point on a mesh that may adapt, before and after a resume in one way.
+/// Locates the followed point on the current mesh if the mesh may adapt. A resumed run finds the same site.
 void follow(Member& member);
 
-/// Blocks, geometries and membranes of members whose bodies are there.
+/// Sets blocks, geometries and membranes of all members. Their bodies must exist.
 void arrange(std::vector<Member>& members);
 
-/// All of them as one body: its nets are stacked, its measures those of the whole. Of one particle nothing is copied: then there is none.
+/// Returns all members as one body, whose nets are stacked and whose measures are those of the whole; null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
-/// The coupled system that they need, and no more, in a tube if there is one. `all`: their space and nets.
+/// Builds the coupled system of all members, in a tube if there is one, with only the operators that they need. `all`: their common space and nets.
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube);
 
-/// Returns the particles as registered series see them at x, where the fluids move by v; none if the deck asks for no such series.
+/// Returns the particles for registered series, at the shape x and the fluid velocity v. Empty if the deck asks for no such series.
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);
 
-/// What a checkpoint holds of them beside the state, and the bodies on the meshes that it holds. Throws std::out_of_range where it lacks a part.
+/// Writes to a checkpoint, or reads from it, the data of the members in addition to the state: volumes, nets and adapted meshes. Throws
+/// std::out_of_range if the checkpoint lacks a part.
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
-bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< whether any has another mesh now
+bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
-/// The mesh whose edges a checkpoint holds, on the lattice of `mesh`. Throws UserError where that is another one.
+/// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint's lattice is another one.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});
 
 }  // namespace tanktread

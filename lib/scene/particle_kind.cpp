@@ -1,4 +1,4 @@
-// Keys of a particle.
+// Keys of a particle: declarations, and rejections of combinations.
 
 #include "base/errors.hpp"
 #include "scene/scene.hpp"
@@ -70,7 +70,7 @@ void ParticleKind::declare(deck::Section& section) {
 
 namespace {
 
-/// The list Membrane.
+/// Reader of the section Membrane.
 struct MembraneList {
   ParticleKind& kind;
 
@@ -80,7 +80,7 @@ struct MembraneList {
   }
 };
 
-/// The list Interface.
+/// Reader of the section Interface.
 struct InterfaceList {
   ParticleKind& kind;
 
@@ -96,7 +96,7 @@ struct InterfaceList {
 }  // namespace
 
 void ParticleKind::declare_lists(deck::Section& section) {
-  if (particle.rigid()) section.leave_out("Membrane");  // what particles share is for those that have one
+  if (particle.rigid()) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
   membrane_given = section.given("Membrane");
   if (MembraneList list{*this}; !particle.rigid() || membrane_given) section.section("Membrane", list, "what its surface is made of");
   if (particle.shape.shape != "file") section.section("Surface", surface, "the spline space of its surface");

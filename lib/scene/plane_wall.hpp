@@ -1,5 +1,5 @@
 #pragma once
-// Particles beside the plane wall of a scene.
+// Gaps between particles and the plane wall of a scene.
 
 #include <limits>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace tanktread {
 
-/// Throws UserError, with the numbers, where the body does not start in front of the scene's wall, `Wall/contact gap` at least away from it.
+/// Throws UserError, with the distances, if the body does not start in front of the scene's wall with a gap of at least `Wall/contact gap`.
 void check_in_front(const Scene& scene, const Body& body);
 
-/// Data of the plane wall for one row: the nearest particle, by its number from 1 in the order of the deck, and the point of it that is nearest.
+/// Data of the plane wall for one row: the gap, the nearest particle (numbered from 1 in the order of the deck), and its point nearest to the wall.
 struct WallRow {
   double gap = std::numeric_limits<double>::infinity();
   int particle = 0;
@@ -20,7 +20,7 @@ struct WallRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the row's part for the particles at x, or for one body.
+/// Returns the data for all particles at x, or for one body.
 WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x);
 WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x);
 

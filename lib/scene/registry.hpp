@@ -1,5 +1,5 @@
 #pragma once
-// Parts that a program adds to those of the library.
+// Registry of parts (loads, fields, flows, series) that a program adds to those of the library.
 
 #include <functional>
 #include <span>
@@ -14,24 +14,25 @@
 
 namespace tanktread {
 
-/// A particle at a recorded state. Nets have the shape (N, 3).
+/// Particle at a recorded state. Nets have the shape (N, 3).
 struct RecordedParticle {
   const spline::Space& space;
-  Net x, velocity;  ///< control net, length; velocity of the fluids on the surface, control values, length/time
+  Net x, velocity;  ///< control net, length; control values of the fluid velocity on the surface, length/time
 };
 
-/// The values of the columns with which a series is registered, as a function of time and of what the series is of. Every rank calls it with the same
-/// arguments.
+/// Functions that return the values of a registered series' columns from the time and the particle, or all particles. Every rank calls them with the
+/// same arguments.
 using ParticleSeries = std::function<std::vector<double>(double time, const RecordedParticle&)>;
 using RunSeries = std::function<std::vector<double>(double time, std::span<const RecordedParticle>)>;
 
-/// A series of each particle or of the run.
+/// Registered series, each computed per particle or once per run.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
-/// Parts by name, each with its own keys in the deck. `main` (app/program.hpp) takes them. lib/README.md, Recipes, shows an example of each.
+/// Parts by name, each with its own keys in the deck. `main` (app/program.hpp) accepts a registry. lib/README.md, Recipes, shows an example of each
+/// part.
 struct Registry {
   membrane::LoadParts loads;    ///< `Membrane/loads/<name>`
-  membrane::FieldParts fields;  ///< `Interface/fields/<name>`, also of a membrane
+  membrane::FieldParts fields;  ///< `Interface/fields/<name>`, on interfaces and membranes
   stokes::UserFlows flows;      ///< `Flow/type <name>`, keys in `Flow/<name>`
   SeriesParts series;           ///< `Output/series/<name>`
 };

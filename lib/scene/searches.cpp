@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-/// The conditions of the loads of all particles on a rigid motion.
+/// Returns the conditions that the loads of all particles impose on a rigid motion.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
   membrane::RigidConditions all(0, 6);
   for (const coupling::Particle& particle : particles)
@@ -27,7 +27,7 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
   return all;
 }
 
-/// Whether a flow with the same gradient everywhere has a vorticity.
+/// Returns true if the flow has a uniform gradient with nonzero vorticity.
 bool turns(const Scene& scene) {
   if (scene.flow.type == "duct") return false;
   const stokes::AmbientFlow ambient(scene.flow);
@@ -114,7 +114,8 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
 
 namespace {
 
-/// The number that the deck gives to the key at `path`, of which the key `of` tells. Throws UserError where it has none.
+/// Returns the number that the deck gives to the key at `path`. `of`: name of the key that contains this path. Throws UserError if there is no such
+/// number.
 double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
   Scene again = scene;

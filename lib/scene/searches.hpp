@@ -1,6 +1,6 @@
 #pragma once
-// What searches for steady shapes, periodic motions and branches need of a scene: the rigid motions that it leaves free, what holds a particle
-// against them, the step of a search, and the parameters of a branch.
+// Parts of a scene that searches for steady shapes, periodic motions and branches need: the rigid motions that the scene leaves free, the rule that
+// holds a particle's centre, the step of a search, and the parameters of a branch.
 
 #include <array>
 #include <span>
@@ -16,34 +16,35 @@
 
 namespace tanktread {
 
-/// Returns the rigid motions about the origin that change neither the flow nor loads and walls: the Lie derivative of the flow along them is 0, and
-/// the loads of all particles move with them. `size`: a length of the particles, R_C. Q of (4.17) projects onto them.
+/// Returns the rigid motions about the origin that leave the problem invariant: the Lie derivative of the flow along them is 0, the walls do not
+/// change, and the loads of all particles move with them. `size`: a length of the particles, R_C. Q of (4.17) projects onto these motions.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles);
 
-/// Adds what searches for steady shapes, periodic motions and spectra exclude.
+/// Adds the combinations of keys that searches for steady shapes, periodic motions and spectra exclude.
 void reject_searches(const Scene& scene, Rejections& to);
 
-/// Returns Steady/step, or its default. The default is bounded by the relaxation times of the membranes because the iteration amplifies errors of the
-/// velocity in motions that no membrane opposes by the step over these times.
+/// Returns Steady/step, or its default. The default is bounded by a multiple of the membranes' relaxation times. The reason: in motions that no
+/// membrane opposes, the iteration amplifies velocity errors by the ratio of the step to these times.
 double steady_step(const Scene& scene);
 
-/// Returns whether the centroid is put back after every step: `Particle/drift`. The default is `held` at the point of rest of an affine flow that
-/// draws away from it (planar hyperbolic, four-roll, extension): whatever rounding displaces grows there like e^(rate t), and carries off a particle
-/// whose shape is steady.
+/// Returns true if the centroid is moved back after every step: `Particle/drift`. The default is `held` if the particle is at the stagnation point of
+/// an affine flow with a growing direction (planar hyperbolic, four-roll, extension). There, displacements by round-off grow like e^(rate t) and
+/// would carry off a particle of steady shape.
 bool holds_centre(const Scene& scene);
 
-/// Moves the state so that its centroid is at `place`, and the slopes and earlier places of the scheme along: v(x + c) = v(x) + L c in an affine
-/// flow, whatever the shape, so that x(t) + c(t) with dc/dt = L c is a motion where x(t) is one, and was displaced by exp(-L s) c at a time s ago.
+/// Moves the state so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an affine flow with
+/// gradient L, v(x + c) = v(x) + L c for any shape. So if x(t) is a motion, x(t) + c(t) with dc/dt = L c is one too; a time s earlier the
+/// displacement was exp(-L s) c.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
-/// The value of Continuation/parameter, and that of the second parameter, 0 where there is none.
+/// Values of Continuation/parameter and of the second parameter, 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// The scene with other values of the parameters of its branch. `deck`: the effective one.
+/// Returns the scene with other values of its branch parameters. `deck`: the effective deck.
 Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values);
 
-/// With which the branch begins. Throws UserError where a parameter is no number of the deck.
+/// Returns the parameter values at the start of the branch. Throws UserError if a parameter is not a number of the deck.
 Parameters first_parameters(const Scene& scene, const std::string& deck);
 
 }  // namespace tanktread

@@ -15,21 +15,21 @@ class Rejections;
 struct Scene;
 
 struct WallOptions {
-  bool present = false;  ///< whether there is one; nothing else counts without
+  bool present = false;  ///< true if there is a wall; otherwise the other members are not used
 
   std::string shape = "plane";
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
-  double contact_gap = 1e-3;  ///< over R_C
+  double contact_gap = 1e-3;  ///< gap, divided by R_C, below which the run ends
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for a normal that is none, and for a flow that does not fit the wall: it must be along it and
-  /// the same everywhere on it.
+  /// Throws UserError, with one sentence, if the normal is zero, or if the flow does not fit the wall: it must be parallel to the wall and uniform on
+  /// it.
   void check(const stokes::FlowOptions& flow) const;
 
-  void reject(const Scene& scene, Rejections& to) const;  ///< what a wall in the scene excludes
+  void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
 
-  std::optional<stokes::PlaneWall> plane() const;  ///< nothing without one
+  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one
 };
 
 }  // namespace tanktread

@@ -36,7 +36,7 @@ BezierPoints bezier_points(const Element& e, const Net& field) {
   const auto gather = [&](auto& P) {
     for (std::size_t i = 0; i < e.points.size(); ++i) P.row(Eigen::Index(i)) = field.row(e.points[i]);
   };
-  if (e.degree == 3 && e.points.size() == 16) {  // of a size that the compiler knows
+  if (e.degree == 3 && e.points.size() == 16) {  // regular element: fixed-size matrices are faster
     Eigen::Matrix<double, 16, 3> P;
     gather(P);
     return Eigen::Map<const Eigen::Matrix<double, 16, 16>>(e.extraction->data()).transpose().lazyProduct(P);

@@ -1,5 +1,5 @@
 #pragma once
-// What the spline functions of an element are: values and derivatives at one place, and Bezier points.
+// Values and derivatives of the spline functions of an element at one point, and Bezier points of a field.
 
 #include "base/types.hpp"
 #include "spline/bernstein.hpp"
@@ -7,16 +7,17 @@
 
 namespace tanktread::spline {
 
-/// Entry i belongs to control point element.points[i]. Derivatives by the element's own coordinates s, t in [0, 1].
+/// Values and derivatives of the functions of an element. Entry i belongs to control point element.points[i]. Derivatives are with respect to the
+/// local coordinates s, t in [0, 1].
 struct Basis {
   Eigen::VectorXd value, s, t;  ///< N, N_,s, N_,t
-  Eigen::VectorXd ss, st, tt;   ///< filled for derivatives = 2 only
+  Eigen::VectorXd ss, st, tt;   ///< second derivatives; empty unless derivatives = 2
 };
 
-/// derivatives = 0, 1 or 2; arrays beyond that stay empty.
+/// Evaluates the functions of an element and their derivatives up to the order `derivatives` = 0, 1 or 2. Arrays of higher derivatives are empty.
 Basis basis(const Element& element, double s, double t, int derivatives = 1);
 
-/// Bezier points of a field on an element, row (p + 1) j + i; without allocation.
+/// Bezier points of a field on an element, row (p + 1) j + i, in storage of fixed size, without heap allocation.
 using BezierPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, (max_degree + 1) * (max_degree + 1), 3>;
 BezierPoints bezier_points(const Element& e, const Net& field);
 

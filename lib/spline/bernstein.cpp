@@ -19,7 +19,7 @@ void bernstein(int p, double x, double* value) {
 }
 
 namespace {
-/// d/dx B_i^p = p (B_{i-1}^{p-1} - B_i^{p-1}), from the values of degree p - 1.
+/// Computes d/dx B_i^p = p (B_{i-1}^{p-1} - B_i^{p-1}) from the values of degree p - 1.
 void difference(int p, const double* lower, double* out) {
   out[0] = -p * lower[0];
   for (int i = 1; i < p; ++i) out[i] = p * (lower[i - 1] - lower[i]);
@@ -75,8 +75,8 @@ std::array<double, 4> b_spline_on(const std::array<double, 5>& k, double a, doub
   const double K[11] = {k[0] - 3, k[0] - 2, k[0] - 1, k[0], k[1], k[2], k[3], k[4], k[4] + 1, k[4] + 2, k[4] + 3};
   int span = 3;
   while (span < 6 && K[span + 1] <= a) ++span;
-  // De Boor's triangle with a or b in each of its three steps: how many of them are b tells the results of a step apart.
-  double d[4][4][4] = {};  // after r steps, n of them with b
+  // De Boor's triangle with a or b as the argument of each of its three steps. The results of a step depend only on the number of arguments b.
+  double d[4][4][4] = {};  // d[r][n]: results after r steps, n of them with b
   d[0][0][6 - span] = 1;
   for (int r = 1; r <= 3; ++r)
     for (int j = r; j < 4; ++j) {

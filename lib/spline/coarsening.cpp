@@ -9,14 +9,15 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Whether the edge lies in the rings of a point at spacing h or a larger one.
+/// Returns whether the edge lies in the rings around the point at `corner` with spacing h, 2 h, 4 h and so on.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
   return false;
 }
 
-/// Lines of the base mesh, and of the rings of an extraordinary point at its present and every larger spacing.
+/// Returns whether the edge must stay: it is on a line of the base mesh, or in the rings of an extraordinary point at its current or a larger
+/// spacing.
 bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
   const Lattice& l = *mesh.lattice;
   if ((e.horizontal ? l.height(e.y) : e.x) % l.base == 0) return true;
@@ -34,7 +35,8 @@ struct Remover {
   const Lattice& lattice() const { return *mesh.lattice; }
   bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
 
-  /// The bay that starts at a vertex with a perpendicular edge; empty if one of its edges must stay or an end would lose its rectangle.
+  /// Returns the bay that starts at a vertex with a perpendicular edge. It is empty if one of its edges must stay, or if an element at one of its
+  /// ends would no longer be a rectangle.
   std::vector<Ray> removable_bay(Ray start) const {
     const Lattice& l = lattice();
     auto both_sides = [&](Ray r) { return (mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10)) == (r.slot & 1 ? 5 : 10); };
@@ -51,7 +53,7 @@ struct Remover {
     return path;
   }
 
-  /// In rows of no height there are the lines that arrive at the end knot, and no others.
+  /// Sets the edges in rows of zero height: those that continue lines which arrive at the end knot, and no others.
   void restore_ends() {
     const Lattice& l = lattice();
     for (int c = 0; c < l.cells(); ++c) {
@@ -62,12 +64,12 @@ struct Remover {
     }
   }
 
-  /// Takes out the bay that starts here with all its images, or none of them.
+  /// Removes the bay that starts here and all its images, or none of them. Returns whether they were removed.
   bool remove_images(Ray start) {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
     for (Ray s : starts) {
-      if (!mesh.edge(s.vertex, s.slot)) continue;  // its own image
+      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed, because a bay can be its own image
       const auto bay = removable_bay(s);
       for (Ray e : bay) mesh.set(e, false);
       gone.insert(gone.end(), bay.begin(), bay.end());
@@ -79,7 +81,7 @@ struct Remover {
     return !gone.empty();
   }
 
-  /// One pass over all bays, shortest first.
+  /// Removes bays in one pass, shortest first. Returns whether any was removed.
   bool remove_bays() {
     const Lattice& l = lattice();
     std::vector<std::pair<std::size_t, Ray>> found;
@@ -95,7 +97,7 @@ struct Remover {
     return any;
   }
 
-  /// Edges off the 2 h lattice in the closed 6 h square of a point.
+  /// Returns the edges that are not on the 2 h lattice in the closed square of side 6 h at a point, in each of its three faces.
   std::vector<Ray> ring_edges(int point) const {
     const Lattice& l = lattice();
     const int P = l.extraordinary[point], h = mesh.spacing[point];
@@ -114,7 +116,8 @@ struct Remover {
     return out;
   }
 
-  /// The points that must double h together with this one (their rings share edges that go), itself included; empty if an edge must stay.
+  /// Returns the points that must double h together with this point, including itself, because their rings share edges to be removed. Empty if an
+  /// edge must stay.
   std::vector<int> doubling_group(int first) const {
     const Lattice& l = lattice();
     std::vector<int> group{first};
@@ -134,7 +137,7 @@ struct Remover {
     return group;
   }
 
-  /// Doubles h of every point whose rings may go.
+  /// Doubles h of every point whose rings may be removed. Returns whether any was doubled.
   bool double_rings() {
     bool any = false;
     for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {
@@ -169,7 +172,7 @@ Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removabl
 Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
-  // Width and height that a tile may grow to, as powers of two; a line stays if it is on that grid.
+  // Largest width and height that a tile may grow to, as powers of two. A line stays if it is on the grid of this spacing.
   std::vector<std::array<int, 2>> limit(tiling.tiles.size(), {1, 1});
   for (const Merge& m : merges) {
     const Rectangle& r = tiling.tiles[m.element];
@@ -186,13 +189,13 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     for (int k : {1, 2}) {  // right and upper edge of each cell, inside a face
       const bool vertical = k == 1;
       const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
-      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // a side of a macro face is a line of the base mesh
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // lines of the base mesh include the sides of macro faces
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // otherwise with its end in the row of no height
+      if (!vertical || !l.pad) continue;  // otherwise its continuation in the row of zero height is removable, too
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

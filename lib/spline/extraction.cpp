@@ -14,7 +14,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// The 19 control points around an irregular element, in the order of OneRing with spoke 0 along its first side seen from the point.
+/// Returns the 19 control points around an irregular element in the order of OneRing. Spoke 0 is the first side of the element seen from the
+/// extraordinary point.
 std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f, const std::vector<int>& point, int tile) {
   const Rectangle& r = f.tiling.tiles[tile];
   const int h = r.width, P = sides(l, r)[f.irregular[tile]].vertex;
@@ -42,8 +43,8 @@ std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f,
   return out;
 }
 
-/// Columns of a matrix whose row (p + 1) v + u belongs to a face with its point at corner 0, for a face with the point at corner k;
-/// transposed to (functions, Bernstein).
+/// Converts a table for a face with the extraordinary point at corner 0, with row (p + 1) v + u, to an extraction matrix for a face with the point at
+/// corner k. The result has shape (functions, Bernstein coefficients).
 Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   Eigen::MatrixXd out(table.cols(), table.rows());
   for (int v = 0; v <= p; ++v)
@@ -54,7 +55,7 @@ Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   return out;
 }
 
-/// Elements of a tile at an extraordinary point, in the tile's own unit square: one bi-quartic, or the Catmull-Clark pieces.
+/// Returns the elements of a tile at an extraordinary point, in the unit square of the tile: one bi-quartic element, or the Catmull-Clark pieces.
 std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, int corner, ExtraordinaryRule rule, int depth) {
   std::vector<Element> out;
   if (rule == ExtraordinaryRule::g1) {
@@ -82,7 +83,7 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
 
 int log2_of(int power) { return std::countr_zero(unsigned(power)); }
 
-/// Elements in the order of the tiles, those of tile t from first[t] on.
+/// Elements in the order of the tiles. The elements of tile t begin at first[t].
 struct TileElements {
   std::vector<Element> all;
   std::vector<int> first;
@@ -90,14 +91,14 @@ struct TileElements {
   bool one(int tile) const { return first[tile + 1] - first[tile] == 1; }
 };
 
-/// Those at extraordinary points complete, the others with their places.
+/// Returns the elements of all tiles. Elements at extraordinary points are complete; regular elements have only their positions.
 TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
   const int tiles = int(b.tiling.tiles.size());
-  // The averaged square keeps its side, 2^-max(levels, 4) of a base element, however often the rings around it are refined.
+  // The side of the averaged square is 2^-max(levels, 4) of a base element. It does not change if the rings around the square are refined.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
-  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing, with ring numbers for points
+  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // elements by corner and spacing, with ring indices as control points
   std::array<int, OneRing::size> numbers;
   std::iota(numbers.begin(), numbers.end(), 0);
   TileElements out;
@@ -127,7 +128,7 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   return out;
 }
 
-/// Sites on tiles as sites on all elements that hold them.
+/// Converts sites on tiles to sites on all elements whose closure contains them.
 std::vector<Site> on_elements(const Lattice& l, const Tiling& tiling, const TileElements& elements, const std::vector<Site>& on_tiles) {
   std::vector<Site> found;
   for (const Site& site : on_tiles) {
@@ -153,7 +154,7 @@ Space space(const TMesh& mesh, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const TileFunctions b = tile_functions(mesh);
   TileElements elements = laid_out(mesh, b, rule);
-  std::vector<int> count(b.tiling.tiles.size(), 0);  // functions of a tile
+  std::vector<int> count(b.tiling.tiles.size(), 0);  // number of functions on each tile
   for (const Contribution& c : b.entries) ++count[c.tile];
   std::vector<std::shared_ptr<Eigen::MatrixXd>> extraction(count.size());
   for (std::size_t t = 0; t < count.size(); ++t)

@@ -17,7 +17,7 @@ constexpr int N = 3;
 
 Row unit(int point) { return Row::Unit(point); }
 
-/// A row about face 0 seen from face j.
+/// Returns the row for face j from a row for face 0.
 Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
@@ -25,12 +25,13 @@ Row turned_row(const Row& r, int j) {
   return out;
 }
 
-/// Bezier point next to the first corner of a face, by averaging.
+/// Returns the inner Bezier point next to the corner `near` of a face, by averaging the four corners.
 Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last) {
   return (4 * near + 2 * next + opposite + 2 * last) / 9;
 }
 
-/// The 4 x 4 control points around face 0 as (u, v) = 0 .. 3 with the face between 1 and 2; none across the extraordinary point.
+/// Returns control point (u, v) of the 4 x 4 net around face 0, u, v = 0 .. 3, where the face is between 1 and 2. Point (0, 0), across the
+/// extraordinary point, does not exist.
 Row net(int u, int v) {
   using R = Ring;
   static const int id[4][4] = {{-1, R::E + 2, R::F + 1, R::B + 1},
@@ -43,7 +44,7 @@ Row net(int u, int v) {
 }  // namespace
 
 Eigen::MatrixXd averaged_bicubic() {
-  // Inner point of the face [u, u+1] x [v, v+1] of the net, next to its corner (cu, cv).
+  // Returns the inner Bezier point of the face [u, u+1] x [v, v+1] of the net, next to its corner (cu, cv).
   auto near_corner = [](int u, int v, int cu, int cv) {
     return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
   };
@@ -54,7 +55,7 @@ Eigen::MatrixXd averaged_bicubic() {
       if (u == 0 && v == 0) {
         for (int j = 0; j < N; ++j) sum += turned_row(near_corner(1, 1, 0, 0), j) / N;
       } else {
-        // A Bezier point on a side or at a corner is the mean of the inner points on both or all four sides of it.
+        // A Bezier point on a side is the mean of the two inner points next to it, and one at a corner the mean of the four inner points around it.
         struct Inner {
           int face, corner;
         };
@@ -76,12 +77,12 @@ namespace {
 
 constexpr double w0 = -1;  // 2 cos(2 pi / 3)
 
-// Unknowns: changes of c1 and of the inner points (v, u) = 11, 12, 21, 22, of each of the three faces and spokes.
+// Unknowns: the changes of c1 of each spoke, and of the inner points (v, u) = 11, 12, 21, 22 of each face.
 enum { c1, b11, b12, b21, b22, kinds };
 constexpr int unknowns = kinds * N;
 int unknown(int kind, int j) { return kinds * ((j + N) % N) + kind; }
 
-/// The same surface in degree 4: row 5 v + u.
+/// Returns the Bezier points of the same surface in degree 4, row 5 v + u.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   Eigen::MatrixXd biquartic(25, Ring::size);
   const Eigen::MatrixXd up = elevation(3, 4);
@@ -95,12 +96,12 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   return biquartic;
 }
 
-/// The G1 conditions of the spokes, on the changed values: G x = g, three a spoke.
+/// G1 conditions of the spokes for the changes x: G x = g, with three conditions per spoke.
 struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };
 Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
-  std::array<Row, N> s0, s1, s2, s3;  // the spoke cubics
+  std::array<Row, N> s0, s1, s2, s3;  // control points c0 .. c3 of the cubics along the spokes
   for (int j = 0; j < N; ++j) {
     s0[j] = turned_row(bicubic.row(0), j);
     s1[j] = turned_row(bicubic.row(1), j);
@@ -130,7 +131,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// The change of point (v, u) on the 5 x 5 grid of face j, as a row over the unknowns.
+/// Returns the change of point (v, u) on the 5 x 5 grid of face j, as a row of coefficients of the unknowns.
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;
@@ -139,7 +140,7 @@ Eigen::RowVectorXd change(int v, int u, int j) {
   return d;
 }
 
-/// Differences of the changes of neighbours on all grids, whose squares add up to the energy.
+/// Returns the matrix L of differences between the changes of neighbouring points on all grids. The Dirichlet energy is |L x|^2.
 Eigen::MatrixXd differences() {
   Eigen::MatrixXd L(N * 40, unknowns);
   int row = 0;
@@ -152,7 +153,7 @@ Eigen::MatrixXd differences() {
   return L;
 }
 
-/// min |L x| subject to G x = g: a particular solution plus the kernel of G.
+/// Returns the x that minimises |L x| subject to G x = g, as a particular solution plus an element of the kernel of G.
 Eigen::MatrixXd least(const Eigen::MatrixXd& L, const Conditions& on) {
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(on.G);
   const Eigen::MatrixXd kernel = lu.kernel(), particular = lu.solve(on.g);
@@ -173,7 +174,7 @@ Eigen::MatrixXd constrained_biquartic() {
 
 namespace {
 
-/// Number in the ring of the lattice point (u, v), 0 .. 2, of sector j. A negative coordinate leads into the neighbouring sector.
+/// Returns the ring index of the lattice point (u, v) of sector j, with u, v = 0 .. 2. A negative coordinate refers to the neighbouring sector.
 int ring_point(int j, int u, int v) {
   if (v < 0) return ring_point(j + 2, -v, u);
   if (u < 0) return ring_point(j + 1, v, -u);
@@ -188,13 +189,13 @@ int ring_point(int j, int u, int v) {
 
 Row coarse(int j, int u, int v) { return Row::Unit(ring_point(j, u, v)); }
 
-/// Point of the subdivided net at (a, b) halves of a step in sector j.
+/// Returns the point (a, b) of the subdivided net in sector j, with a, b in half units of the original net.
 Row fine(int j, int a, int b) {
   if (b < 0) return fine(j + 2, -b, a);
   if (a < 0) return fine(j + 1, b, -a);
   const int u = a >> 1, v = b >> 1;
   auto face = [&](int x, int y) -> Row {  // mean of the face with lower left corner (x, y)
-    // To the left of and below the axes the corner nearest to the point lies on the spoke; ring_point takes care of the rest.
+    // x or y may be -1. Then the face is in the neighbouring sector, which ring_point finds.
     return (coarse(j, x, y) + coarse(j, x + 1, y) + coarse(j, x + 1, y + 1) + coarse(j, x, y + 1)) / 4;
   };
   if ((a & 1) && (b & 1)) return face(u, v);
@@ -214,7 +215,7 @@ Row fine(int j, int a, int b) {
   return (Q + 2 * R + P) / 4;
 }
 
-/// Bezier points (16, 19) of the fine element [a, a + 1] x [b, b + 1] (halves of a step) of sector 0, a uniform bicubic.
+/// Returns the Bezier points, shape (16, 19), of the element [a, a + 1] x [b, b + 1] (half units) of sector 0, which is a uniform bicubic.
 Eigen::MatrixXd quarter(int a, int b) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(16, Ring::size);
   const std::array<double, 5> uniform{-2, -1, 0, 1, 2};

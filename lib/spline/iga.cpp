@@ -23,10 +23,10 @@ namespace tanktread::spline {
 
 namespace {
 
-/// What the integrals over the surface and the membrane have rules and room for.
+/// Degrees and numbers of functions that the quadrature and the membrane support.
 constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 
-/// Words of the file, with the number of the line for messages.
+/// Reads the file word by word and keeps the line number for messages.
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file)
@@ -36,7 +36,7 @@ class Reader {
     throw UserError("Surface file " + name_ + ", line " + std::to_string(line_) + ": " + what);
   }
 
-  /// The next line with something on it; false at the end of the file.
+  /// Moves to the next line that is not empty. Returns false at the end of the file.
   bool next() {
     std::string text;
     while (std::getline(stream_, text)) {
@@ -116,7 +116,7 @@ Frame frame(const Space& space, const Net& net, const Site& site) {
   return f;
 }
 
-/// Edge 0 (t = 0), 1 (s = 1), 2 (t = 1), 3 (s = 0), run through with the element on the left.
+/// Returns the point at the fraction x of edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the element on its left.
 Site on_edge(int element, int edge, double x) {
   const auto [s, t] = turned(x, 0., 1., edge);
   return {element, s, t};
@@ -124,10 +124,10 @@ Site on_edge(int element, int edge, double x) {
 
 double extent(const Net& net) { return (net.colwise().maxCoeff() - net.colwise().minCoeff()).norm(); }
 
-/// Number p of the nine places of every element: its corners, mid-sides and centre, s fastest.
+/// Returns candidate point p. Every element has nine: its corners, mid-sides and centre, s fastest.
 Site place_of_element(std::size_t p) { return {int(p / 9), p % 3 / 2.0, p % 9 / 3 / 2.0}; }
 
-/// For each of these places the first one at the same place in space.
+/// Returns for each candidate point the index of the representative of all candidates at the same position in space.
 std::vector<int> numbered_places(const Space& space, const Net& net) {
   std::vector<Vec3> all;
   for (std::size_t p = 0; p < 9 * space.elements.size(); ++p) all.push_back(frame(space, net, place_of_element(p)).x);
@@ -142,20 +142,21 @@ constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// What is wrong with a surface that should be closed and seen from outside, as the end of a sentence; empty if nothing.
+/// Returns the fault of a surface that is not closed or not oriented outwards, as the end of a sentence; empty if there is none.
 ///
-/// Sides of elements are matched by their curves. Those without a partner (at T-junctions, or holes) must cancel as curves: their line integrals
-/// of a few smooth fields must sum to 0, which a hole, a missing or an inverted element breaks. Then the volume must be positive.
+/// Sides of elements are matched by their end points and midpoints. Sides without a partner (at T-junctions or holes) must cancel as curves: their
+/// line integrals of a few smooth fields must sum to 0. If there is a hole, or an element is missing or inverted, they do not. The volume must be
+/// positive.
 std::string fault_of_closed_surface(const Space& space, const Net& net) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
   const std::vector<int> places = numbered_places(space, net);
-  // Each side by its ends and its middle; the partner runs the other way.
+  // Sides without a partner, by their ends and middle. The partner runs in the opposite direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
   int once = -1, twice = -1;
   for (int k = 0; k < int(space.elements.size()); ++k)
     for (int e = 0; e < 4; ++e) {
       const int a = places[9 * k + along_edge[e][0]], m = places[9 * k + along_edge[e][1]], b = places[9 * k + along_edge[e][2]];
-      if (a == m && m == b) continue;  // collapsed: a pole
+      if (a == m && m == b) continue;  // side that is collapsed to a pole
       if (open.erase({b, m, a})) continue;
       const auto [side, is_new] = open.try_emplace({a, m, b}, k, e);
       if (!is_new && twice < 0) once = side->second.first, twice = k;
@@ -164,7 +165,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
     return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
            ", so one of them is inverted.";
 
-  // Sides without partner: integrals of cos(k_i . x) dx and sin(k_i . x) dx over all of them.
+  // Integrals of cos(k_i . x) dx and sin(k_i . x) dx over all sides without a partner.
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
   double length = 0;
   const double size = extent(net);
@@ -193,8 +194,8 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
   return {};
 }
 
-/// For each control point a place where its function is large, each place for one function: corners, mid-sides and centres of all elements, taken
-/// in descending order of the value there. All elements at the place are listed. Throws UserError when a function finds no place.
+/// Returns a collocation point for each control point, where its function is large, as sites on all elements that contain the point. Candidate points
+/// are assigned in descending order of the value of the function, each to one function. Throws UserError if no candidate is left for a function.
 std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net& net) {
   const std::vector<int> places = numbered_places(space, net);
   std::vector<std::vector<Site>> at_place(places.size());
@@ -206,7 +207,7 @@ std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net
   for (std::size_t p = 0; p < places.size(); ++p) {
     const Site site = place_of_element(p);
     std::vector<Site>& sites = at_place[places[p]];
-    if (!sites.empty() && sites.back().element == site.element) continue;  // a side that is a pole
+    if (!sites.empty() && sites.back().element == site.element) continue;  // second candidate on a side that is collapsed to a pole
     sites.push_back(site);
     if (sites.size() > 1) continue;
     const Element& e = space.elements[site.element];
@@ -259,7 +260,7 @@ SplineSurface read_iga(const std::filesystem::path& file) {
       e.face = int(out.space.elements.size());
       out.space.elements.push_back(std::move(e));
     } else if (key != "set" && key != "domain") {
-      if (n_elements >= 0 && int(out.space.elements.size()) == n_elements) break;  // a list after the elements
+      if (n_elements >= 0 && int(out.space.elements.size()) == n_elements) break;  // other data after the elements
       in.fail("`" + key + "` is no keyword here; type, nodeN, elemN, node, belem, set and domain are.");
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces as Bezier-extraction text (.iga), the format of the Rhino and Autodesk T-spline plug-ins.
+// Reading and writing of surfaces as Bezier-extraction text (.iga), the format of the Rhino and Autodesk T-spline plug-ins.
 
 #include <filesystem>
 
@@ -8,24 +8,25 @@
 
 namespace tanktread::spline {
 
-/// A space and one control net for it.
+/// A spline space and a control net in it.
 struct SplineSurface {
   Space space;
   Net net;
 };
 
-/// Lines `#`: comments; `type surface`; `nodeN n`, `elemN m`; n lines `node x y z w`; m blocks of `belem nfun ps pt`, a line of nfun control points
-/// counted from 0, and nfun lines of (ps + 1)(pt + 1) Bernstein coefficients, s fastest. What follows (`set`, `domain`) is skipped.
+/// Reads a surface. The format: `#` begins a comment; `type surface`; `nodeN n`, `elemN m`; n lines `node x y z w`; m blocks of `belem nfun ps pt`, a
+/// line of nfun control points counted from 0, and nfun lines of (ps + 1)(pt + 1) Bernstein coefficients, s fastest. Later lines (`set`, `domain`)
+/// are skipped.
 ///
-/// Throws UserError, naming file and line or element, when the text is not that, a weight is not 1, ps and pt differ or are not 2 to 6, an element
-/// has more than 64 functions, or they do not sum to 1 (within 1e-6: the format carries few digits; the rest is divided out), a control point is
-/// without function, the surface is not closed, or one of its elements is turned inside out, or all of it is.
+/// Throws UserError, which names the file and the line or element, if the text does not have this format, a weight is not 1, ps and pt differ or are
+/// not 2 to 6, an element has more than 64 functions, the functions of an element do not sum to 1 within 1e-6, a control point has no function, the
+/// surface is not closed, or one or all of its elements are inside out. Files have few digits, so the functions are divided by their sum.
 ///
-/// Every element is a macro face by itself. Collocation points: the place where a function is largest among corners, mid-sides and centres of the
-/// elements, each place given to one function, in the order of the values there.
+/// Every element is its own macro face. Candidates for collocation points are the corners, mid-sides and centres of the elements. Each function gets
+/// the candidate where it is largest. Each candidate is assigned to one function only, in descending order of the values.
 SplineSurface read_iga(const std::filesystem::path& file);
 
-/// Throws UserError when the file cannot be written. 17 digits: reading it back gives the same numbers.
+/// Writes a surface with 17 digits, so that reading it returns the same numbers. Throws UserError if the file cannot be written.
 void write_iga(const std::filesystem::path& file, const Space& space, const Net& net);
 
 }  // namespace tanktread::spline

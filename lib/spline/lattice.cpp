@@ -10,7 +10,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Slots, cells and ways back of every vertex from the corners of the cells. A vertex starts its slots in its cell of lowest number.
+/// Computes the slots, cells and backward slots of every vertex from the corners of the cells. The cell between slots 0 and 1 of a
+/// vertex is its cell of lowest index.
 void connect(Lattice& l) {
   const int n = int(l.position.size());
   l.neighbour.assign(n, {-1, -1, -1, -1});
@@ -20,7 +21,7 @@ void connect(Lattice& l) {
   l.slot.resize(l.corners.size());
   l.is_extraordinary.assign(n, 0);
 
-  // Incident cells of a vertex, in the order of their numbers.
+  // Cells around each vertex, in ascending order.
   std::vector<std::array<int, 4>> around(n, {-1, -1, -1, -1});
   std::vector<std::array<std::uint8_t, 4>> which(n);
   for (int c = 0; c < l.cells(); ++c)
@@ -65,13 +66,13 @@ Walker cross(const Lattice& l, Walker w, int edge, int& entered) {
   return {l.cell[v][s], w.turn};
 }
 
-/// Cells left before the side of the macro face, going in direction `turn`.
+/// Returns the number of cells between a cell and the side of the macro face in direction `turn`.
 int room(const Lattice& l, int cell, int turn) {
   const int x = l.x_of(cell), y = l.y_of(cell), cells[4] = {l.units - 1 - x, l.rows - 1 - y, x, y};
   return cells[turn];
 }
 
-/// n cells in direction w.turn + offset.
+/// Moves n cells in direction w.turn + offset.
 Walker move(const Lattice& l, Walker w, int n, int offset) {
   const int stride[4] = {1, l.units, -1, -l.units};
   while (n > 0) {
@@ -145,7 +146,7 @@ Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int level
 
 Lattice cube_lattice(int elements_per_side, int levels) {
   using Int3 = Eigen::Vector3i;
-  // Directions of x and y of each face; their cross product points out.
+  // Directions of x and y of each face. Their cross product points outwards.
   const Int3 X(1, 0, 0), Y(0, 1, 0), Z(0, 0, 1);
   const Int3 axis[6][2] = {{Y, Z}, {Z, Y}, {Z, X}, {X, Z}, {X, Y}, {Y, X}};
 

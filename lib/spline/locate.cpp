@@ -47,7 +47,7 @@ Locator::Locator(const Space& space) : space_(space) {
 Site Locator::operator()(const Place& p) const {
   auto bucket = [&](double x) { return std::clamp(int(x * side_), 0, side_ - 1); };
   Site nearest{-1, 0, 0};
-  double least = HUGE_VAL;  // how far outside the element
+  double least = HUGE_VAL;  // smallest distance from an element, in local coordinates
   for (int k : buckets_[(std::size_t(p.face) * side_ + bucket(p.y)) * side_ + bucket(p.x)]) {
     const Element& e = space_.elements[k];
     const double s = (p.x - e.origin[0]) / e.size[0], t = (p.y - e.origin[1]) / e.size[1];

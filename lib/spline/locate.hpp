@@ -1,26 +1,25 @@
 #pragma once
-// Which element holds a place of a macro face.
+// Search for the element that contains a parametric point.
 
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
 
 namespace tanktread::spline {
 
-/// A place in the parametric domain: macro face, and coordinates in [0, 1] along its sides. The same in every mesh on the same faces,
-/// however fine.
+/// A point of the parametric domain: macro face, and coordinates in [0, 1] along its sides. It is the same in all meshes on the same faces.
 struct Place {
   int face = 0;
   double x = 0, y = 0;
 };
 
-/// Place of a lattice vertex (on the lowest face that holds it); of a site.
+/// Returns the parametric point of a lattice vertex (on the face of lowest index that contains it) or of a site.
 Place place(const Lattice& lattice, int vertex);
 Place place(const Space& space, const Site& site);
 
-/// For every Bezier element the element of elements(mesh) that holds it: what a mark for one of its Bezier elements marks.
+/// Returns for every Bezier element the element of elements(mesh) that contains it. A mark of a Bezier element marks this element.
 std::vector<int> mesh_elements(const TMesh& mesh, const Space& space);
 
-/// Finds the element of lowest number whose closure holds a place. Built once for a space, which must outlive it.
+/// Finds the element of lowest index whose closure contains a parametric point. It is built once per space; the space must outlive it.
 class Locator {
  public:
   explicit Locator(const Space& space);
@@ -28,8 +27,8 @@ class Locator {
 
  private:
   const Space& space_;
-  int side_ = 1;                           // buckets along a side of a face
-  std::vector<std::vector<int>> buckets_;  // elements that meet a bucket, ascending
+  int side_ = 1;                           // number of buckets along a side of a face
+  std::vector<std::vector<int>> buckets_;  // elements that overlap each bucket, ascending
 };
 
 }  // namespace tanktread::spline

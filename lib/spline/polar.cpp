@@ -14,7 +14,8 @@
 namespace tanktread::spline {
 namespace {
 
-/// The cosine (or sine) sequence of the base mesh as a periodic cubic spline, and its blossom at three knots (lattice units).
+/// Returns the blossom, at three knots (lattice units), of the periodic cubic spline whose coefficients are the cosines (or sines) of the azimuths of
+/// the base mesh.
 double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
   const int m = l.units / l.base, span = int(std::floor(knots[1] / l.base));
   double d[4];
@@ -30,15 +31,15 @@ double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, b
   return d[3];
 }
 
-/// A control point of the tensor net near a pole: its anchor, and its place in the plane that is tangent there, heights of the first element of
-/// the base mesh from the pole.
+/// A control point of the tensor net near a pole: its anchor and its position in the tangent plane at the pole. The unit of length is the height of
+/// the first element of the base mesh.
 struct PolePoint {
   int anchor;
   bool is_pole;
   Eigen::Vector2d place;
 };
 
-/// Three of these points around the origin, with the largest triangle as far as exchanging one of them tells.
+/// Returns three of these points around the origin whose triangle is largest: no exchange of one point makes it larger.
 std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
   constexpr double clearly = 1e-9;
   std::array<int, 3> best{0, 0, 0};
@@ -67,13 +68,13 @@ std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
   return best;
 }
 
-/// Corners of the triangle that has these three as middles of its sides: corner k is opposite to number k.
+/// Returns the corners of the triangle with these midpoints of its sides. Corner k is opposite midpoint k.
 std::array<Eigen::Vector2d, 3> around(const std::array<Eigen::Vector2d, 3>& middle) {
   const Eigen::Vector2d sum = middle[0] + middle[1] + middle[2];
   return {sum - 2 * middle[0], sum - 2 * middle[1], sum - 2 * middle[2]};
 }
 
-/// In which control points' functions an anchor's function appears, and with which weight.
+/// Weight of the function of an anchor in the function of a control point.
 struct Share {
   int point;
   double weight;
@@ -107,7 +108,7 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Under `c1`, the anchor at whose generalised Greville point function k of a pole is collocated; -1: at the pole itself.
+  /// Returns, with `c1`, the anchor at whose generalised Greville point function k of a pole is collocated, or -1 for the pole itself.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:
@@ -126,7 +127,7 @@ class Shares {
     Eigen::Matrix3d corners;
     for (int k = 0; k < 3; ++k) {
       corners.col(k) << 1, corner[k];
-      const PolePoint& middle = at_pole[middles[(k + 1) % 3]];  // of a side that ends at the corner
+      const PolePoint& middle = at_pole[middles[(k + 1) % 3]];  // midpoint of a side that ends at the corner
       sites[k] = middle.is_pole ? -1 : middle.anchor;
     }
     const Eigen::Matrix3d barycentric = corners.inverse();
@@ -139,10 +140,11 @@ class Shares {
   std::array<std::array<int, 3>, 2> sites_{};
 };
 
-/// Knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
+/// Returns knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
 
-/// Bezier points in the order of the transform, with the pole at u = 1, from those of the element: Q_(v u) = element[order[4 v + u]].
+/// Returns the order of the Bezier points of an element in which the transform expects them, with the pole at u = 1: Q_(v u) = element[order[4 v +
+/// u]].
 std::array<int, 16> seen_from_base(bool ahead) {
   std::array<int, 16> order;
   for (int v = 0; v < 4; ++v)
@@ -150,7 +152,7 @@ std::array<int, 16> seen_from_base(bool ahead) {
   return order;
 }
 
-/// Replaces the elements at the poles by pieces and the sites on them by sites on the pieces.
+/// Replaces the elements at the poles by pieces, and sites on these elements by sites on the pieces.
 class Transform {
  public:
   explicit Transform(int subdivisions) : pieces_(pole_pieces(subdivisions)) {}
@@ -182,7 +184,7 @@ class Transform {
   std::vector<PolePiece> pieces_;
 };
 
-/// The pole itself: on a whole side of every tile there.
+/// Returns the sites of the pole: one on the side of every tile that is collapsed to the pole.
 std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
   std::vector<Site> out;
   for (int k = 0; k < int(tiling.tiles.size()); ++k) {
@@ -192,7 +194,7 @@ std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahe
   return out;
 }
 
-/// Generalised Greville sites of the control points on the tiles.
+/// Returns the generalised Greville points of the control points as sites on the tiles.
 std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunctions& f, const Shares& shares) {
   const Lattice& l = *mesh.lattice;
   std::vector<std::vector<Site>> out(shares.n_points());
@@ -214,7 +216,7 @@ std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunct
   return out;
 }
 
-/// The tiles as elements with all their functions.
+/// Returns the elements of the tiles with all their functions.
 std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, const Shares& shares) {
   std::vector<Element> out(f.tiling.tiles.size());
   std::vector<std::map<int, Eigen::Matrix<double, 1, 16>>> functions(out.size());
@@ -279,7 +281,7 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
-    std::vector<int> place(out.elements.size());  // among the kept; -1 - place among the pieces
+    std::vector<int> place(out.elements.size());  // index of the element in `kept`, or -1 - index of its first piece in `pieces`
     std::vector<bool> at_end(out.elements.size());
     for (std::size_t t = 0; t < out.elements.size(); ++t) {
       const Rectangle& r = f.tiling.tiles[t];

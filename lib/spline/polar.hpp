@@ -1,5 +1,6 @@
 #pragma once
-// The structured closed surface: a periodic cubic in azimuth times an open cubic along the meridian, with a pole at either end.
+// Structured closed surface: tensor product of a periodic cubic in azimuth and an open cubic along the meridian, with a pole at each end. The pole at
+// the beginning of the meridian is called "behind", the pole at its end "ahead".
 
 #include <array>
 #include <optional>
@@ -10,81 +11,85 @@
 
 namespace tanktread::spline {
 
-/// What the surface is around a pole.
+/// Representation of the surface around a pole.
 enum class PoleRule {
-  plain,             ///< one C0 function a pole; elements that are collapsed to the pole on one side
-  bezier_transform,  ///< the same functions, their elements replaced by non-degenerate ones (pole_pieces); the paper's
-  c1,                ///< three functions on a control triangle a pole, tangent planes continuous; elements as in `plain`
+  plain,             ///< one C0 function per pole; elements have one side that is collapsed to the pole
+  bezier_transform,  ///< functions of `plain` on non-degenerate elements (pole_pieces), as in the paper
+  c1,                ///< three functions on a control triangle per pole, with continuous tangent planes; elements as in `plain`
 };
 
-/// m elements around and r from pole to pole, uniform knots: (r + 1) m + 2 control points, or (r - 1) m + 6 under `c1`.
+/// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
 struct PolarMesh {
   int azimuthal = 32;   ///< m >= 4
   int meridional = 16;  ///< r >= 4
   PoleRule poles = PoleRule::bezier_transform;
-  int subdivisions = 2;  ///< of the elements at the poles in azimuth before the transform, 2^subdivisions
+  int subdivisions = 2;  ///< elements at the poles are divided in azimuth into 2^subdivisions before the transform
 };
 
-/// Where a control point stands: way along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth in elements, and distance
-/// from the axis in that of its row. The generalised Greville places; the three of a pole under `c1` stand in for row 1 of the tensor net, at
-/// other distances from the axis than that.
+/// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth v
+/// in elements, and distance from the axis divided by the distance of its row. With `c1`, the three control points of a pole replace row 1 of the
+/// tensor net, at distances from the axis other than that of row 1.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
-/// The space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
-/// t along the meridian towards the pole ahead; those of the transform last. A pole of `plain` lies on a whole side of m elements, and its
-/// site is at s = 1/2 of each. `face` is 0 and `origin`, `size` are in parts of m and r; the pieces of the transform share the size.
+/// Returns the space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
+/// t along the meridian towards the pole ahead; the pieces of the transform come last. With `plain`, a pole is a whole side of m elements, and its
+/// sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size in
+/// azimuth.
 ///
-/// Under `c1` (after Speleers and Toshniwal 2021), with rows 0 and 1 next to the pole, azimuths f_j = 2 pi j / m of their functions,
-/// places d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all of them:
+/// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions,
+/// d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then
 ///
 ///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
 ///
-/// The triangle is the one that has three of the d_j as middles of its sides, which are chosen so that it is as large as they can make it (then it
-/// holds them all, and l_k >= 0). The functions are collocated at the generalised Greville points of these three: condition numbers are those of
-/// tensor-product splines.
+/// Three of the d_j are the midpoints of the sides of the triangle. They are chosen to make it as large as possible. Then it contains all d_j, and
+/// l_k >= 0. The functions are collocated at the generalised Greville points of these three, so condition numbers are those of tensor-product
+/// splines.
 Space space(const PolarMesh& mesh);
 
-/// The same on a mesh made by polar() and refined: analysis-suitable T-splines, one control point an anchor but for those of a pole, in the order
-/// of the lattice vertices.
+/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the poles,
+/// in the order of the lattice vertices.
 ///
-/// Under `c1` the places of the base mesh are carried to the finer functions of row 1 by knot insertion, times the height of the first element over
-/// that of the base mesh, so spaces of nested meshes are nested; the triangle is made anew from these places and the pole. `plain` spaces are nested
-/// too; `bezier_transform` ones are not, but their control points are those of the `plain` space: take fields over between these.
+/// With `c1`, knot insertion transfers the positions d_j of the base mesh to the finer functions of row 1. They are multiplied by the height of the
+/// first element divided by its height in the base mesh, so spaces of nested meshes are nested. The triangle is chosen again from these positions and
+/// the pole. `plain` spaces are nested, too. `bezier_transform` spaces are not, but they have the control points of the `plain` spaces, between which
+/// fields can be transferred.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
-// From a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
+// Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
 
-/// Bezier points of the degenerate element are Q_ij, u -> i fastest; the pole is the side u = 1. Those of the cubic triangle are T_ijk,
-/// i + j + k = 3, of barycentric coordinates r = u (1 at the pole), s = (1 - u) v, t = (1 - u)(1 - v), in this order.
+/// Order of the Bezier points T_ijk, i + j + k = 3, of the cubic triangle in barycentric coordinates r = u (1 at the pole), s = (1 - u) v,
+/// t = (1 - u)(1 - v). The Bezier points of the degenerate element are Q_ij, u -> i fastest; the pole is the side u = 1.
 constexpr std::array<std::array<int, 3>, 10> triangle_points{
     {{0, 0, 3}, {1, 0, 2}, {2, 0, 1}, {3, 0, 0}, {0, 1, 2}, {1, 1, 1}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {0, 3, 0}}};
 
-/// (P-A.1): the triangle that fits best. Row i of the degenerate element becomes a curve of degree 3 - i in v, by least squares with its
-/// ends kept (Hu 2001); the pole is the mean of Q_30 .. Q_33. Shape (10, 16).
+/// Returns the matrix of (P-A.1), shape (10, 16), which maps the degenerate element to the triangle that approximates it best. Row i of the element
+/// becomes a curve of degree 3 - i in v by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
 Eigen::MatrixXd triangle_of_degenerate();
 
-/// (P-A.2): the triangle over the quadrilateral with the given corners (barycentric; (U, V) = (0,0), (1,0), (1,1), (0,1)), U fastest.
-/// Exact, since a cubic over a bilinear map is bicubic. Shape (16, 10).
+/// Barycentric coordinates of the corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
+/// Returns the matrix of (P-A.2), shape (16, 10), which maps the triangle to the Bezier points of a quadrilateral in it, U fastest. It is exact,
+/// because a cubic of a bilinear map is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
-/// The three quadrilaterals between the corners, the mid-sides and the barycentre: at T_003, at the pole, at T_030.
+/// Returns the three quadrilaterals between the corners, the mid-sides and the barycentre: at T_003, at the pole, at T_030.
 const std::array<Corners, 3>& thirds_of_triangle();
 
-/// One non-degenerate element.
+/// One non-degenerate piece of a degenerate element.
 struct PolePiece {
-  double from = 0, to = 1;     ///< in v
-  Corners corners;             ///< in the triangle over that
-  Eigen::MatrixXd conversion;  ///< Bezier points of the piece = conversion * those of the degenerate element; shape (16, 16)
+  double from = 0, to = 1;     ///< range of v of the triangle that contains the piece
+  Corners corners;             ///< corners of the piece in this triangle
+  Eigen::MatrixXd conversion;  ///< matrix from Bezier points of the degenerate element to those of the piece; shape (16, 16)
 
-  /// Local coordinates of the place (u, v) of the degenerate element, if the piece's closure holds it. At the pole v means nothing.
+  /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.
   std::optional<std::array<double, 2>> local(double u, double v) const;
 };
 
-/// The degenerate element cut 2^subdivisions times in v, and each cut by (P-A.1) and (P-A.2): 3 * 2^subdivisions pieces.
+/// Returns the 3 * 2^subdivisions pieces of a degenerate element: it is divided in v into 2^subdivisions parts, and (P-A.1) and (P-A.2) convert each
+/// of them to three pieces.
 std::vector<PolePiece> pole_pieces(int subdivisions);
 
 }  // namespace tanktread::spline

@@ -17,7 +17,8 @@ int index_of(int i, int j) {
   return -1;
 }
 
-/// Bezier points of degree q that come closest, when elevated, to given ones of degree 3, ends kept. Shape (q + 1, 4).
+/// Returns the matrix of degree reduction from 3 to q, shape (q + 1, 4). The ends are fixed, and the result, elevated to degree 3, is closest to the
+/// given Bezier points in the least-squares sense.
 Eigen::MatrixXd reduction(int q) {
   if (q == 0) return Eigen::MatrixXd::Constant(1, 4, 0.25);
   const Eigen::MatrixXd up = elevation(q, 3);
@@ -50,7 +51,7 @@ Eigen::MatrixXd triangle_of_degenerate() {
 }
 
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
-  // Values at 4 x 4 points, turned into Bezier points.
+  // Computes the values at 4 x 4 points and converts them to Bezier points.
   constexpr double factorial[4] = {1, 1, 2, 6};
   Eigen::MatrixXd values(16, 10), bernstein_values(16, 16);
   double U[4], V[4];
@@ -92,7 +93,7 @@ std::optional<std::array<double, 2>> PolePiece::local(double u, double v) const 
     at += slope.inverse() * (wanted - place(corners, at[0], at[1]).head<2>());
     at = at.cwiseMax(-0.5).cwiseMin(1.5);
   }
-  // Outside of the piece the iteration may end at a fold of the map, as not a number.
+  // If the point is outside the piece, the iteration may end at a fold of the map, or as NaN.
   if (!((place(corners, at[0], at[1]).head<2>() - wanted).norm() <= margin)) return {};
   if (!(at.minCoeff() >= -margin && at.maxCoeff() <= 1 + margin)) return {};
   for (double& x : at) x = std::abs(x) < margin ? 0 : std::abs(x - 1) < margin ? 1 : x;

@@ -10,7 +10,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// A line that arrives at the end knot goes on through the row of no height to the border.
+/// Continues a path that arrives at the end knot through the row of zero height to the border.
 void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   while (!l.ends(ray.vertex, ray.slot) && l.length(ray.vertex, ray.slot, 1) == 0) {
     path.push_back(ray);
@@ -18,7 +18,7 @@ void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   }
 }
 
-/// Unit edges of the line that cuts a tile in halves: across s from its bottom to its top, or across t from left to right.
+/// Returns the unit edges of the line that bisects a tile: across s from bottom to top, or across t from left to right.
 std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   const int cell = across_s ? l.cell_at(r.face, r.x + r.width / 2, r.y) : l.cell_at(r.face, r.x, r.y + r.height / 2);
   Ray ray = l.side(cell, 0);
@@ -30,7 +30,7 @@ std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   return path;
 }
 
-/// The first bay of a T-junction's face extension.
+/// Returns the first bay of the face extension of a T-junction.
 std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   std::vector<Ray> path;
   Ray r{t.vertex, t.missing};
@@ -42,7 +42,7 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   return path;
 }
 
-/// Crossings + missing / 2 after a trial insertion; bays into the rings of an extraordinary point last.
+/// Returns crossings + missing / 2 after a trial insertion, plus a penalty if the bay enters the rings of an extraordinary point.
 double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
   extended.insert(bay);
@@ -51,7 +51,7 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   return score;
 }
 
-/// Bay of the candidate that does the least harm; ties: the shorter bay, the lower vertex.
+/// Returns the bay of the candidate with the smallest harm; among equals the shorter bay, then the lower vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;
@@ -68,7 +68,7 @@ std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> can
   return best;
 }
 
-/// Puts in a path and its images, and adds all of them to `paths`.
+/// Inserts a path and its images, and appends all of them to `paths`.
 void insert(ExtendedMesh& extended, std::vector<Ray> path, const RepairRules& rules, std::vector<std::vector<Ray>>& paths) {
   for (const LatticeMap& map : rules.images) {
     paths.push_back(image(*extended.mesh().lattice, map, path));
@@ -78,14 +78,14 @@ void insert(ExtendedMesh& extended, std::vector<Ray> path, const RepairRules& ru
   paths.push_back(std::move(path));
 }
 
-/// A tile to be cut across s or t.
+/// A tile that is to be bisected across s or t.
 struct Cut {
   int tile;
   bool across_s;
   auto operator<=>(const Cut&) const = default;
 };
 
-/// The first of the images of a cut, itself included: which one is taken matters where a tile has no middle line.
+/// Returns the smallest of the images of a cut, including the cut itself. The choice matters if a tile has no middle line on the lattice.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

@@ -1,5 +1,5 @@
 #pragma once
-// Local refinement of a T-mesh whose splines stay linearly independent and contain the old ones; taking cuts back; and the symmetries of the mesh
+// Local refinement of a T-mesh such that its splines stay linearly independent and contain the old ones, coarsening, and the symmetries of the mesh
 // that both keep.
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace tanktread::spline {
 
-/// A map of the vertices onto themselves that keeps neighbours: slot k at v goes to slot turn[v] + k at vertex[v], or to turn[v] - k when the map is
-/// mirrored (counted modulo the valence).
+/// A symmetry of the lattice: maps vertices to vertices and keeps neighbours. Slot k at v is mapped to slot turn[v] + k at vertex[v], or to turn[v] -
+/// k if the map is mirrored (modulo the valence).
 struct LatticeMap {
   std::vector<int> vertex;
   std::vector<std::uint8_t> turn;
@@ -20,77 +20,79 @@ struct LatticeMap {
 
 Ray image(const Lattice& lattice, const LatticeMap& map, Ray ray);
 
-/// Each ray of a path.
+/// Returns the image of each ray of a path.
 std::vector<Ray> image(const Lattice& lattice, const LatticeMap& map, const std::vector<Ray>& path);
 
-/// The element of a tiling that the map takes another one to, and whether s and t change places. The tiling has to have the symmetry.
+/// Image of an element of a tiling, and whether the map exchanges s and t. The tiling must have the symmetry.
 struct TileImage {
   int tile;
   bool exchanged;
 };
 TileImage image(const Lattice& lattice, const LatticeMap& map, const Tiling& tiling, int tile);
 
-/// The only map that takes one ray to another, mirrored or not; none where the lattice has no such symmetry.
+/// Returns the unique map, mirrored or not, that maps one ray to another; nothing if the lattice does not have this symmetry.
 std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, bool mirrored);
 
-/// The map that takes the T-mesh elements under Bezier element e to that under element[e], for all of them; none where there is none.
+/// Returns the map that, for every Bezier element e, maps the T-mesh element that contains e to the T-mesh element that contains element[e]; nothing
+/// if there is no such map.
 std::optional<LatticeMap> lattice_map(const TMesh& mesh, const Space& space, std::span<const int> element, bool mirrored);
 
-/// Cut an element of elements(mesh) in halves: across s (a line of constant s), across t, or both.
+/// Requests to bisect an element of elements(mesh): across s (by a line of constant s), across t, or both.
 struct Mark {
   int element;
   bool s = true, t = true;
 };
 
-/// Which rules the repair keeps. All of them are needed for nested spaces; they are switches so that tests can show it.
+/// Rules that the repair enforces. All are needed for nested spaces. Tests switch them off to show this.
 struct RepairRules {
-  bool no_overlaps = true;        ///< no vertex between two T-junctions that point at each other
-  bool nested_extensions = true;  ///< the extended mesh contains the one before
-  int rings = 3;                  ///< uniform rings at extraordinary points
-  std::vector<LatticeMap> images = {};  ///< symmetries of the mesh, a group without the identity: what is cut is cut in all of them
+  bool no_overlaps = true;        ///< no vertex is between two T-junctions that point at each other
+  bool nested_extensions = true;  ///< the extended mesh contains the extended mesh before the refinement
+  int rings = 3;                  ///< number of uniform rings at extraordinary points
+  std::vector<LatticeMap> images = {};  ///< symmetries of the mesh to keep, a group without the identity; each cut is applied to all images
 };
 
 struct Refinement {
   TMesh mesh;
-  int refused = 0;   ///< cuts that the lattice is too coarse for
-  int repairs = 0;   ///< bays added to keep the rules
-  int halvings = 0;  ///< extraordinary points whose rings were halved
+  int refused = 0;   ///< number of cuts for which the lattice is too coarse
+  int repairs = 0;   ///< number of bays added to satisfy the rules
+  int halvings = 0;  ///< number of times that the rings of an extraordinary point were halved
 };
 
-/// Cuts the marked elements, then adds the first bay of one T-junction after the other, the least harmful of those involved, until no extensions
-/// cross, none that was there is missing, and none overlap; at an extraordinary point whose rings are entered, cuts the inner two rings.
-/// Only edges are added. Depends on the set of marks, not on their order. A mesh with the symmetry of the rules' images keeps it: marks and repairs
-/// stand for all their images.
+/// Bisects the marked elements and repairs the mesh. The repair adds one bay after the other, where a bay is the part of a line between two
+/// successive perpendicular edges, until no extensions cross, none of the earlier extensions is missing, and none overlap. It adds the first bay of
+/// the extension of one of the T-junctions involved, the one that causes the fewest new violations. If a cut enters the rings of an extraordinary
+/// point, the two inner rings are cut. Edges are only added. The result depends on the set of marks but not on their order. If the mesh has the
+/// symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
 /// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice, the third rule, and extraordinary points.
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules = {});
 
 class ExtendedMesh;
-/// The repair alone. Returns the numbers of bays and of halvings.
+/// Repairs the mesh without bisecting elements. Returns the numbers of bays and of halvings.
 std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules);
 
 struct Coarsening {
   TMesh mesh;
-  int bays = 0;       ///< taken out
-  int doublings = 0;  ///< extraordinary points whose rings went back to twice the spacing
-  int repairs = 0;    ///< bays put in again to keep the mesh analysis-suitable
+  int bays = 0;       ///< number of bays removed
+  int doublings = 0;  ///< number of times that the spacing of the rings of an extraordinary point was doubled
+  int repairs = 0;    ///< number of bays added again to keep the mesh analysis-suitable
 };
 
-/// How often an element of elements(mesh) may double its width (s) and height (t).
+/// Permission for an element of elements(mesh) to grow: how often it may double its width (s) and height (t).
 struct Merge {
   int element;
   int s = 1, t = 1;
 };
 
-/// Takes out the lines that both sides allow to go: those that are not on the grid of the smaller of the two allowed widths. Lines of the base
-/// mesh stay, and so do the rings at an extraordinary point, which go as a whole.
+/// Removes the lines that the elements on both sides permit to remove: lines that are not on the grid of the smaller of the two permitted widths.
+/// Lines of the base mesh stay. The rings at an extraordinary point are only removed as a whole.
 ///
-/// All lines that may go are taken out together and the mesh is then repaired (one at a time, each would be held by its neighbours). The splines
-/// of the result need not be contained in the old ones, so fields go over by Projection. Under the rules' images an element may grow as far as all
-/// its images may, and a line goes with all of its own or not at all.
+/// All these lines are removed together, and the mesh is then repaired, because single lines would be kept by their neighbours. The new spline space
+/// need not be contained in the old one, so fields are transferred by Projection. With `rules.images`, an element may grow as far as all of its
+/// images may, and a line is removed with all of its images or not at all.
 Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 
-/// The same for a given set of unit edges (bits as in TMesh::edges): an edge goes if its whole bay may go.
+/// Coarsens a mesh by removing edges of a given set of unit edges (bits as in TMesh::edges). An edge is removed if its whole bay may be removed.
 Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules = {});
 
 }  // namespace tanktread::spline

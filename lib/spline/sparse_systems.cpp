@@ -8,14 +8,14 @@ namespace tanktread::spline {
 
 namespace {
 
-// Measured with the mass matrices of spheres of 3,458 and 13,826 control points: entries below 1e-2 of a row dropped take 7 iterations, below 1e-4
-// 3, in a shorter time; more than twice as many entries as the matrix has gain nothing.
+// Parameters of ILUT, measured with the mass matrices of spheres with 3,458 and 13,826 control points. If entries below 1e-2 of a row are dropped,
+// the solver takes 7 iterations; below 1e-4, it takes 3 iterations and less time. More than twice the entries of the matrix bring no gain.
 constexpr double dropped = 1e-4;
 constexpr int fill = 2;
 
 }  // namespace
 
-/// Column by column: the elements around an unknown, then a dense accumulator.
+/// Assembles column by column: adds the elements around an unknown in a dense accumulator.
 Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local) {
   struct Place {
     std::size_t element;
@@ -28,7 +28,7 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
   Eigen::SparseMatrix<double> out(n, n);
   out.reserve(Eigen::Index(50) * n);
   std::vector<double> sum(n, 0.0);
-  std::vector<int> rows, last(n, -1);  // last: the column that a row was met in
+  std::vector<int> rows, last(n, -1);  // last: latest column in which each row has an entry
   for (int j = 0; j < n; ++j) {
     rows.clear();
     for (const auto& [element, row] : around[j]) {

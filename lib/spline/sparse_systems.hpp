@@ -1,5 +1,5 @@
 #pragma once
-// Sparse symmetric matrices that are sums over elements, and linear systems by iteration.
+// Assembly of sparse symmetric matrices from element matrices, and an iterative solver for sparse linear systems.
 
 #include <memory>
 #include <span>
@@ -9,29 +9,29 @@
 
 namespace tanktread::spline {
 
-/// What one element adds: factor * values(i, j) to the entry of unknowns i and j of its own. Both must outlive the sum.
+/// Element matrix: adds factor * values(i, j) to the entry (unknowns[i], unknowns[j]). `unknowns` and `values` must exist until the assembly ends.
 struct LocalMatrix {
-  std::span<const int> unknowns;  ///< m of them
-  const Eigen::MatrixXd* values;  ///< shape (m, m) or larger, symmetric
+  std::span<const int> unknowns;  ///< indices of the m unknowns of the element
+  const Eigen::MatrixXd* values;  ///< symmetric matrix, shape (m, m) or larger
   double factor = 1;
 };
 
-/// The sum, shape (n, n); entries where two unknowns meet on an element are kept even if they are 0.
+/// Returns the sum of the element matrices, shape (n, n). The entry of two unknowns on one element is stored even if it is 0.
 Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& local);
 
-/// BiCGSTAB with the incomplete factors ILUT (Saad 1994) of Eigen. Mass and collocation matrices of splines have inverses that fade within a few
-/// elements, so factors with hardly more entries than the matrix leave three or four iterations, whatever the size: set-up and solution grow
-/// with the number of unknowns, where complete factors grow like its power 1.5.
+/// BiCGSTAB with the incomplete LU factors ILUT (Saad 1994) of Eigen. The inverses of mass and collocation matrices of splines decay within a few
+/// elements. So with factors that have only a few more entries than the matrix, three or four iterations are enough for any size. The cost of factors
+/// and solution is proportional to the number of unknowns, whereas the cost of complete factors grows with its power 1.5.
 class IncompleteSolver {
  public:
   IncompleteSolver();
   ~IncompleteSolver();
   IncompleteSolver(IncompleteSolver&&) noexcept;
 
-  /// Factors A (square), which must stay where it is; whether that can be done.
+  /// Factors the square matrix A, to which the solver keeps a reference. Returns whether the factorisation succeeded.
   bool factor(const Eigen::SparseMatrix<double, Eigen::RowMajor>& a);
 
-  /// x = A^-1 b to a relative residual of 1e-14, or what is left of it after 30 iterations from `start`, or from 0.
+  /// Returns x = A^-1 b with a relative residual of 1e-14, or the result of 30 iterations. The iteration begins at `start`, or at 0.
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b, const Eigen::VectorXd& start) const;
 

@@ -9,7 +9,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// All lines of the base mesh.
+/// Returns the mesh with all lines of the base mesh.
 TMesh uniform(Lattice lattice) {
   TMesh mesh;
   mesh.lattice = std::make_shared<Lattice>(std::move(lattice));
@@ -91,7 +91,7 @@ Tiling elements(const TMesh& mesh) {
 
 namespace {
 
-/// The unit edges from a ray on through so many bays.
+/// Returns the unit edges from a ray through `count` bays.
 std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
   std::vector<Ray> path;
   while (count > 0 && !mesh.lattice->ends(ray.vertex, ray.slot)) {

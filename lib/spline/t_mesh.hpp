@@ -1,5 +1,5 @@
 #pragma once
-// A T-mesh on a lattice: which lattice edges are there. Everything else (vertices, T-junctions, elements, knots) follows.
+// A T-mesh: a subset of the edges of a lattice, which determines the vertices, T-junctions, elements and knots.
 
 #include <memory>
 
@@ -7,73 +7,73 @@
 
 namespace tanktread::spline {
 
-/// A checkpoint of a mesh is `edges` and `spacing`; put into the mesh that cube() or polar() makes from the same arguments, they restore it.
+/// A checkpoint stores `edges` and `spacing`. To restore the mesh, assign them to the mesh that cube() or polar() returns for the same arguments.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
-  std::vector<std::uint8_t> edges;  ///< of a lattice vertex: bit k set when the unit edge in slot k is there; the same at both ends
-  std::vector<int> spacing;         ///< h of each extraordinary point: within 3 h of it the mesh is the uniform h lattice
+  std::vector<std::uint8_t> edges;  ///< bits at each lattice vertex: bit k is set if the unit edge in slot k exists; stored at both ends
+  std::vector<int> spacing;         ///< spacing h at each extraordinary point: within 3 h of it the mesh is the uniform h lattice
 
   bool edge(int v, int k) const { return edges[v] >> k & 1; }
   bool edge_of_cell(int c, int k) const { return edge(lattice->corners[c][k], lattice->slot[c][k]); }
   void set(Ray edge, bool present) { lattice->set(edges, edge, present); }
 };
 
-/// The uniform mesh on the surface of a cube: n^2 elements a face, n >= 3, and room for `levels` bisections of each element; spaces by
-/// extraction.hpp. Throws UserError when n < 3 (rings of extraordinary points would meet) or when the lattice would not fit into memory.
+/// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n >= 3. The lattice permits `levels` bisections of each element.
+/// Spaces are in extraction.hpp. Throws UserError if n < 3 (rings of extraordinary points would meet) or the lattice would not fit into memory.
 TMesh cube(int elements_per_side, int levels = 0);
 
-/// The uniform mesh on a sphere with two poles: m elements around, r from pole to pole, and room for `levels` bisections; spaces by polar.hpp.
-/// Throws UserError when m < 4 or r < 4, or when the lattice would not fit into memory.
+/// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
+/// each element. Spaces are in polar.hpp. Throws UserError if m < 4 or r < 4, or the lattice would not fit into memory.
 TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
-/// Whether a control point sits at the vertex: edges on both axes (T-junctions and extraordinary points included).
+/// Returns whether the vertex is an anchor, which has a control point: it has edges on both axes. T-junctions and extraordinary points are anchors.
 bool is_anchor(const TMesh& mesh, int vertex);
 
-/// Lattice vertex of every control point, ascending; 6 n^2 + 2 of them on the uniform cube. Control point i of space(mesh, ...) is
-/// anchors(mesh)[i].
+/// Returns the lattice vertices of the control points in ascending order; 6 n^2 + 2 on the uniform cube. Control point i of space(mesh, ...) is at
+/// vertex anchors(mesh)[i].
 std::vector<int> anchors(const TMesh& mesh);
 
-/// The inverse: control point at a lattice vertex, or -1.
+/// Returns the inverse of anchors(mesh): the control point at each lattice vertex, or -1.
 std::vector<int> control_points(const TMesh& mesh);
 
-/// An element of a mesh: cells x .. x + width - 1, y .. y + height - 1 of a macro face.
+/// Element of a mesh: cells x .. x + width - 1, y .. y + height - 1 of a macro face.
 struct Rectangle {
   int face, x, y, width, height;
 };
-/// Its sides k, each by the ray along the first cell of it: from corner (x, y), (x+w, y), (x+w, y+h), (x, y+h) towards the next, outward orientation.
+/// Returns the sides of a rectangle as rays from corner (x, y), (x+w, y), (x+w, y+h) and (x, y+h) to the next corner, outward orientation.
 std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 
-/// Whether one of its sides is a pole.
+/// Returns whether a side of the rectangle is collapsed to a pole.
 bool is_degenerate(const Lattice& lattice, const Rectangle& r);
 
-/// Rectangles into which the edges cut the faces, and the one that holds each cell.
+/// Rectangles (tiles) into which the edges divide the faces, and the tile that contains each cell.
 struct Tiling {
   std::vector<Rectangle> tiles;
   std::vector<int> tile_of_cell;
 };
 
-/// A T-junction: a vertex with exactly three of its four edges; `missing` is the slot of the fourth.
+/// T-junction: a vertex with exactly three of its four edges. `missing` is the slot of the fourth.
 struct TJunction {
   int vertex, missing;
 };
 std::vector<TJunction> t_junctions(const TMesh& mesh);
 
-/// The missing slot if the vertex is a T-junction, -1 otherwise.
+/// Returns the missing slot if the vertex is a T-junction, otherwise -1.
 int missing_slot(const TMesh& mesh, int vertex);
 
-/// Whether a ray that arrives (its slot goes on) meets an edge perpendicular to it; a vertex on either side counts.
+/// Returns whether a line in the direction of the ray meets a perpendicular edge (a touch) at the vertex. An edge on one side is enough.
 inline bool touches(const TMesh& mesh, Ray r) { return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10); }
 
-/// The unit edges (vertex, slot) of an extension: from the T-junction through two bays in its missing direction, up to the second
-/// perpendicular touch; or through one bay the other way.
+/// Returns the unit edges (vertex, slot) of an extension of a T-junction. A bay is the part of a line between two successive touches. The face
+/// extension has two bays in the missing direction, up to the second touch. The edge extension has one bay in the opposite direction.
 std::vector<Ray> face_extension(const TMesh& mesh, const TJunction& t);
 std::vector<Ray> edge_extension(const TMesh& mesh, const TJunction& t);
 
-/// Elements of the T-mesh (the ones that are marked for refinement).
+/// Returns the elements of the T-mesh, which can be marked for refinement.
 Tiling elements(const TMesh& mesh);
 
-/// Elements of the Bezier mesh: the T-mesh with the face extensions of its T-junctions; on each of them every spline function is one
-/// bicubic.
+/// Returns the elements of the Bezier mesh, which is the T-mesh with the face extensions of its T-junctions. On each of them every spline function is
+/// a single bicubic polynomial.
 Tiling bezier_mesh(const TMesh& mesh);
 
 }  // namespace tanktread::spline

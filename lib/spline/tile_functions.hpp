@@ -1,5 +1,5 @@
 #pragma once
-// The local knots of the spline functions of a T-mesh, the functions on the elements of its Bezier mesh, and their generalised Greville points there.
+// Local knots of the spline functions of a T-mesh, Bezier coefficients of these functions on the Bezier mesh, and their generalised Greville points.
 
 #include <array>
 #include <vector>
@@ -9,37 +9,37 @@
 
 namespace tanktread::spline {
 
-/// In each slot of an anchor, the distances (lattice units) to the first and second perpendicular touch. A ray that runs into an extraordinary
-/// point first gets d, 2 d (mirror: the rings there are uniform), and so does every slot of such a point. Beyond the border of an open face the
-/// end knot is repeated. Parametric distances: Lattice::length.
+/// Distances (lattice units) from an anchor to the first and second touch (see `touches`) in each slot. If the ray first meets an extraordinary
+/// point, at distance d, they are d and 2 d, as by reflection, because the rings at the point are uniform. For the slots of an extraordinary point
+/// they are also d and 2 d. At the border of an open face the end knot is repeated. Lattice::length converts them to parametric distances.
 struct Knots {
   int reach[4][2];
 };
 Knots knots(const TMesh& mesh, int anchor);
 
-/// Bezier coefficients of one function on one element.
+/// Bezier coefficients of one function on one tile.
 struct Contribution {
   int tile, anchor;
-  std::array<double, 16> row;  ///< 4 j + i
+  std::array<double, 16> row;  ///< coefficients in the order 4 j + i
 };
 
 struct TileFunctions {
-  Tiling tiling;                      ///< the Bezier mesh
+  Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
-  std::vector<int> irregular;         ///< of a tile: its corner at an extraordinary point, or -1
-  std::vector<Contribution> entries;  ///< on regular tiles, by ascending anchor; functions at irregular ones are not tensor products
-  std::vector<Knots> knots;           ///< of each anchor
+  std::vector<int> irregular;         ///< corner of each tile that is at an extraordinary point, or -1
+  std::vector<Contribution> entries;  ///< on regular tiles, by ascending anchor; functions on irregular tiles are no tensor products
+  std::vector<Knots> knots;           ///< knots of each anchor
 };
 TileFunctions tile_functions(const TMesh& mesh);
 
-/// A point of a cell in thirds of a unit, 0 <= x, y <= 3: generalised Greville points are such.
+/// A point of a cell in thirds of a unit, 0 <= x, y <= 3. All generalised Greville points have this form.
 struct CellPoint {
   int cell, x, y;
 };
-/// The means of the three inner knots of an anchor in each direction.
+/// Returns the generalised Greville point of an anchor: the mean of its three inner knots in each direction.
 CellPoint greville(const TMesh& mesh, int anchor, const Knots& knots);
 
-/// Every tile whose closure holds a point, with the local coordinates there, by ascending tile.
+/// Returns the sites of a point on all tiles whose closure contains it, by ascending tile.
 std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const CellPoint& point);
 
 }  // namespace tanktread::spline

@@ -17,7 +17,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Of a field of size 1: far above rounding, far below what spaces that are not nested leave.
+/// Largest residual of nested spaces, for a field of order 1. It is far above round-off and far below the residual of spaces that are not nested.
 constexpr double nested = 1e-10;
 
 std::vector<int> first_integers(std::size_t n) {
@@ -26,14 +26,15 @@ std::vector<int> first_integers(std::size_t n) {
   return out;
 }
 
-/// The functions of both spaces at one place.
+/// Values of the functions of both spaces at one point.
 struct Sample {
   int old_element, new_element;
   double weight;
   Eigen::VectorXd old_basis, new_basis;
 };
 
-/// Samples at the 4 x 4 Gauss points of some elements of a space, found in the other one; weighted by parametric area, or all elements alike.
+/// Computes samples at the 4 x 4 Gauss points of some elements of one space, and finds the points in the other space. The weights include the
+/// parametric area of the element, or are equal for all elements.
 class Sampling {
  public:
   Sampling(const Space& from, const Space& to) : from_(from), to_(to), in_from_(from), in_to_(to) {}
@@ -64,13 +65,14 @@ Eigen::RowVector3d value(const Eigen::VectorXd& basis, const Element& e, const N
   return sum;
 }
 
-/// Some control points of `to` by least squares at samples, the others given. One sparse Cholesky factorisation serves all fields.
+/// Computes some control points of `to` by least squares at samples; the other control points are given. Uses one sparse Cholesky factorisation for
+/// all fields.
 class Fit {
  public:
   Fit(const Space& from, const Space& to, std::vector<Sample> samples, std::vector<int> unknown)
       : from_(from), to_(to), samples_(std::move(samples)), unknown_(std::move(unknown)), number_(to.n_points, -1) {
     for (std::size_t i = 0; i < unknown_.size(); ++i) number_[unknown_[i]] = int(i);
-    std::map<int, Eigen::MatrixXd> products;  // of an element
+    std::map<int, Eigen::MatrixXd> products;  // mass matrix of each element
     for (const Sample& s : samples_) {
       Eigen::MatrixXd& m = products.try_emplace(s.new_element, Eigen::MatrixXd::Zero(s.new_basis.size(), s.new_basis.size())).first->second;
       m.noalias() += s.weight * s.new_basis * s.new_basis.transpose();
@@ -88,7 +90,7 @@ class Fit {
     if (!unknown_.empty()) factor_.compute(assemble(int(unknown_.size()), local));
   }
 
-  /// Fills in the rows of the unknown points; the distances of the fields at the samples.
+  /// Computes the rows of the unknown control points in `net`. Returns the distances between both fields at the samples.
   std::vector<double> solve(const Net& field, Net& net) const {
     for (int p : unknown_) net.row(p).setZero();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(Eigen::Index(unknown_.size()), 3);
@@ -111,7 +113,7 @@ class Fit {
  private:
   const Space &from_, &to_;
   std::vector<Sample> samples_;
-  std::vector<int> unknown_, number_;  // number_: of a control point among them, or -1
+  std::vector<int> unknown_, number_;  // number_: index of each control point in unknown_, or -1
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
@@ -124,16 +126,16 @@ struct Transfer::State {
   const Space& to;
   Sampling sampling;
   int straddling = 0;
-  std::vector<int> copied;         // of a control point: the old one that it is, or -1
-  std::optional<Fit> rest;         // of what is not copied
-  mutable std::optional<Fit> all;  // made when it is needed
+  std::vector<int> copied;         // old control point from which each control point is copied, or -1
+  std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
+  mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
 
   State(const Space& old_space, const Space& new_space);
 };
 
 Transfer::State::State(const Space& old_space, const Space& new_space)
     : from(old_space), to(new_space), sampling(from, to), copied(to.n_points, -1) {
-  std::vector<const Element*> around;  // the old element that holds the centre of a new one
+  std::vector<const Element*> around;  // old element that contains the centre of each new element
   std::vector<char> alike;
   for (const Element& e : to.elements) {
     const Element& c = from.elements[sampling.in_from_({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element];

@@ -1,5 +1,5 @@
 #pragma once
-// Fields from one spline space to another: by Transfer to one that contains it, by Projection to any.
+// Transfer of fields between spline spaces: Transfer to a space that contains the old one, Projection to any other space.
 
 #include <memory>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace tanktread::spline {
 
-/// The same field in a space that contains the old one. Every element of `to` must lie in one element of `from` (refinement; `straddling` counts
-/// those that do not).
+/// Represents a field in a space that contains the old space. Every element of `to` must be inside one element of `from`, as after refinement;
+/// `straddling` counts the elements that are not.
 ///
-/// Where both spaces have an element and its functions in common, control values are copied, to the last bit. The others are found by least squares
-/// at the 4 x 4 Gauss points of the elements on which anything has changed, without a residual. When there is one, the spaces are not nested, and all
-/// values are found anew by least squares. Both spaces must outlive it.
+/// If both spaces have an element and its functions in common, control values are copied bitwise. The other values are computed by least squares at
+/// the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. Otherwise all values are computed
+/// again by least squares. Both spaces must outlive it.
 class Transfer {
  public:
   Transfer(const Space& from, const Space& to);
@@ -23,7 +23,7 @@ class Transfer {
 
   struct Result {
     Net net;
-    double residual;  ///< largest |new - old| over these points; where the field has size 1, 1e-13 is rounding
+    double residual;  ///< largest |new - old| at these points; 1e-13 is round-off if the field is of order 1
   };
   Result operator()(const Net& field) const;
 
@@ -34,8 +34,8 @@ class Transfer {
   std::unique_ptr<State> state_;
 };
 
-/// Least squares at the 4 x 4 Gauss points of the elements of both spaces, weighted by parametric area. One factorisation serves all fields.
-/// Both spaces must outlive it.
+/// Projects a field to another space by least squares at the 4 x 4 Gauss points of the elements of both spaces, weighted by parametric area. Uses one
+/// factorisation for all fields. Both spaces must outlive it.
 class Projection {
  public:
   Projection(const Space& from, const Space& to);
@@ -44,7 +44,7 @@ class Projection {
 
   struct Result {
     Net net;
-    std::vector<double> defect;  ///< of an element of `from`: largest |old - new| over the points in it
+    std::vector<double> defect;  ///< largest |old - new| at the points in each element of `from`
   };
   Result operator()(const Net& field) const;
 

@@ -9,11 +9,12 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Share of the distance between control points below which an element counts as small.
+/// Ratio of element size to the distance between control points below which an element counts as small.
 constexpr double small = 0.6;
 
-/// Gauss points a direction of the far rule. Measured on deformed capsules at n = 3, 6 and 12 (tests/verify/layers.cpp). For targets off the surface,
-/// where near rules take over in time, the kernel is smoother: with three the far part errs by 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
+/// Returns the number of Gauss points per direction of the far rule. Measured on deformed capsules at n = 3, 6 and 12 (tests/verify/layers.cpp). For
+/// targets off the surface the kernel is smoother, because near rules replace the far rule at small distances: with three points the far sum has an
+/// error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
 int far_order(const quadrature::Options& options, bool on_surface = true) {
   if (options.rule != "adaptive") return options.points;
   if (options.tolerance >= (on_surface ? 1e-4 : 1e-5)) return 3;
@@ -23,7 +24,7 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Parametric side of an element over the distance between control points around it: 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the distance between control points around it: 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {
@@ -39,9 +40,10 @@ std::vector<double> shares(const spline::Space& space) {
   return out;
 }
 
-/// The same for each element. Pieces that are small beside the distance of the targets around (those at the extraordinary points of Catmull-Clark
-/// surfaces, halves at T-junctions) get by with less: the integrand is smoother on them, and their share of the area is small. Half the digits is
-/// what the shape of a piece next to such a point asks for (tests/verify/layers.cpp).
+/// Returns the number of Gauss points per direction of the far rule for each element. Elements that are small compared with the distance of the
+/// surrounding targets (at extraordinary points of Catmull-Clark surfaces, and halves at T-junctions) need fewer points, because the integrand is
+/// smoother on them and their share of the area is small. At least half the digits are kept, as the shape of elements next to extraordinary points
+/// requires (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
@@ -54,15 +56,15 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
   return orders;
 }
 
-/// Far nodes from which clusters are faster: about twice as many nodes as a target of a large surface meets by clusters, which grows with
-/// the square of the digits. Measured (tests/benchmark/growth.cpp).
+/// Returns the number of far nodes above which clusters are faster. It is about twice the number of nodes that a target of a large surface interacts
+/// with by clusters, which grows with the square of the digits. Measured (tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 
 }  // namespace
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised") return false;  // its identities meet every node anyway
+  if (options.rule == "desingularised") return false;  // its identities need every pair of node and target in any case
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 

@@ -14,43 +14,43 @@
 
 namespace tanktread::stokes {
 
-/// Whether `far sum` of the options means clusters for this space (TreeSum) or every target against every node; with so many images of the nodes.
+/// Returns whether option `far sum` selects clusters (TreeSum) for this space rather than direct summation. `images`: number of images of each node.
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);
 bool sums_by_tree(double nodes, const quadrature::Options& options);
 
-/// The present surfaces as a layer integrates over them: panels, far nodes, and which rule each target needs on which panel.
+/// The current surfaces in the form that a layer integrates over: panels, far nodes, and the rule that each target needs on each panel.
 class LayerSurface {
  public:
-  /// `sites`: targets on the surfaces; none: all targets are off them. `steep`: the integrand grows like 1 / r^2 across gaps.
+  /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: the integrand grows like 1 / r^2 across gaps.
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
-  /// States that targets see images of the surfaces too.
+  /// Lets targets also see images of the surfaces.
   void repeat();
 
-  /// States that all shapes to come are of this symmetry.
+  /// Sets the symmetry that all later shapes have.
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Panels in a far sum over fundamental ones, and their weights there.
+  /// Returns the panels of a far sum over fundamental panels, and their weights there.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
-  /// All images of the symmetry but the identity, about the middle of the shape placed.
+  /// Returns all symmetry images except the identity, about the centre of the current shape.
   const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
 
-  /// Takes a shape. Returns false, at no cost, for the one that it has already.
+  /// Sets the shape. Returns false, at no cost, if the shape is unchanged.
   bool place(const Net& x);
 
-  /// Site i of the shape, and the value there of the field with these Bezier points.
+  /// Returns the position of site i, and the value there of the field with these Bezier points.
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// The panels that site i lies on and that have a rule of their own for it: all but under the rule `desingularised`.
+  /// Returns the panels that contain site i and need a singular rule for it. There are none under the rule `desingularised`.
   std::span<SelfPair> own(int i);
 
-  /// Panels that need a near rule for a target; those of `own`, which it lies on, are not among them.
+  /// Returns the panels that need a near rule for a target, without the panels of `own`, which contain it.
   const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> own);
 
-  /// Far nodes of the fundamental panels and all targets with their images into a tree. Clusters must not depend on who asks for which targets: all
-  /// who share the sums give the same.
+  /// Sets the far nodes of the fundamental panels, and all targets with their images, in a tree. All ranks that share the sums must pass equal
+  /// targets, so that clusters do not depend on which rank computes which rows.
   void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;

@@ -1,4 +1,5 @@
-// What a plane wall adds to a layer: the images of its nodes, and better rules for panels that a target is close to as the mirrored target sees them.
+// Contribution of a plane wall to a layer: the images of its nodes in the far sum, and near-singular quadrature on panels that are close to the
+// mirror image of a target.
 
 #include <cassert>
 
@@ -12,10 +13,10 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Clusters of images err more, for their kernel has poles of two more orders; measured on spheres and ellipsoids near a wall.
+/// Factor on the tolerance for clusters of images, whose kernel has poles of two orders higher. Measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
-/// Bezier points, or values, of a panel in the wall's axes; `point`: they are places.
+/// Returns Bezier points (`point`) or values of a panel in the wall's axes.
 std::vector<double> turned(const PlaneWall& wall, const double* bezier, int n_b, bool point) {
   std::vector<double> own(static_cast<std::size_t>(3 * n_b));
   for (int b = 0; b < n_b; ++b) {
@@ -35,7 +36,7 @@ void Layer::set_wall(const PlaneWall& wall) {
   measure_.reset();
 }
 
-/// The far sum, of a double layer as sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) with the mean density m.
+/// Adds the far sum. For a double layer it is computed as sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) with the mean density m.
 void Layer::add_images(const Targets& targets, Net& u) {
   {
     const auto clock = phases_.time("images in the wall");
@@ -61,7 +62,7 @@ void Layer::add_images(const Targets& targets, Net& u) {
   add_near_images(targets, u);
 }
 
-/// Of constant densities, a column each.
+/// Computes the sums for constant unit densities, one column each.
 void Layer::take_image_stress() {
   for (int c = 0; c < 3; ++c) {
     take_constant_moments(c);
@@ -83,7 +84,7 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// What the rule `table` for panel e gives a target beyond the far sum.
+/// Returns the contribution of panel e by the rule `table` minus its contribution to the far sum.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];
@@ -110,7 +111,7 @@ Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrore
   return factor(e) * (wall.axes().transpose() * better) - images_->sum(nodes, first, at);
 }
 
-/// Of panel e seen from the target `at`: one matrix for each Bernstein polynomial, in space, k included.
+/// Computes the moments of panel e at the target `at`: one matrix per Bernstein polynomial, in the laboratory axes, including the factor k.
 void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];
@@ -130,7 +131,7 @@ void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
     moments[b] = factor(e) * (wall.axes().transpose() * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&own[9 * b]) * wall.axes());
 }
 
-/// Of a double layer at sites less what it takes from the density there.
+/// Adds the image rows. At sites of a double layer the contribution of the subtracted density at the site is included.
 template <class Real>
 void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
   const Panels& panels = surface_.panels;

@@ -8,7 +8,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Room for n numbers, without an allocation where they are as few as usual.
+/// Buffer for n numbers that does not allocate memory for usual sizes.
 struct Room {
   explicit Room(int n) {
     if (n <= most) return;

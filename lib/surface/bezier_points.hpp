@@ -1,5 +1,5 @@
 #pragma once
-// From control nets to the Bezier points of the elements, and back for what is dual to them; in which order sums over elements are taken.
+// Maps between control nets and the Bezier points of the elements, and the order in which sums over elements are taken.
 
 #include <algorithm>
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace tanktread::surface {
 
-/// Elements are summed in blocks of this many in a row, then the blocks in their order. Ranks share whole blocks.
+/// Number of consecutive elements in a block. Sums are taken within each block, then over the blocks in order. A rank owns whole blocks.
 constexpr int block_size = 64;
 
 inline int n_blocks(int n_elements) { return (n_elements + block_size - 1) / block_size; }
 
-/// The elements of some blocks, in their order.
+/// Returns the elements of the given blocks, in order.
 inline std::vector<int> elements_of(std::span<const int> blocks, int n_elements) {
   std::vector<int> elements;
   for (const int b : blocks)
@@ -23,7 +23,7 @@ inline std::vector<int> elements_of(std::span<const int> blocks, int n_elements)
   return elements;
 }
 
-/// The sum of each block, of one number an element.
+/// Returns the sum of each block from one value per element.
 inline std::vector<double> block_sums(std::span<const double> of_elements) {
   std::vector<double> sums(n_blocks(static_cast<int>(of_elements.size())), 0.);
   for (std::size_t e = 0; e < of_elements.size(); ++e) sums[e / block_size] += of_elements[e];
@@ -36,11 +36,11 @@ struct Block {
   std::vector<int> elements;
 };
 
-/// The elements grouped by degree, degrees ascending.
+/// Returns the elements grouped by degree, degrees ascending.
 std::vector<Block> blocks_by_degree(const spline::Space& space);
 
-/// The extraction of a space as a map between control nets and Bezier points, made once a mesh and good for any number of nets.
-/// Equal extraction matrices, as in most of a uniform mesh and in equal particles, are kept once, so they stay in the cache.
+/// The extraction of a space as a map between control nets and Bezier points. It is computed once per mesh and can be applied to any number of nets.
+/// Equal extraction matrices, which most elements of a uniform mesh and equal particles have, are stored once, so they stay in the cache.
 class BezierMap {
  public:
   explicit BezierMap(const spline::Space& space);
@@ -51,16 +51,16 @@ class BezierMap {
   int n_bezier(int element) const { return (degree(element) + 1) * (degree(element) + 1); }
   const std::vector<Block>& blocks() const { return blocks_; }
 
-  /// Bezier points of one element, `out` of shape (3, n_b): all of x1, then x2, then x3.
+  /// Computes the Bezier points of one element; `out` has shape (3, n_b): all of x1, then x2, then x3.
   void points(int element, const Net& net, double* out) const;
 
-  /// The transpose of `points`: net_A += sum_b extraction(A, b) in_b, with `in` of shape (3, n_b). Turns derivatives with respect to
+  /// Applies the transpose of `points`: net_A += sum_b extraction(A, b) in_b, with `in` of shape (3, n_b). Converts derivatives with respect to
   /// Bezier points into derivatives with respect to control points.
   void add_transposed(int element, const double* in, Net& net) const;
 
  private:
   struct Element {
-    int degree, functions, first;  ///< degree, how many functions, the start of their numbers in `points_`
+    int degree, functions, first;  ///< degree, number of functions, start of their indices in `points_`
     std::size_t operation;         ///< start in `by_bezier_` and `by_function_`
   };
   int n_points_;

@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr int n_samples = 4000;
-constexpr double straight_end = 1.7;  // in R_T: what is neglected there is 1e-5 after it
+constexpr double straight_end = 1.7;  // in R_T: neglected perturbations have decayed to 1e-5 at this distance
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Channel::Channel(const TubeOptions& options)
   check();
 }
 
-/// Rows s,f or s,f2,f3.
+/// Reads rows s,f or s,f2,f3.
 void Channel::read_points() {
   const std::string name = "Channel/points \"" + deck::shortened(*own_.points, 80) + "\"";
   std::vector<double> s;
@@ -65,7 +65,7 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// How much longer the line of the wall is than the way along, on each side of the middle.
+/// Returns the difference between the length of the wall's contour and the length of the centre line, on each side of the middle of a step.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
@@ -116,7 +116,7 @@ void Channel::check() {
                               widest, *own_.bend_radius));
 }
 
-/// By the line of a step's wall, u its length: straight, an edge rounded one way, straight across, an edge rounded the other way, straight.
+/// Returns the point at arc length u of a step's wall contour: straight, rounded edge, straight across, edge rounded the other way, straight.
 Channel::Place Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
@@ -210,7 +210,7 @@ TubeOptions Channel::tube(double s) const {
   return tube;
 }
 
-/// Values of u, evenly.
+/// Returns evenly spaced values of u.
 std::vector<double> Channel::lines() const {
   const double low = parameter(start_), high = parameter(end_);
   std::vector<double> u;
@@ -218,7 +218,7 @@ std::vector<double> Channel::lines() const {
   return u;
 }
 
-/// Values of u at which the curvature of wall or centre line jumps.
+/// Returns the values of u at which the curvature of the wall or of the centre line jumps.
 std::vector<double> Channel::kinks() const {
   std::vector<double> u;
   if (factors_) u = {factors_->breaks.front(), factors_->breaks.back()};
@@ -234,8 +234,9 @@ std::vector<double> Channel::kinks() const {
   return u;
 }
 
-/// How long elements should be at each u: three quarters of how wide they are there, shorter where the wall bends, a quarter of that where its
-/// curvature jumps, two and a half times as long in the straight ends; never longer by more than 0.3 of the way to where they are to be short.
+/// Returns the desired element length at each u: three quarters of the width of the elements there, shorter where the wall bends, a quarter of this
+/// length where the curvature jumps, and 2.5 times this length in the straight ends. The length grows by at most 0.3 per unit distance from shorter
+/// elements.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
@@ -268,8 +269,8 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-/// A line is there three times where the curvature of wall or centre line jumps, unless elements are too few for that: beside it the pressure on the
-/// wall goes on with another slope, and the shear stress as d log d with the distance d. Splines that are smooth across it ring.
+/// Where the curvature of the wall or of the centre line jumps, the knot is triple, unless there are too few elements. The slope of the wall pressure
+/// jumps there, and the shear stress behaves like d log d with the distance d. Splines that are smooth across the jump would oscillate.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};
@@ -288,7 +289,7 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  if (own_.profile == "step")  // where it goes straight across its own sides are folded: there splines are smooth, which keeps their points apart
+  if (own_.profile == "step")  // the sides of the transverse wall would be folded there; a smooth spline keeps its control points apart
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);
   for (const double joint : joints) {

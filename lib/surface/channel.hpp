@@ -1,5 +1,5 @@
 #pragma once
-// A channel: outlines of one kind along a centre line.
+// Channel: similar cross-sections along a centre line.
 
 #include <vector>
 
@@ -7,16 +7,16 @@
 
 namespace tanktread::surface {
 
-/// An outline times factors along x2 and x3, about the origin.
+/// Returns an outline scaled about the origin by factors along x2 and x3.
 Outline scaled(const Outline& outline, const Vec2& factor);
 
-/// The outline of a tube, times factors f2, f3 that change with the way s along a centre line. That goes along x1, in which s = x1, and may bend
-/// once, by an arc in the plane x1 x2:
+/// Channel whose cross-section is the outline of a tube, scaled by factors f2 and f3 that depend on the arc length s of a centre line. The centre
+/// line runs along x1, where s = x1, and may bend once, by a circular arc in the plane x1 x2:
 ///
 ///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the outline of factor 1, N = dC/ds turned towards x2 by a right angle
 class Channel {
  public:
-  /// Throws UserError, one sentence with numbers, for a channel that is folded, closed or has no straight ends.
+  /// Throws UserError, with numbers in the message, if the channel is folded, closed or has no straight ends.
   explicit Channel(const TubeOptions& options);
 
   struct Section {
@@ -26,20 +26,20 @@ class Channel {
   Section section(double s) const;
 
   const Outline& outline() const { return outline_; }
-  Outline outline(double s) const;      ///< of the section at s
-  TubeOptions tube(double s) const;     ///< the straight tube of that section
+  Outline outline(double s) const;      ///< outline of the section at s
+  TubeOptions tube(double s) const;     ///< straight tube with the section at s
   double start() const { return start_; }
   double end() const { return end_; }
   double smallest_radius() const { return smallest_; }  ///< half the smallest width
 
-  /// s, y2, y3 of a place.
+  /// Returns the coordinates s, y2, y3 of a position.
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 
-  /// Of the wall, along: lines of a surface u = knots, from start to end, and a section at any u between them. Where f jumps in a step, u goes on and
-  /// s does not.
+  /// Returns the knots of a surface of the wall in the longitudinal parameter u, from start to end. at() returns the section at any u between them.
+  /// At a step of the profile, f changes with u at constant s.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< as many as are needed for elements as long as they are wide
+  int elements() const;  ///< number of elements whose length is about their width
   Section at(double u) const;
 
  private:
@@ -63,8 +63,8 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  double half_[2] = {1, 1}, height_ = 1;  // half widths of the outline; what a step's edges are drawn in
-  double first_ = 0, last_ = 0;           // where something changes
+  double half_[2] = {1, 1}, height_ = 1;  // half widths of the outline; half width that scales a step
+  double first_ = 0, last_ = 0;           // smallest and largest s at which the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;
 };
 

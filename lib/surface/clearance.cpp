@@ -15,15 +15,16 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// A disc that the outline does not enter, as far as a piece is concerned: no place of the piece is nearer to the outline than `gap` says.
+/// A disc inside the outline, used for a piece: no point of the piece is nearer to the outline than `gap` returns.
 struct Disc {
   Vec2 centre;
   double radius;
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// The disc for pieces within r of x that touches the outline at the foot of x and is as curved as the outline is there, or more, so that no place
-/// that may be nearest to such a piece is inside: each trial passes through the place that is farthest inside the one before.
+/// Returns a disc for pieces within r of x. It touches the outline at `foot`, the nearest point to x, and its curvature is at least that of the
+/// outline there, so that no point of the outline that may be nearest to such a piece lies inside. Each trial disc passes through the outline point
+/// farthest inside the previous one.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -40,21 +41,21 @@ Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double
   return {foot.x, 0};
 }
 
-/// Part of an element, by its Bezier points.
+/// Part of an element, given by its Bezier points.
 struct ElementPart {
-  std::array<Eigen::MatrixXd, 3> points;  // a matrix for each coordinate
+  std::array<Eigen::MatrixXd, 3> points;  // one matrix per coordinate
   Disc disc{Vec2::Zero(), 0};
-  double bound = -std::numeric_limits<double>::infinity();  // no place of the piece is nearer to the outline
-  Vec3 corner = Vec3::Zero();                               // the one farthest from the disc's centre
-  bool bends_across = false;                                // along the columns' index more than along the rows'
+  double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece to the outline
+  Vec3 corner = Vec3::Zero();                               // corner farthest from the disc's centre
+  bool bends_across = false;                                // bends more along the column index than along the row index
 
-  /// No place of the piece is farther from x.
+  /// Returns an upper bound of the distance of the piece from x.
   double reach(const Vec2& x) const {
     return std::sqrt(((points[1].array() - x[0]).square() + (points[2].array() - x[1]).square()).maxCoeff());
   }
 };
 
-/// The product of the Bernstein polynomials i and k of degree p is this times the polynomial i + k of degree 2p.
+/// Returns the factors c(i, k) with B_i B_k = c(i, k) B_{i+k}, for Bernstein polynomials of degree p on the left and 2p on the right.
 Eigen::MatrixXd products(Eigen::Index p) {
   const auto binomial = [](Eigen::Index n, Eigen::Index k) {
     double value = 1;
@@ -65,7 +66,7 @@ Eigen::MatrixXd products(Eigen::Index p) {
       p + 1, p + 1, [&](Eigen::Index i, Eigen::Index k) { return binomial(p, i) * binomial(p, k) / binomial(2 * p, i + k); });
 }
 
-/// The search halves pieces, those of the least bound first, until none can be nearer than the best place found.
+/// Branch-and-bound search: divides the pieces with the smallest lower bound first, until none can be nearer than the best point found.
 class OutlineSearch {
  public:
   OutlineSearch(const Patches& surface, const Outline& outline) : surface_(surface), outline_(outline) {}
@@ -87,7 +88,7 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// The elements that a disc about the outline's centroid does not rule out.
+  /// Collects the elements that a disc about the outline's centroid does not rule out.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {
@@ -130,7 +131,8 @@ class OutlineSearch {
     return part;
   }
 
-  /// Perhaps the best place. Where it is farther from the outline than the disc says, the piece gets a disc that fits.
+  /// Updates the best point with the corner of the piece. If the corner is farther from the outline than the disc predicts, fits a new disc to the
+  /// piece.
   void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
@@ -142,7 +144,7 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// The Bezier points of the squared distance to the disc's centre bound it, and show along which index it bends.
+  /// Bounds the squared distance to the disc's centre by its Bezier coefficients, which also show along which index it bends.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);
@@ -168,7 +170,7 @@ class OutlineSearch {
   const Patches& surface_;
   const Outline& outline_;
   std::vector<ElementPart> pieces_;  // a heap
-  Eigen::MatrixXd products_;   // of the degree last used
+  Eigen::MatrixXd products_;   // for the degree last used
   Clearance best_;
 };
 

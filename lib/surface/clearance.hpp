@@ -1,5 +1,5 @@
 #pragma once
-// The smallest distance of a surface to the wall of a tube.
+// Smallest distance of a surface to the wall of a tube.
 
 #include "base/types.hpp"
 #include "surface/outline.hpp"
@@ -7,15 +7,16 @@
 
 namespace tanktread::surface {
 
-/// A place of a surface and its distance to the outline of a straight tube along x1; negative outside of the tube.
+/// A point of a surface and its distance to the outline of a straight tube along x1. The distance is negative outside the tube.
 struct Clearance {
   Vec3 x = Vec3::Zero();
   double gap = 0;
-  int pieces = 0;  ///< of the surface that were looked at: the work
+  int pieces = 0;  ///< number of pieces of the surface examined, a measure of the work
 };
 
-/// The place of the surface that is nearest to the outline, or farthest outside of it. No other place is nearer by 1e-8 of the outline's radius, or
-/// farther outside by 1e-3 of it: for each piece of the surface a disc that osculates the outline bounds the distance from below.
+/// Returns the point of the surface nearest to the outline, or farthest outside it. No other point is nearer by more than 1e-8 of the outline's
+/// radius, or farther outside by more than 1e-3 of it. For each piece of the surface, a disc that osculates the outline gives a lower bound of the
+/// distance.
 Clearance clearance(const Patches& surface, const Outline& outline);
 
 }  // namespace tanktread::surface

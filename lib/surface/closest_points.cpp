@@ -29,19 +29,19 @@ Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
 
-/// A part of an element: its Bezier points, s fastest, and its two halves along its longer side once they are asked for.
+/// Part of an element: its Bezier points, s fastest, and its two halves along its longer side, computed on demand.
 struct Part {
   int degree = 0;
   Points points;
-  spline::Site low{};                       // of its first point
-  std::array<double, 2> sides{1, 1};        // along s and t, of the element's
+  spline::Site low{};                       // site of its first point
+  std::array<double, 2> sides{1, 1};        // lengths along s and t, relative to the element
   mutable std::shared_ptr<const std::array<Part, 2>> halves_kept{};
 
   double size() const { return (corner(1, 1) - corner(0, 0)).cwiseAbs().maxCoeff() + (corner(1, 0) - corner(0, 1)).cwiseAbs().maxCoeff(); }
   Vec3 corner(int i, int j) const { return points.col(degree * (i + (degree + 1) * j)); }
-  spline::Site site(int i, int j) const { return {low.element, low.s + i * sides[0], low.t + j * sides[1]}; }  // of a corner
+  spline::Site site(int i, int j) const { return {low.element, low.s + i * sides[0], low.t + j * sides[1]}; }  // site of a corner
   Vec3 middle() const { return points.rowwise().mean(); }
-  Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // at its middle, about
+  Vec3 normal() const { return (corner(1, 1) - corner(0, 0)).cross(corner(0, 1) - corner(1, 0)).normalized(); }  // approximate normal at its middle
 
   const std::array<Part, 2>& halves() const {
     if (!halves_kept) halves_kept = std::make_shared<const std::array<Part, 2>>(halved());
@@ -49,14 +49,14 @@ struct Part {
   }
 
  private:
-  /// By de Casteljau's rule.
+  /// Divides the part by de Casteljau's algorithm.
   std::array<Part, 2> halved() const {
     const int p = degree, n = p + 1;
     const bool along_s = (corner(1, 0) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(0, 1)).squaredNorm() >
                          (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
     const int step = along_s ? 1 : n, across = along_s ? n : 1;
     std::array<Part, 2> result{Part{degree, points, low, sides}, Part{degree, points, low, sides}};
-    auto& [left, right] = result;  // right in place: after k rounds its first p - k + 1 points of a row are those of the rule
+    auto& [left, right] = result;  // `right` is computed in place: after k rounds its first p - k + 1 points of a row are those of the algorithm
     left.sides[along_s ? 0 : 1] /= 2, right.sides = left.sides;
     (along_s ? right.low.s : right.low.t) += left.sides[along_s ? 0 : 1];
     for (int row = 0; row < n; ++row)
@@ -71,7 +71,7 @@ struct Part {
   }
 };
 
-/// By how much two sets lie apart in a direction from the first to the second, which is of length 1.
+/// Returns the separation of two point sets along a unit vector from the first to the second.
 double separation(const Points& a, const Points& b, const Vec3& direction) {
   return (direction.transpose() * b).minCoeff() - (direction.transpose() * a).maxCoeff();
 }
@@ -94,12 +94,12 @@ class PairSearch {
   }
 
  private:
-  /// Two boxes, or where these hold an element each, two parts of those.
+  /// A pair of boxes, or of parts of elements if each box holds one element.
   struct Pair {
     double bound;
     int box[2];
     const Part* part[2];
-    bool operator<(const Pair& other) const { return bound > other.bound; }  // the first of a queue is the nearest
+    bool operator<(const Pair& other) const { return bound > other.bound; }  // the first of the queue is the nearest
   };
 
   void push(const Pair& pair) {
@@ -137,7 +137,7 @@ class PairSearch {
     }
   }
 
-  /// Corners are points of the surface.
+  /// Updates the best pair with the corners, which are points of the surfaces.
   void meet(const Part& a, const Part& b) {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
@@ -169,7 +169,7 @@ class PairSearch {
   const ElementBoxes* trees_[2];
   double tolerance_;
   std::priority_queue<Pair> queue_;
-  std::map<int, Part> elements_[2];  // that are looked at
+  std::map<int, Part> elements_[2];  // elements examined so far
   ClosestPoints best_{Vec3::Zero(), Vec3::Zero()};
 };
 
@@ -210,7 +210,7 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 
 namespace {
 
-/// Of |y - x|^2/2, by s and t of x and of y: minus the Newton step.
+/// Returns minus the Newton step for |y - x|^2/2 with respect to s and t of x and of y.
 Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
   const Vec3 r = y.x - x.x;
   const Eigen::Vector4d gradient(-r.dot(x.s), -r.dot(x.t), r.dot(y.s), r.dot(y.t));
@@ -245,7 +245,7 @@ ClosestPoints nearest_points(const Patch& first, const Patch& second, const Clos
 
 namespace {
 
-/// n x n places of an element with normals, and a box around its Bezier points.
+/// n x n points of an element with normals, and a box around its Bezier points.
 struct Sampled {
   std::vector<Vec3> place, normal;
   Eigen::AlignedBox3d box;
@@ -271,7 +271,7 @@ double distance(const Vec3& x, const Sampled& element) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
-  // Beyond the element's edge the plane of another one is nearer.
+  // If the foot point is beyond the element's edge, the plane of another element is nearer.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
 }

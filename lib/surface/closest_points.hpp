@@ -1,5 +1,5 @@
 #pragma once
-// The smallest distance of two surfaces, and how narrow the films between surfaces are.
+// Smallest distance between two surfaces, and widths of the films between surfaces.
 
 #include <array>
 #include <span>
@@ -11,27 +11,27 @@
 
 namespace tanktread::surface {
 
-/// Two surfaces' nearest points and their distance; 0 where the surfaces meet.
+/// The closest points of two surfaces and their distance, which is 0 if the surfaces meet.
 struct ClosestPoints {
   Vec3 first, second;
   double gap = 0;
-  std::array<spline::Site, 2> sites{};  ///< of these points, where there are any
+  std::array<spline::Site, 2> sites{};  ///< sites of these points, if points were found
 };
 
-/// Elements of a surface in a binary tree of boxes around their Bezier points, which hold the elements. Made anew for a surface that has moved.
+/// Binary tree of bounding boxes around the Bezier points of a surface's elements. If the surface moves, a new tree is built.
 class ElementBoxes {
  public:
   struct Box {
     Eigen::Array3d low, high;
     int first, last;    ///< its elements: element(first) .. element(last - 1)
-    int child[2] = {};  ///< of one with several elements
+    int child[2] = {};  ///< children of a box with several elements
   };
 
   /// `surface` must outlive the tree.
   explicit ElementBoxes(const Patches& surface);
 
   const Patches& surface() const { return surface_; }
-  const std::vector<Box>& boxes() const { return boxes_; }  ///< the first is around all
+  const std::vector<Box>& boxes() const { return boxes_; }  ///< the first box contains all elements
   int element(int k) const { return order_[static_cast<std::size_t>(k)]; }
 
  private:
@@ -39,24 +39,25 @@ class ElementBoxes {
 
   const Patches& surface_;
   std::vector<int> order_;
-  std::vector<Box> own_, boxes_;  // of elements; of the tree
+  std::vector<Box> own_, boxes_;  // boxes of elements; boxes of the tree
 };
 
-/// A bound from below of the distance of what two boxes hold.
+/// Returns a lower bound of the distance between the contents of two boxes.
 double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 
-/// The nearest points of two surfaces, if they are nearer than `beyond`; otherwise a gap of `beyond`. Pairs of boxes, elements and parts of elements
-/// are halved, those first that can be nearest, until none can be nearer than the best points found by `tolerance`. Parts are bounded by planes
-/// between their Bezier points: by much less than their size where surfaces lie side by side.
+/// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise a gap of `beyond`. Pairs of boxes, elements and parts of
+/// elements are divided in order of their lower bounds, until no pair can be closer than the best points by more than `tolerance`. The bounds of
+/// parts come from separating planes between their Bezier points. If surfaces lie side by side, the error of these bounds is much smaller than the
+/// parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
-/// The same, moved along their two elements, `first` and `second`, to where the line between them meets both at right angles: by Newton's method,
-/// from the sites of `near`, no farther than a tenth of an element beyond its edges. Where that does not end there, the points at these sites.
+/// Refines the closest points `near` within their two elements, `first` and `second`, by Newton's method, to where the connecting line is normal to
+/// both surfaces. The points may lie up to a tenth of an element beyond its edges. If the method fails, returns the points at the sites of `near`.
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
-/// Of each element of a surface the width of the film between it and others: the smallest of its distances, at 3 x 3 places, from the tangent plane
-/// of the nearest of 5 x 5 places of each element there. Right to the square of a quarter of the others' elements, times their curvature, over eight.
-/// Infinite where no other is within `reach`.
+/// Returns, for each element of a surface, the width of the film between it and the other surfaces. The width is the smallest distance from 3 x 3
+/// points of the element to the tangent planes of the other elements, taken at the nearest of 5 x 5 points of each. Its error is h^2 k/8, with k the
+/// curvature of the other surface and h a quarter of its element length. The width is infinite if no other surface is within `reach`.
 std::vector<double> film_widths(const Patches& surface, std::span<const Patches* const> others, double reach);
 
 }  // namespace tanktread::surface

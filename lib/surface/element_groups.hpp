@@ -1,5 +1,5 @@
 #pragma once
-// Elements of one degree, as many at a time as a register has lanes: what the integrals of `integrals_kernel.hpp` take.
+// Groups of elements of one degree, one element per register lane, for the integrals of `integrals_kernel.hpp`.
 
 #include <algorithm>
 #include <iterator>
@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// Calls use(degree, group) for all of the elements, as many of one degree at a time as a register has lanes.
+/// Calls use(degree, group) for all elements, in groups of one degree with as many elements as a register has lanes.
 template <class Use>
 void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   const std::size_t lanes = pack_lanes();
@@ -24,7 +24,7 @@ void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   }
 }
 
-/// The Bezier points of a group, one element in each lane; a short group repeats its last.
+/// Returns the Bezier points of a group, one element per lane; a short group repeats its last element.
 inline kernel::Lanes points_of(const BezierMap& map, const Net& net, std::span<const int> group) {
   const std::size_t lanes = pack_lanes();
   kernel::Lanes points;

@@ -30,7 +30,8 @@ Height height(const Patch& patch, int c, double sign, const Vec2& at) {
   return result;
 }
 
-/// Newton's step uphill on the unit square: coordinates that press against a side stay there; steepest ascent where Newton would descend.
+/// Returns a Newton step towards the maximum in the unit square. Coordinates pressed against a side stay there. If Newton's step would descend, it is
+/// a steepest ascent step.
 Vec2 uphill(const Height& h, const Vec2& at) {
   const bool held[2] = {(at[0] <= 0 && h.gradient[0] <= 0) || (at[0] >= 1 && h.gradient[0] >= 0),
                         (at[1] <= 0 && h.gradient[1] <= 0) || (at[1] >= 1 && h.gradient[1] >= 0)};
@@ -46,7 +47,7 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// The largest value that can be climbed to from a point of the patch, and where it is.
+/// Returns the local maximum of sign * x_c reached from a point of the patch, and its parameters.
 std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {
@@ -61,12 +62,12 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
       here = there;
       break;
     }
-    if (moved < 1e-9) break;  // the height errs by the square of this
+    if (moved < 1e-9) break;  // the error of the height is the square of this
   }
   return {here.value, at};
 }
 
-/// Where the Bezier point is that has the largest sign * x_c.
+/// Returns the parameters of the Bezier point with the largest sign * x_c.
 Vec2 start(const Patch& patch, int c, double sign) {
   const int p = patch.degree;
   int highest = 0;
@@ -75,10 +76,10 @@ Vec2 start(const Patch& patch, int c, double sign) {
   return {double(highest % (p + 1)) / p, double(highest / (p + 1)) / p};
 }
 
-/// The largest of sign * x_c, which is `reached` at least, where sign * x_c stays below bounds[e] on element e.
+/// Returns the maximum of sign * x_c, which is at least `reached`; bounds[e] is an upper bound on element e.
 double largest_coordinate(const Patches& surface, int c, double sign, double reached, const std::vector<double>& bounds) {
   double best = reached;
-  std::vector<int> candidates;  // all but a few elements drop out
+  std::vector<int> candidates;  // few elements remain
   for (int e = 0; e < surface.size(); ++e)
     if (bounds[e] > best) candidates.push_back(e);
   std::ranges::sort(candidates, std::ranges::greater(), [&](int e) { return bounds[e]; });
@@ -89,13 +90,13 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   return best;
 }
 
-/// A point of the section curve on one element, found by sampling.
+/// A point of the section curve in one element, found by sampling.
 struct Crossing {
   Vec2 at;
   double distance;
 };
 
-/// Where the plane x2 = centre_2 cuts the lines of a sampling grid, by linear interpolation.
+/// Finds the intersections of the plane x2 = centre_2 with the lines of a sampling grid, by linear interpolation.
 void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
   result.clear();
   double above[cells + 1][cells + 1];
@@ -121,7 +122,8 @@ void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& re
   }
 }
 
-/// Stationary distance on the section curve: Newton's method for  grad(r^2/2) = lambda grad(y2),  y2 = 0. Nothing when it leaves the element.
+/// Returns the stationary distance on the section curve, by Newton's method for  grad(r^2/2) = lambda grad(y2),  y2 = 0; nothing if it leaves the
+/// element.
 std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre, Vec2 at) {
   double lambda = std::numeric_limits<double>::quiet_NaN();
   for (int iteration = 0; iteration < 15; ++iteration) {
@@ -146,14 +148,14 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
     if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
     if (length < 1e-9) break;
   }
-  constexpr double slack = 1e-7;  // neighbours agree beyond their common side to the third power of it
+  constexpr double slack = 1e-7;  // beyond the common side, neighbours agree to the third power of this
   if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
   const Vec3 y = place(patch, at[0], at[1]) - centre;
   if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
   return std::hypot(y[0], y[2]);
 }
 
-/// Distance at a sampled crossing moved onto the curve along the gradient of y2, for elements that hold no stationary point.
+/// Returns the distance at a sampled crossing, moved onto the curve along the gradient of y2. Used for elements without a stationary point.
 std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
   for (int iteration = 0; iteration < 10; ++iteration) {
     const Jet j = jet(patch, at[0], at[1]);
@@ -168,19 +170,19 @@ std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, 
   return std::hypot(y[0], y[2]);
 }
 
-/// Elements that may hold the extremum, each with its best crossing.
+/// An element that may contain the extremum, with its best crossing.
 struct Candidate {
   int element;
   Crossing crossing;
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// Adds the distances at those of the candidates that may hold the best of sign * distance.
+/// Adds the distances at those candidates that may contain the maximum of sign * distance.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
   for (const Candidate& c : candidates) {
-    if (sign * c.crossing.distance + c.spread < sampled) continue;  // sampling errs by less than what the distance varies by
+    if (sign * c.crossing.distance + c.spread < sampled) continue;  // the sampling error is smaller than the variation of the distance
     for (const auto& method : {stationary_distance, distance_on_curve})
       if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {
         found.smallest = std::min(found.smallest, *distance);
@@ -198,7 +200,7 @@ Range hull(const Patch& patch, int c) {
 }
 
 Range coordinate_range(const Patches& surface, int c) {
-  Range reached;  // at the corners
+  Range reached;  // range of the corners
   std::vector<double> below(surface.size()), above(surface.size());
   for (int e = 0; e < surface.size(); ++e) {
     const Patch& patch = surface[e];
@@ -242,7 +244,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // of both kinds together: on a circle, all but, samples of chords do not tell near from far
+  Range range;  // of both kinds of extremes: on a nearly circular section, samples do not distinguish near from far
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

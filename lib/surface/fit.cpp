@@ -9,7 +9,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Bernstein values at the nodes of a tensor rule, shape (n_q, (p+1)^2).
+/// Returns the Bernstein values at the nodes of a tensor rule, shape (n_q, (p+1)^2).
 Eigen::MatrixXd bernstein_values(int p, const quadrature::TensorRule& rule) {
   Eigen::MatrixXd result(rule.size(), (p + 1) * (p + 1));
   double in_s[spline::max_degree + 1], in_t[spline::max_degree + 1];
@@ -30,7 +30,7 @@ LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
     const Eigen::MatrixXd value = bernstein_values(block.degree, rule);
     tables_[block.degree] = {value, value.transpose() * rule.weights.asDiagonal()};
   }
-  std::deque<Eigen::MatrixXd> values;  // neighbours share one
+  std::deque<Eigen::MatrixXd> values;  // neighbouring elements share one matrix
   std::vector<spline::LocalMatrix> local;
   const Eigen::MatrixXd* last = nullptr;
   for (const spline::Element& element : space.elements) {

@@ -1,5 +1,5 @@
 #pragma once
-// Least-squares fits of control nets to given points.
+// Least-squares fits of control nets.
 
 #include <functional>
 #include <map>
@@ -11,28 +11,29 @@
 
 namespace tanktread::surface {
 
-/// Control nets that fit a given field best in the mean square over the parametric surface,
+/// Fits control nets to a field f in the mean square over the parametric surface,
 ///
 ///   sum_e area_e int_e |sum_A N_A P_A - f|^2 ds dt = min,
 ///
-/// with p + 2 Gauss points a direction and element. The matrix depends on the space alone. Its systems are solved to round-off by iteration.
+/// with p + 2 Gauss points per direction and element. The matrix depends only on the space. Its systems are solved iteratively to round-off.
 class LeastSquaresFit {
  public:
   explicit LeastSquaresFit(const spline::Space& space);
 
-  /// f(x) of the points of a given surface: one step of fitting a surface to its own image. The functions of the space must be linearly independent.
+  /// Fits f(x) for the points x of a given surface: one step of fitting a surface to its own image. The functions of the space must be linearly
+  /// independent.
   Net fit_image(const Net& net, const std::function<Vec3(const Vec3& x)>& f) const;
 
  private:
-  /// What all elements of a degree share.
+  /// Data shared by all elements of a degree.
   struct Table {
     Eigen::MatrixXd value;     ///< Bernstein values at the Gauss points, shape (n_q, n_b)
     Eigen::MatrixXd weighted;  ///< value^T times the Gauss weights, shape (n_b, n_q)
   };
   BezierMap map_;
-  std::map<int, Table> tables_;  ///< of a degree
+  std::map<int, Table> tables_;  ///< tables by degree
   std::vector<double> area_;
-  std::unique_ptr<const Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_;  ///< where the solver finds it
+  std::unique_ptr<const Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_;  ///< at a fixed address, to which the solver refers
   spline::IncompleteSolver solver_;
 };
 

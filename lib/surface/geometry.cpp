@@ -14,7 +14,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Adds what is dual to the Bezier points of a group to the control points.
+/// Adds values dual to the Bezier points of a group to the control points.
 void add_transposed(const BezierMap& map, std::span<const int> group, const kernel::Lanes& dual, Net& net) {
   const std::size_t lanes = pack_lanes();
   double one[3 * kernel::most_bezier];
@@ -24,7 +24,7 @@ void add_transposed(const BezierMap& map, std::span<const int> group, const kern
   }
 }
 
-/// The net about its own mean: integrals by the divergence theorem lose digits when the origin is far away.
+/// Returns the net relative to its mean, because integrals by the divergence theorem lose digits if the origin is far away.
 Net about_mean(const Net& net, Vec3& mean) {
   mean = net.colwise().mean().transpose();
   return net.rowwise() - mean.transpose();
@@ -148,7 +148,7 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   const double longest = std::sqrt(mean + radius), shortest = std::sqrt(mean - radius);
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
-  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // upright: rounding is not to choose the end that points up
+  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // upright: round-off must not choose which end points up
   const double to_semi_axis = std::sqrt(5 / measures.volume);
   if (!distinct(to_semi_axis * longest, to_semi_axis * shortest, measures.volume)) result.inclination = std::numeric_limits<double>::quiet_NaN();
 
@@ -168,7 +168,7 @@ PrincipalAxes principal_axes(const Measures& measures) {
     axes.lengths[k] = std::sqrt(5 * moments.eigenvalues()[2 - k] / measures.volume);
     Vec3 direction = moments.eigenvectors().col(2 - k);
     for (double& component : direction)
-      if (std::abs(component) < 1e-9) component = 0;  // rounding is not to choose the sense
+      if (std::abs(component) < 1e-9) component = 0;  // round-off must not choose the orientation
     for (int c = 2; c >= 0; --c)
       if (direction[c] != 0) axes.directions.col(k) = std::copysign(1.0, direction[c]) * direction;
   }

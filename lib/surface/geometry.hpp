@@ -1,5 +1,5 @@
 #pragma once
-// Points, measures and moments of a spline surface. A surface is a space and a control net.
+// Points, measures and moments of a spline surface, which is given by a space and a control net.
 
 #include <algorithm>
 #include <array>
@@ -14,28 +14,28 @@
 
 namespace tanktread::surface {
 
-/// A point of the surface: place, tangents x_,s and x_,t (per element-local unit), outward unit normal, J = |a1 x a2|.
+/// A point of the surface: position, tangents x_,s and x_,t (per element-local unit), outward unit normal, J = |a1 x a2|.
 struct Point {
   Vec3 x, a1, a2, n;
   double jacobian = 0;
 };
 Point point(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Value of any field with control values `net` at a site.
+/// Returns the value at a site of the field with control values `net`.
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Mean curvature chi = 1/2 div n (P-36); 1/R for a sphere. Units 1/length.
+/// Returns the mean curvature chi = 1/2 div n (P-36); 1/R for a sphere. Units 1/length.
 double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Integral measures, by Gauss quadrature exact for the polynomials involved (volume, centroid, moments); the area by the same points.
+/// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area uses the same points.
 struct Measures {
   double area = 0, volume = 0;
   Vec3 centroid;        ///< P-42
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
-/// Returns whether two semi-axes of a body differ by at least 1e-6 R_C, where R_C is the radius of the sphere of equal volume. If they do not, each
-/// direction between them is a semi-axis, and the computed one is round-off.
+/// Returns whether two semi-axes of a body differ by at least 1e-6 R_C, where R_C is the radius of the sphere of equal volume. If they do not, every
+/// direction between them is a semi-axis, and the computed direction is determined by round-off.
 bool distinct(double longer, double shorter, double volume);
 
 /// Semi-axes of the ellipsoid with the same second moments (6.1).
@@ -47,73 +47,74 @@ struct PrincipalAxes {
 };
 PrincipalAxes principal_axes(const Measures& measures);
 
-/// What measures are made of: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
+/// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-// Extremal coordinates of a closed surface and extremal distances on a plane section, by Newton's method on the polynomials themselves.
+// Extreme coordinates of a closed surface and extreme distances on a plane section, by Newton's method on the exact polynomials.
 
 struct Range {
-  double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< of nothing
+  double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
 };
 
-/// Of two parts.
+/// Returns the range of two parts together.
 inline Range wider(const Range& a, const Range& b) { return {std::min(a.smallest, b.smallest), std::max(a.largest, b.largest)}; }
 
-/// Smallest and largest coordinate x_{c+1} of the Bezier points, between which the patch stays.
+/// Returns the smallest and largest coordinate x_{c+1} of the Bezier points, which bound the patch.
 Range hull(const Patch& patch, int c);
 
-/// Smallest and largest coordinate x_{c+1} on the surface, to round-off. Of a whole surface, the wider of its parts.
+/// Returns the smallest and largest coordinate x_{c+1} on the surface, to round-off. The range of a whole surface is the union over its parts.
 Range coordinate_range(const Patches& surface, int c);
 
-/// The place of the surface with the smallest coordinate x_{c+1}, to round-off.
+/// Returns the point of the surface with the smallest coordinate x_{c+1}, to round-off.
 Vec3 lowest(const Patches& surface, int c);
 
-/// Shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface. To round-off where the surface
-/// has a simple extremum; no symmetry is assumed. Of a whole surface, the wider of its parts; of nothing when the plane misses it.
+/// Returns the shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface, to round-off if the extremum
+/// is simple. No symmetry is assumed. The range of a whole surface is the union over its parts. The range is empty if the plane misses the surface.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
-/// What the series report (6.2). D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90. The inclination is NaN if the two
-/// semi-axes in that plane are not distinct.
+/// Deformation measures of the series (6.2): D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90. The inclination is NaN if
+/// the two semi-axes in that plane are not distinct.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3
 };
 
-/// Measures of any number of control nets over one space, with what depends on the space alone made once.
-/// Every sum runs in one fixed order of the elements, so a share of the elements gives the same rows to the last bit.
+/// Computes measures of any number of control nets on one space; everything that depends only on the space is computed once. Every sum runs over the
+/// elements in one fixed order, so a subset of the elements gives bitwise the same rows.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);
 
   const BezierMap& bezier() const { return map_; }
 
-  /// V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements.
+  /// Returns V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements.
   double volume(const Net& net) const;
 
-  /// The flux vector b_A = int N_A n dG = dV/dx_A (2.8), exact. Of these elements only: a row is complete when they hold all elements that
-  /// touch its point. `b` is overwritten, shape (N, 3). The elements ascend.
+  /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, over the given elements in ascending order. A row is complete if they
+  /// include all elements that touch its point. `b` is overwritten, shape (N, 3).
   void volume_gradient(const Net& net, std::span<const int> elements, Net& b) const;
   Net volume_gradient(const Net& net) const;
 
-  /// The derivative of int g.x dV, int N_A (g.x) n dG, exact; of these elements, added to b, complete as the flux vector is. x counts from `origin`.
+  /// Adds to b the derivative of int g.x dV, int N_A (g.x) n dG, exactly, over the given elements. Rows are complete as above. x is relative to
+  /// `origin`.
   void add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const;
 
   Measures measures(const Net& net) const;
 
-  /// The same of each block of elements, block after block: those asked for, zero for the others; and measures from all.
+  /// Returns the moments of each block, block after block: computed for the given blocks, zero for the others. measures() combines them.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
   int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
 
-  /// Both Taylor parameters in the x1 x3 plane, inclination and extents. Of inertia: from the second moments M_11, M_13, M_33; of the
-  /// surface: from the longest and shortest distance of the centroid to the curve in which the plane x2 = centroid cuts the surface.
-  /// Extremal points are found by Newton's method, to round-off.
+  /// Returns both Taylor parameters in the x1 x3 plane, the inclination and the extents. The inertia definition uses the second moments M_11, M_13,
+  /// M_33. The surface definition uses the longest and shortest distance of the centroid to the curve in which the plane x2 = centroid_2 cuts the
+  /// surface. Extreme points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 
-  /// What it needs, of these elements: longest and shortest distance (0), extents (1, 2, 3); of all, the wider of parts. It throws RunFailure
-  /// when the plane misses the surface.
+  /// Returns the ranges that deformation() needs, over the given elements: section distances (0) and extents (1, 2, 3). Those of a whole surface are
+  /// the unions over its parts. deformation() throws RunFailure if the plane misses the surface.
   static constexpr int n_extremes = 4;
   std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);
@@ -123,11 +124,11 @@ class Geometry {
   std::vector<int> all_, all_blocks_;  ///< 0 .. n_elements - 1, 0 .. n_blocks - 1
 };
 
-/// The same for a single use.
+/// The same measures for a single evaluation.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
 
-/// Velocity U of the centroid (P-42) of the interior of x when the net moves by v (6.4): exact.
+/// Returns the velocity U of the centroid (P-42) of the interior of x if the net moves by v (6.4), exactly.
 Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v);
 
 }  // namespace tanktread::surface

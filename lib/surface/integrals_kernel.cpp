@@ -24,7 +24,7 @@ struct Table {
   }
 };
 
-/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, x and the tangents as three lanes each: sums over s first, then over t.
+/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, with x and the tangents as three registers each. Sums over s first, then over t.
 template <int p, int n, bool with_place, class Use>
 inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Use use) {
   const auto* points = reinterpret_cast<const Register*>(points_of_lanes.value);
@@ -66,7 +66,7 @@ inline void store(const Register& from, double (&to)[most_lanes]) {
   for (int l = 0; l < lanes; ++l) to[l] = from[l];
 }
 
-/// Solid harmonics of degree three at most.
+/// Computes the solid harmonics of degree three at most.
 inline void harmonics(const Register (&at)[3], Register (&h)[n_harmonics]) {
   const Register x = at[0], y = at[1], z = at[2], xx = x * x, yy = y * y, zz = z * z;
   const Register all[n_harmonics] = {Register{} + 1.,
@@ -109,7 +109,7 @@ struct Of {
   static void volume_gradient(const Lanes& points, Lanes& gradient) { normal_integrals<n, false>(points, nullptr, gradient); }
   static void moment_gradient(const Lanes& points, const double* g, Lanes& gradient) { normal_integrals<n_transport, true>(points, g, gradient); }
 
-  /// int B_b n dG, or with the factor g.x.
+  /// Computes int B_b n dG, or int B_b (g.x) n dG if with_place is true.
   template <int n, bool with_place>
   static void normal_integrals(const Lanes& points, const double* g, Lanes& gradient) {
     static const Table<p, n> table;
@@ -161,7 +161,7 @@ struct Of {
     for (int k = 0; k < 6; ++k) store(second[k] / 5, result.second[k]);
   }
 
-  /// v at the nodes, [s][t].
+  /// Computes v at the nodes, [s][t].
   template <int n>
   static void node_values(const Table<p, n>& table, const Lanes& velocities, Register (&v)[n][n][3]) {
     each_node<p, n, true>(table, velocities, [&](int qs, int qt, const Register(&at)[3], const Register(&)[3], const Register(&)[3]) {

@@ -1,5 +1,5 @@
 #pragma once
-// Integrals over elements from their Bezier points, a register of elements at a time, one in each lane.
+// Integrals over elements from their Bezier points, for one element per register lane.
 
 #include "base/pack.hpp"
 
@@ -8,37 +8,38 @@ namespace tanktread::surface::kernel {
 constexpr int largest_degree = 6;
 constexpr int most_bezier = (largest_degree + 1) * (largest_degree + 1);
 
-/// Bezier points, or what is dual to them, of as many elements of one degree p: component c of point b in lane l is
-/// value[(c * (p+1)^2 + b) * pack_lanes() + l].
+/// Bezier points, or values dual to them, of one element of degree p per lane: component c of point b in lane l is value[(c * (p+1)^2 + b) *
+/// pack_lanes() + l].
 struct alignas(sizeof(double) * most_lanes) Lanes {
   double value[3 * most_bezier * most_lanes];
 };
 
-/// 1/3 int x.n dG of each element: the sum over a closed surface is its volume. Exact, (3p - 1)/2 + 1 Gauss points a direction.
+/// Computes 1/3 int x.n dG of each element; the sum over a closed surface is its volume. Exact, (3p - 1)/2 + 1 Gauss points per direction.
 void volume(int degree, const Lanes& x, double (&volume)[most_lanes]);
 
-/// int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, the same points.
+/// Computes int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, with the same Gauss points.
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient);
 
-/// int B_b (g.x) n dG, the derivative of int g.x over the interior. Exact, (4p - 1)/2 + 1 Gauss points a direction.
+/// Computes int B_b (g.x) n dG, the derivative of int g.x over the interior. Exact, (4p - 1)/2 + 1 Gauss points per direction.
 void moment_gradient(int degree, const Lanes& x, const double* g, Lanes& gradient);
 
-/// Contributions of each element to the area, int dG, and to the integrals of 1, x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior,
-/// by the divergence theorem 1/3 int x.n, 1/4 int x_i x.n, 1/5 int x_i x_j x.n. All but the area exact, (5p - 1)/2 + 1 Gauss points a direction.
+/// Contributions of each element to the area, int dG, and to the integrals of 1, x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior, by the
+/// divergence theorem 1/3 int x.n, 1/4 int x_i x.n, 1/5 int x_i x_j x.n. All except the area are exact, with (5p - 1)/2 + 1 Gauss points per
+/// direction.
 struct Moments {
   double area[most_lanes], volume[most_lanes], first[3][most_lanes], second[6][most_lanes];
 };
 void moments(int degree, const Lanes& x, Moments& result);
 
-/// What a velocity v carries out of each element: int v.n dG and int x_i v.n dG; and its volume and int x_i over the interior, as above. Exact,
-/// (4p - 1)/2 + 1 Gauss points a direction.
+/// Fluxes of a velocity v through each element, int v.n dG and int x_i v.n dG, and its contributions to the volume and to int x_i over the interior,
+/// as above. Exact, (4p - 1)/2 + 1 Gauss points per direction.
 struct Transport {
   double volume[most_lanes], first[3][most_lanes], flux[most_lanes], carried[3][most_lanes];
 };
 void transport(int degree, const Lanes& x, const Lanes& v, Transport& result);
 
 /// Contributions of each element to int h_i h_j dG (i <= j, row after row), int h_i v.n dG and int h_i n dG, where h_i are the solid harmonics of
-/// degree three at most, 1, x1, x2, x3 first. Three Gauss points a direction.
+/// degree three at most, 1, x1, x2, x3 first. Three Gauss points per direction.
 constexpr int n_harmonics = 16;
 struct ShapeMotion {
   double products[n_harmonics * (n_harmonics + 1) / 2][most_lanes], motion[n_harmonics][most_lanes], normals[n_harmonics][3][most_lanes];

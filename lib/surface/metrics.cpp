@@ -22,14 +22,15 @@ struct LinePiece {
   spline::Site first, last;
 };
 
-/// A mid-line in the plane of its macro face, cut where Bezier elements end. `direction` 0: along x.
+/// Returns the pieces of a mid-line, which is straight in the plane of its macro face, between the borders of Bezier elements. `direction` 0: along
+/// x.
 std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
   std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;
   double at = end - length;
   while (at < end - 1e-9 * length) {
     spline::Place inside = start;
-    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // beyond the element that ends here
+    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // past the border of the element that ends here
     spline::Site site = locate(inside);
     const spline::Element& element = space.elements[site.element];
     const double from = element.origin[direction], size = element.size[direction], to = std::min(from + size, end);
@@ -106,17 +107,17 @@ struct Sample {
   Eigen::VectorXd fields;
 };
 
-/// Where the sides of elements of a polar mesh have no length.
+/// Returns whether a vertex is at a pole, where sides of elements have zero length.
 bool on_pole(const Lattice& lattice, int vertex) {
   if (lattice.pad == 0) return false;
   const int height = lattice.height(vertex / lattice.units);
   return height == 0 || height == lattice.height(lattice.rows);
 }
 
-/// Whether there is no way on: at the border of an open face, or at a pole.
+/// Returns whether a ray cannot be continued: at the border of an open face, or at a pole.
 bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
-/// Both surfaces, the load and the fields at lattice vertices, each evaluated once.
+/// Evaluates both surfaces, the load and the fields at lattice vertices, each once.
 class Samples {
  public:
   Samples(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net, const FieldAt& load, const FieldsAt& fields)
@@ -128,14 +129,14 @@ class Samples {
       spline::Site site = locate_(spline::place(lattice_, vertex));
       const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
       found->second = {on(rest_), on(now_), Vec3::Zero(), {}};
-      if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);  // a load per area has only a limit there
+      if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);  // at the pole itself, a load per area has only a limit
       if (load_) found->second.load = load_(site);
       if (fields_) found->second.fields = fields_(site);
     }
     return found->second;
   }
 
-  /// F at a place.
+  /// Returns F at a parametric point.
   Mat3 gradient(const spline::Place& p) const {
     const spline::Site site = locate_(p);
     return frame(now_, site) * frame(rest_, site).inverse();
@@ -159,7 +160,7 @@ class Samples {
   std::unordered_map<int, Sample> known_;
 };
 
-/// Vertices `stride` units apart along a ray, at most `most` of them, up to an extraordinary point or a pole.
+/// Returns at most `most` vertices, `stride` units apart along a ray, up to an extraordinary point or a pole.
 std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int most) {
   std::vector<int> found;
   while (static_cast<int>(found.size()) < most) {
@@ -174,7 +175,7 @@ std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int
   return found;
 }
 
-/// Vertices one edge apart: up to three before its start, the two ends, up to three beyond its end; `start`: position of the start among them.
+/// Vertices one edge length apart on the line of an edge: up to three before it, its two ends, up to three after it. `start`: index of its first end.
 struct EdgeLine {
   std::vector<int> vertices;
   int start = 0;
@@ -206,7 +207,7 @@ Sample fourth_difference(Samples& samples, const EdgeLine& line, int first) {
   return sum;
 }
 
-/// Gradient along the surface of the fields on a tile, from the differences of its corners.
+/// Returns the gradient of the fields along the surface on a tile, shape (m, 3), from differences between the corners.
 Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
   const auto differences = [&](auto Sample::*what) {
     const auto at = [&](int k) -> const auto& { return samples.at(side[k].vertex).*what; };
@@ -218,7 +219,7 @@ Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
   return differences(&Sample::fields) * (x.transpose() * x).inverse() * x.transpose();
 }
 
-/// F, and the gradient of the fields, on a tile.
+/// Deformation gradient and gradient of the fields at a tile.
 struct Gradients {
   Mat3 f;
   Eigen::MatrixX3d fields;
@@ -230,7 +231,7 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
   if (static_cast<int>(found.vertices.size()) > found.start + 1)
     result.length = (samples.at(found.vertices[found.start + 1]).now - samples.at(edge.vertex).now).norm();
   const int last = static_cast<int>(found.vertices.size()) - 5;
-  // The two windows with the edge in the middle, or else the nearest that there is.
+  // Use the two windows with the edge in the middle. If there are none, use the nearest ones.
   std::vector<int> windows;
   for (const int first : {found.start - 2, found.start - 1})
     if (first >= 0 && first <= last) windows.push_back(first);
@@ -249,7 +250,7 @@ Resolution mean(const Resolution& a, const Resolution& b) {
   return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
-/// What a tile becomes when its width (or height) doubles on the grid of the first mesh; itself if that is no tile around it.
+/// Returns the tile of twice the width (or height) that contains this tile on the grid of the initial mesh; the same tile if there is none.
 spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
   spline::Rectangle out = r;
   int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;
@@ -259,7 +260,7 @@ spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bo
   return size <= lattice.base && end <= at + size ? out : r;
 }
 
-/// Along s and t of a tile.
+/// Returns the resolution along s and t of a tile.
 std::array<Resolution, 2> on_tile(const Lattice& l, Samples& samples, const spline::Rectangle& r) {
   const std::array<Ray, 4> side = spline::sides(l, r);
   const Gradients g{samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)}),

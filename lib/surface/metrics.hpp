@@ -1,5 +1,5 @@
 #pragma once
-// What refinement is decided by: size of the elements of a T-mesh and variation of the fields on them; or how well they resolve what lies on them.
+// Refinement indicators: size of the elements of a T-mesh, variation of fields on them, and resolution errors of surface and load.
 
 #include <array>
 #include <functional>
@@ -11,8 +11,8 @@
 
 namespace tanktread::surface {
 
-/// One mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (P-36): its length L, and |phi(end) - phi(start)| / L of the
-/// traction (per current area), the velocity and the mean curvature chi. Units: length, and those of phi per length.
+/// A mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (P-36): its length L, and |phi(end) - phi(start)| / L for phi the traction (per
+/// current area), the velocity and the mean curvature chi. Units: length, and the unit of phi per length.
 struct MidLine {
   double length = 0, traction = 0, velocity = 0, curvature = 0;
 };
@@ -21,11 +21,11 @@ struct MidLine {
 struct ElementMetrics {
   std::array<MidLine, 2> along;  ///< s, t
 
-  /// L_alpha/L_beta.
+  /// Returns L_alpha/L_beta.
   double aspect_ratio(int alpha) const { return along[alpha].length / along[1 - alpha].length; }
 };
 
-/// A field on the surface, at a site of the space. Empty: not in use, its variation is 0.
+/// A field on the surface as a function of a site of the space. If it is empty, its variation is 0.
 using FieldAt = std::function<Vec3(const spline::Site&)>;
 using FieldsAt = std::function<Eigen::VectorXd(const spline::Site&)>;
 
@@ -33,29 +33,29 @@ struct MetricFields {
   FieldAt traction, velocity;
 };
 
-/// Metrics of elements(mesh), in its order, on the surface of `net`. Elements are those of the T-mesh, which are marked and cut, not the Bezier
-/// elements: a mid-line may run through several of these. Of one that ends at a pole, where most fields have no value, only the length is taken.
+/// Returns the metrics of elements(mesh), in its order, on the surface of `net`. These are the elements of the T-mesh, which are marked and refined,
+/// not the Bezier elements: a mid-line may cross several of those. If a mid-line ends at a pole, where most fields have no value, only its length is
+/// computed.
 std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
                                             const MetricFields& fields);
 
-/// The traction per current area of a load per reference area (3.7): f J0/J, with `load` on the net, `rest` and `net` the two configurations.
-/// This and the next keep references: what they are given must outlive them.
+/// Returns the traction per current area of a load per reference area (3.7): f J0/J, where `load` has control values, and `rest` and `net` are the
+/// two configurations. This function and the next one store references, so their arguments must outlive the result.
 FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net& net, const Net& load);
 
-/// The field with control values `net`.
+/// Returns the field with control values `net`.
 FieldAt field_of_net(const spline::Space& space, const Net& net);
 
-/// Along one direction of an element: its length, and estimates of the distance between cubics on elements of this length and what they stand for,
+/// Errors of an element along one direction. They estimate the distance between the exact surface or load and cubics on elements of this length,
 ///
 ///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per present area                       (1.5)
 ///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
-/// with D4 the fourth difference of values one element apart, the mean over both edges of the element in this direction: 1/384 is the constant of
-/// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the present one, and its normal
-/// to that one's times the square root of the stretch in area: how X itself varies over the mesh, at extraordinary points above all, costs
-/// nothing where the particle has kept its shape. G is the gradient of q along the surface, for the same reason: a q that varies like x has no
-/// error. Where all is smooth, cutting an element divides either by 16; next to an extraordinary point
-/// by about 8.
+/// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
+/// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the current surface, and the
+/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
+/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no error for
+/// the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
 struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
@@ -65,13 +65,13 @@ struct Errors {
   Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
 };
 struct Resolution {
-  double length = 0;  ///< of the edges, their mean
+  double length = 0;  ///< mean length of the edges
   Errors errors;
-  Errors merged;  ///< of the element twice as long that this one is a part of; 16 times `errors` where there is none
+  Errors merged;  ///< errors of the element of twice the length that contains this one; 16 times `errors` if there is none
 };
 
-/// Of elements(mesh), in its order, along s and t. A line of places ends at an extraordinary point or a pole; where fewer than five are left, the
-/// estimate is 0. A side that is a pole does not count.
+/// Returns the resolution of elements(mesh), in its order, along s and t. A line of sample points ends at an extraordinary point or a pole; if it has
+/// fewer than five points, the estimate is 0. A side that is a pole is ignored.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
                                                   const FieldAt& load, const FieldsAt& fields = {});
 

@@ -29,7 +29,7 @@ std::vector<double> chord_ends(const PlaneCurve& curve) {
   return out;
 }
 
-/// A bound on |x''| over part of a piece: x'' is linear on a cubic one.
+/// Returns a bound of |x''| over part of a piece; x'' is linear on a cubic piece.
 double bend(const PlaneCurve& curve, double begin, double end) {
   if (const auto* ellipse = std::get_if<Ellipse>(&curve)) return ellipse->semi_axes.maxCoeff();
   const double inside = 1e-9 * (end - begin);
@@ -38,13 +38,13 @@ double bend(const PlaneCurve& curve, double begin, double end) {
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Where the segment from a to b is nearest to p: 0 at a, 1 at b.
+/// Returns the parameter of the point nearest to p on the segment from a to b: 0 at a, 1 at b.
 double foot(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
   return std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
 }
 
-/// A point that two segments have in common.
+/// Returns a common point of two segments, if there is one.
 std::optional<Vec2> meeting(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const auto apart = [&](int k) { return std::max(a[k], b[k]) < std::min(c[k], d[k]) || std::max(c[k], d[k]) < std::min(a[k], b[k]); };
   if (apart(0) || apart(1)) return std::nullopt;
@@ -94,7 +94,8 @@ void Outline::measure() {
   length_ = std::accumulate(lengths_.begin(), lengths_.end(), 0.0);
 }
 
-/// Chords that are not neighbours may not meet. Sweep along x2: only chords whose ranges overlap are compared.
+/// Returns a common point of two chords that are not neighbours, if there is one. Sweeps along x2, so only chords with overlapping ranges are
+/// compared.
 std::optional<Vec2> Outline::first_crossing() const {
   const auto low = [](const Chord& c) { return std::min(c.a[0], c.b[0]); };
   const int n = static_cast<int>(chords_.size());
@@ -129,7 +130,7 @@ double Outline::corner_angle(int k) const {
 
 double Outline::radius() const { return std::sqrt(area_ / std::numbers::pi); }
 
-/// Newton's method for the foot of the perpendicular, kept on the chord's piece of the curve; the ends count as well.
+/// Finds the foot of the perpendicular by Newton's method, restricted to the chord's piece of the curve; its ends are candidates too.
 Nearest Outline::nearest_on(const Chord& chord, const Vec2& p) const {
   const double h = chord.end - chord.begin;
   double u = chord.begin + h * foot(p, chord.a, chord.b);
@@ -168,7 +169,8 @@ Nearest Outline::nearest(const Vec2& p) const {
   return best;
 }
 
-/// What is nearest to a point within r of x is no farther from it than `its` is: a place y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is farther.
+/// The point nearest to p, which lies within r of x, is no farther from p than `its`. A point y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is
+/// farther.
 Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
   Nearest best;
   best.distance = std::numeric_limits<double>::infinity();
@@ -180,7 +182,7 @@ Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, con
   return best;
 }
 
-/// By the polygon of the chords, unless the point lies so near that polygon and curve may differ; then by the normal at the nearest place.
+/// Tests against the polygon of the chords. If the point is so close that polygon and curve may differ, uses the normal at the nearest point instead.
 bool Outline::within(const Vec2& p, const Nearest& nearest) const {
   if (nearest.distance <= 2 * sag_) {
     Vec2 out = normal(nearest.side, nearest.u);

@@ -1,5 +1,5 @@
 #pragma once
-// The cross-section of a tube.
+// Cross-section of a tube.
 
 #include <array>
 #include <optional>
@@ -13,7 +13,7 @@ namespace tanktread::surface {
 
 using Vec2 = Eigen::Vector2d;
 
-/// A place on a curve with the first and second derivative by its parameter.
+/// A point of a curve, with the first and second derivative with respect to its parameter.
 struct PlaneJet {
   Vec2 x, d, dd;
 };
@@ -31,38 +31,39 @@ struct CubicCurve {
   std::vector<std::array<Vec2, 4>> bezier;  ///< m pieces
 };
 
-/// One side of an outline: a closed curve, or an open one between two corners.
+/// A smooth part of an outline: a closed curve, or an open one between two corners.
 using PlaneCurve = std::variant<Ellipse, CubicCurve>;
 
 bool closed(const PlaneCurve& curve);
-std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter; a closed curve takes any u and is periodic
+std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
-/// The cubic spline with these knots that takes the given values there. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4.
-/// Open: points.size() = breaks.size() >= 2; the third derivative is continuous at the first and last inner knot (not-a-knot); two points
-/// are a straight line, three a parabola.
+/// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:
+/// points.size() = breaks.size() >= 2; the third derivative is continuous at the first and last inner knot (not-a-knot). Two points give a straight
+/// line, three a parabola.
 CubicCurve interpolate_closed(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 
-/// The open spline that also has the given derivatives by u at its ends.
+/// Returns the open spline that also has the given derivatives with respect to u at its ends.
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points, const Vec2& first, const Vec2& last);
 
-/// B-spline control points. Closed: m of them, number i belongs to the function with its middle knot at breaks[i]. Open (end knots fourfold): m + 3.
+/// Returns the B-spline control points. Closed: m points; point i belongs to the function with its middle knot at breaks[i]. Open (end knots
+/// fourfold): m + 3 points.
 std::vector<Vec2> control_points(const CubicCurve& curve);
 
-/// The nearest place of an outline to a point, and on which side of the outline the point is.
+/// The point of an outline nearest to a given point, and the side of the outline on which the given point lies.
 struct Nearest {
   int side = 0;
   double u = 0;
-  Vec2 x;               ///< the place
-  double distance = 0;  ///< to it; positive for a point inside the outline, negative outside
+  Vec2 x;               ///< nearest point
+  double distance = 0;  ///< distance to it; positive for a point inside the outline, negative outside
 };
 
-/// A closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), counter-clockwise: x2 towards x3, seen against x1. Either one closed
-/// smooth side, or several smooth sides that meet at corners, each starting where the one before ends.
+/// A closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), counter-clockwise: from x2 towards x3, seen against x1. It is either one
+/// closed smooth side, or several smooth sides that meet at corners, where each side starts at the end of the previous one.
 class Outline {
  public:
-  /// Throws UserError, a sentence that begins with `name`, for sides that cross or run clockwise.
+  /// Throws UserError if sides cross or run clockwise. The message begins with `name`.
   explicit Outline(std::vector<PlaneCurve> sides, const std::string& name = "The outline");
 
   int n_sides() const { return static_cast<int>(sides_.size()); }
@@ -72,9 +73,9 @@ class Outline {
   PlaneJet at(int k, double u) const { return jet(side(k), u); }
   Vec2 point(int k, double u) const { return at(k, u).x; }
   Vec2 tangent(int k, double u) const { return at(k, u).d.normalized(); }
-  Vec2 normal(int k, double u) const;  ///< unit, out of the tube's interior (into the wall)
+  Vec2 normal(int k, double u) const;  ///< unit normal out of the tube's interior (into the wall)
 
-  /// Angle inside the outline where side k begins, 0 .. 2 pi; pi where nothing turns.
+  /// Returns the angle inside the outline at the start of side k, 0 .. 2 pi; pi if there is no corner.
   double corner_angle(int k) const;
 
   double length() const { return length_; }
@@ -88,22 +89,23 @@ class Outline {
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
-  /// The nearest to p of the places that may be nearest to a point within r of x, whose own nearest place is `its`; the distance has no sign.
+  /// Returns the point nearest to p among those that may be nearest to a point within r of x. `its` is the nearest point to x. The distance has no
+  /// sign.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
-  /// The number of elements of each side when `elements` are shared out by length, at least `least` on each, equally many on sides of one length:
-  /// they may be a few more.
+  /// Returns the number of elements of each side when `elements` are distributed by length, with at least `least` per side and equally many on sides
+  /// of equal length. Their sum may exceed `elements` slightly.
   std::vector<int> shares(int elements, int least = 1) const;
 
-  /// m + 1 knots of m elements on side k, evenly in its parameter.
+  /// Returns the m + 1 knots of m elements on side k, evenly spaced in its parameter.
   std::vector<double> knots(int k, int m) const;
 
-  /// The outline as cubic splines on shares(elements, 2) even elements: through the points at the knots, open sides with the end tangents as
-  /// well. All sides of the result are CubicCurves; an order-4 approximation, exact for straight sides.
+  /// Returns the outline as cubic splines on shares(elements, 2) even elements. They interpolate the points at the knots and, on open sides, the end
+  /// tangents. All sides of the result are CubicCurves. The approximation is of order 4, exact for straight sides.
   Outline spline(int elements) const;
 
  private:
-  /// Short chords of the sides, each with a bound on the curve's distance from it.
+  /// A short chord of a side, with a bound on the distance of the curve from it.
   struct Chord {
     int side;
     double begin, end;
@@ -126,13 +128,13 @@ class Outline {
   std::array<Vec2, 2> box_;
 };
 
-/// The section of a tube: circle and ellipse themselves, four straight sides, or the spline through the points of a file. Throws UserError.
+/// Returns the section of a tube: the exact circle or ellipse, four straight sides, or the spline through the points of a file. Throws UserError.
 Outline outline(const TubeOptions& options);
 
-/// The same as cubic splines on `elements` elements.
+/// Returns the section of a tube as cubic splines on `elements` elements.
 inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
 
-/// The outline through the points of a file, as `Tube/outline` describes it. Throws UserError: one sentence with file, line and numbers.
+/// Returns the outline through the points of a file, as described at `Tube/outline`. Throws UserError with file, line and numbers in one sentence.
 Outline read_outline(const std::string& path);
 
 }  // namespace tanktread::surface

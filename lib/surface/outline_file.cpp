@@ -9,7 +9,7 @@ namespace tanktread::surface {
 namespace {
 
 constexpr int fewest_smooth = 8, fewest_with_corners = 3;
-constexpr double same_point = 1e-6;  // times the longest step
+constexpr double same_point = 1e-6;  // in units of the longest step
 
 struct Row {
   int line;
@@ -42,7 +42,7 @@ class File {
     return {row.line, {csv_number(field[0], here), csv_number(field[1], here)}, third};
   }
 
-  /// Between points that follow each other in the file.
+  /// Returns the largest distance between consecutive points of the file.
   double longest_step() const {
     double longest = 0;
     for (std::size_t i = 0; i + 1 < rows_.size(); ++i) longest = std::max(longest, (rows_[i + 1].x - rows_[i].x).norm());
@@ -72,7 +72,7 @@ class File {
   std::vector<Row> rows_;
 };
 
-/// The spline through n + 1 points from rows[first] on (n of them when closed), by the length of the chords.
+/// Returns the spline through n + 1 points from rows[first] on (n of them if closed), parametrised by chord length.
 CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, bool closed) {
   std::vector<double> breaks{0};
   std::vector<Vec2> points{rows[first].x};

@@ -44,7 +44,7 @@ Graph common_points(const spline::Space& space, const std::vector<std::vector<in
   return graph;
 }
 
-/// Costs as the positive integers that METIS wants.
+/// Returns the costs as positive integers, which METIS requires.
 std::vector<idx_t> scaled(std::span<const double> cost) {
   const double largest = *std::max_element(cost.begin(), cost.end());
   std::vector<idx_t> result;
@@ -59,7 +59,7 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
-  options[METIS_OPTION_UFACTOR] = 10;  // parts within one per cent of each other
+  options[METIS_OPTION_UFACTOR] = 10;  // imbalance of at most one per cent
   const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k,
                             nullptr, nullptr, options, &cut, owner.data());
@@ -67,8 +67,8 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   return {owner.begin(), owner.end()};
 }
 
-/// Each of the points to be shared goes to the part that owns most of the elements around it, the clearest cases first; once a part has its fair
-/// share of points, to the adjacent one that has the fewest.
+/// Assigns each of the shared points to the part that owns most of the elements around it, the clearest cases first. If that part already has its
+/// number of points, the point goes to the adjacent part with the fewest points.
 std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts,
                               std::span<const int> shared) {
   const int n = static_cast<int>(shared.size());
@@ -93,7 +93,7 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-/// Parts of nearly equal cost, with these points shared among them.
+/// Returns parts of nearly equal cost, with these points distributed among them.
 Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)

@@ -1,5 +1,5 @@
 #pragma once
-// Which rank does which elements and control points. METIS is used here and nowhere else.
+// Distribution of elements and control points over ranks. METIS is used only here.
 
 #include <span>
 #include <vector>
@@ -14,16 +14,16 @@ struct Partition {
   std::vector<int> element_owner, point_owner;
 };
 
-/// Connected parts of nearly equal cost: METIS on the graph of elements that share control points (heavier edges for more of them). A point
-/// belongs to the part that owns most of the elements around it, as long as that keeps the numbers of points balanced too.
-/// Deterministic; `cost` an element (empty: 1 each). Throws UserError when there are more parts than elements.
+/// Returns connected parts of nearly equal cost: METIS on the graph of elements that share control points, with edges weighted by their number. A
+/// point belongs to the part that owns most of the elements around it, as long as the numbers of points stay balanced too. Deterministic. `cost`:
+/// cost of each element (empty: 1 each). Throws UserError if there are more parts than elements.
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
 
-/// The same where only some of the points have work, as the fundamental ones of a symmetric surface: those are what is balanced, and the others
-/// belong to nobody (-1).
+/// Returns a partition if only some points have work, for example the fundamental points of a symmetric surface. Only these points are balanced; the
+/// other points have no owner (-1).
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points);
 
-/// What one rank does: its own points, and all elements that touch them; both ascending.
+/// Work of one rank: the points it owns, and all elements that touch them; both ascending.
 struct Share {
   std::vector<int> points, elements;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// One Bezier element with its points in space.
+// A Bezier element with its points in space.
 
 #include <array>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// A view of the Bezier points of one element, shape (3, (p+1)^2): all of x1, then x2, then x3, s fastest.
+/// View of the Bezier points of one element, shape (3, (p+1)^2): all of x1, then x2, then x3, s fastest.
 struct Patch {
   int degree = 3;
   const double* points = nullptr;
@@ -20,24 +20,24 @@ struct Patch {
   double coordinate(int c, int b) const { return points[c * n_bezier() + b]; }
 };
 
-/// Place and derivatives up to the second with respect to the local coordinates.
+/// Position and its derivatives up to second order with respect to the local coordinates.
 struct Jet {
   Vec3 x, s, t, ss, st, tt;
 };
 Jet jet(const Patch& patch, double s, double t);
 
-/// |x_,s x x_,t|.
+/// Returns |x_,s x x_,t|.
 double jacobian(const Jet& jet);
 
-/// Place alone.
+/// Returns the position only.
 Vec3 place(const Patch& patch, double s, double t);
 
-/// Mean curvature chi = 1/2 div n, positive on a sphere.
+/// Returns the mean curvature chi = 1/2 div n, positive on a sphere.
 double mean_curvature(const Jet& jet);
 
-constexpr int cells = 6;  ///< intervals of the grid, a direction
+constexpr int cells = 6;  ///< number of grid intervals per direction
 
-/// Places at (i, j)/cells, [j][i].
+/// Positions at (i, j)/cells, indexed [j][i].
 using Grid = std::array<std::array<Vec3, cells + 1>, cells + 1>;
 Grid sample(const Patch& patch);
 
@@ -53,7 +53,7 @@ class ElementPoints {
   spline::BezierPoints points_;
 };
 
-/// The Bezier points of all elements of a surface, or of some in their order.
+/// The Bezier points of all elements of a surface, or of some elements in the given order.
 class Patches {
  public:
   Patches(const BezierMap& map, const Net& net);

@@ -9,7 +9,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// The rows of the linear system for the derivatives at the knots.
+/// Linear system for the derivatives at the knots.
 class Rows {
  public:
   explicit Rows(int n) : n_(n), right_(Eigen::MatrixXd::Zero(n, 2)) {}
@@ -42,7 +42,8 @@ std::vector<Step> steps(const std::vector<double>& breaks, const std::vector<Vec
   return out;
 }
 
-/// The second derivative is continuous between the steps `left` and `right`; columns of the derivatives at their three knots.
+/// Adds the row that makes the second derivative continuous between the steps `left` and `right`. `column`: columns of the derivatives at their
+/// knots.
 void join(Rows& rows, int row, const Step& left, const Step& right, const std::array<int, 3>& column) {
   rows.add(row, column[0], 1 / left.h);
   rows.add(row, column[1], 2 / left.h + 2 / right.h);
@@ -50,7 +51,7 @@ void join(Rows& rows, int row, const Step& left, const Step& right, const std::a
   rows.value(row, 3 * (left.slope / left.h + right.slope / right.h));
 }
 
-/// The third derivative of step k (and, unless it is to vanish, less that of step k + 1).
+/// Adds the row that sets the third derivative of step k to that of step k + 1, or to zero if it vanishes.
 void third_derivative(Rows& rows, int row, const std::vector<Step>& steps, int k, bool vanishes) {
   const Step& a = steps[k];
   const double one = 1 / (a.h * a.h);
@@ -76,7 +77,7 @@ CubicCurve hermite(bool closed, const std::vector<double>& breaks, const std::ve
   return curve;
 }
 
-/// The spline through the points, where `ends` adds the rows of an open one's ends.
+/// Returns the spline through the points; `ends` adds the rows for the ends of an open spline.
 template <class Ends>
 CubicCurve interpolate(bool closed, const std::vector<double>& breaks, const std::vector<Vec2>& points, const Ends& ends) {
   const std::vector<Step> step = steps(breaks, points);
@@ -105,7 +106,7 @@ PlaneJet jet(const CubicCurve& curve, double u) {
           (3 * r * r * d0 + 6 * r * s * d1 + 3 * s * s * d2) / h, (6 * r * (d1 - d0) + 6 * s * (d2 - d1)) / (h * h)};
 }
 
-/// The value of the polar form of a cubic Bezier piece on [a, b] at three parameters.
+/// Returns the blossom (polar form) of a cubic Bezier piece on [a, b] at three parameters.
 Vec2 blossom(std::array<Vec2, 4> b, double begin, double end, const std::array<double, 3>& t) {
   for (int level = 0; level < 3; ++level) {
     const double s = (t[level] - begin) / (end - begin);

@@ -16,8 +16,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Control point A lies off the axis by `across`, of length 1 but at a C1 pole, times the radius of its row, profile[2 row], at the height
-/// profile[2 row + 1].
+/// Circles of control points. Control point A has the distance profile[2 row] from the axis, in the direction `across`, and the height profile[2 row
+/// + 1]. `across` has length 1, except at a C1 pole.
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
@@ -44,7 +44,7 @@ struct Circles {
   }
 };
 
-/// Places on the sphere at even colatitudes.
+/// Returns the profile of points on the sphere at evenly spaced colatitudes.
 Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   std::vector<double> profile;
   double last = -1;
@@ -58,7 +58,7 @@ Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   return Eigen::Map<Eigen::VectorXd>(profile.data(), Eigen::Index(profile.size()));
 }
 
-/// The integral over one sector (the others are like it), its gradient and Gauss-Newton matrix with respect to the profile.
+/// The integral over one sector (all sectors are equal), with its gradient and Gauss-Newton matrix with respect to the profile.
 struct Misfit {
   double value = 0;
   Eigen::VectorXd gradient;
@@ -113,7 +113,7 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // Residuals: eps, and its gradient in an orthonormal frame; their derivatives by the profile of rows first .. last.
+    // Residuals: eps, and its gradient in an orthonormal frame. `slope`: their derivatives with respect to the profile of rows first .. last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);
@@ -146,9 +146,9 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   const Sector sector(mesh, space);
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
-  // Sliding along the meridian hardly changes the misfit, so the damping must be all but none for the best distribution. A long slide
-  // leaves the sphere by its square at first, and the next step brings it back; but where rows are closer than the points of a
-  // row, it may fold the surface onto itself.
+  // Sliding along the meridian hardly changes the misfit, so the damping must be nearly zero to find the best distribution. A long slide leaves the
+  // sphere by its square at first, and the next step corrects this. But if rows are closer together than the points of a row, a long slide may fold
+  // the surface.
   const double longest = mesh.meridional > mesh.azimuthal ? 0.2 : std::numeric_limits<double>::infinity();
   double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Is the mesh still sound: folded and stretched elements.
+// Mesh quality: folded and stretched elements.
 
 #include <span>
 
@@ -8,27 +8,27 @@
 
 namespace tanktread::surface {
 
-/// The worst elements of a surface, judged at 4 x 4 Gauss points of each Bezier element.
+/// The worst elements of a surface, from 4 x 4 Gauss points of each Bezier element.
 struct Quality {
-  /// Smallest (a1 x a2).m / mean of |a1 x a2| over the points of an element, m the direction of the sum of a1 x a2: near 1 on an even element,
-  /// zero or less on a folded one. Where it is found, and the place.
+  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with m the direction of the sum of a1 x a2: near 1 on an
+  /// even element, zero or less on a folded one. The next two members are the element and the position where it occurs.
   double jacobian_ratio = 1;
   int folded_element = 0;
   Vec3 folded_place = Vec3::Zero();
 
-  /// Largest ratio of the mean lengths of a1 and a2, either way (L_alpha/L_beta of P-37 for a straight element).
+  /// Largest ratio of the mean lengths of a1 and a2, or its inverse if that is larger (L_alpha/L_beta of P-37 for a straight element).
   double aspect_ratio = 1;
   int stretched_element = 0;
 };
 
-/// Throws RunFailure when a control point is not a finite number, naming it.
+/// Computes the quality. Throws RunFailure, naming the control point, if a control point is not finite.
 Quality quality(const BezierMap& map, const Net& net);
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 
-/// The worse of each.
+/// Returns the worse value of each measure.
 Quality worse(const Quality& a, const Quality& b);
 
-/// Throws RunFailure, with element and place, when an element is folded: its jacobian_ratio is `least` or below.
+/// Throws RunFailure, with element and position, if an element is folded: its jacobian_ratio is not above `least`.
 void require_sound(const Quality& quality, double least = 0);
 
 }  // namespace tanktread::surface

@@ -12,14 +12,14 @@ namespace tanktread::surface {
 
 namespace {
 
-/// The k for which the mesh is the uniform one of 3 * 2^k elements a side, or -1.
+/// Returns the k for which the mesh is the uniform one of 3 * 2^k elements per side, or -1.
 int subdivisions(const spline::TMesh& mesh, int n_points) {
   int level = 0, n = 3;
   while (6 * n * n + 2 < n_points) n *= 2, ++level;
   return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
 }
 
-/// Control points to start from: the subdivided net itself where the mesh is one, elsewhere points of its limit surface.
+/// Returns initial control points: the subdivided net itself if the mesh is uniform, otherwise points of the limit surface.
 Net smooth_start(const spline::TMesh& mesh) {
   const std::vector<int> vertices = spline::anchors(mesh);
   const int level = subdivisions(mesh, static_cast<int>(vertices.size()));
@@ -48,7 +48,7 @@ Vec3 red_cell(const Vec3& x) {
 
 namespace {
 
-/// From the unit sphere, or the red cell of unit radius, to the shape about its centre.
+/// Returns the linear map from the unit sphere, or the red cell of unit radius, to the shape about its centre.
 Mat3 map_of(const ParticleShape& shape) {
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.radius.value_or(1));
   return shape.rotation() * semi_axes.asDiagonal();
@@ -103,8 +103,8 @@ struct FaceNet {
   Vec3 at(int i, int j) const { return points.row((j + 1) * (n + 3) + i + 1).transpose(); }
   void set(int i, int j, const Vec3& x) { points.row((j + 1) * (n + 3) + i + 1) = x.transpose(); }
 
-  /// Fills the ring: mirrors in the planes x1 = -+x3 and x2 = -+x3. The four outermost corners do not exist on the cube; each is set so that the
-  /// corner element closes with a parallelogram.
+  /// Fills the ring with mirror images in the planes x1 = -+x3 and x2 = -+x3. The four outermost corners do not exist on the cube. Each is set so
+  /// that the corner element becomes a parallelogram.
   void mirror() {
     for (int k = 0; k <= n; ++k) {
       set(-1, k, mirrored(at(1, k), 0, -1));
@@ -142,7 +142,7 @@ FaceNet coarse_net() {
   return net;
 }
 
-/// Catmull-Clark rule (Q + 2 R + (N - 3) P)/N: Q mean of the face points, R of the edges' middles.
+/// Applies the Catmull-Clark rule (Q + 2 R + (N - 3) P)/N, with Q the mean of the face points and R the mean of the edge midpoints.
 Vec3 vertex_point(const FaceNet& net, int i, int j) {
   const bool corner = (i == 0 || i == net.n) && (j == 0 || j == net.n);
   const Vec3 p = net.at(i, j);
@@ -183,8 +183,8 @@ void uniform_b_spline(double x, double (&value)[4]) {
   value[3] = x * x * x / 6;
 }
 
-/// Weighted mean of the 4 x 4 vertices around the cell of a point on the cube. Permuting two axes and turning a sign carries its face onto x3 = 1
-/// and the result back.
+/// Returns the weighted mean of the 4 x 4 vertices around the cell of a point on the cube. The point is mapped to the face x3 = 1 by swapping two
+/// axes and changing a sign, and the result is mapped back.
 template <class Weights>
 Vec3 radial_mean(const Vec3& on_cube, int n, const Net& net, Weights weights) {
   int axis;

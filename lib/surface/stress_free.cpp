@@ -13,13 +13,13 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Half of a closed surface of revolution, symmetric in its equator: radius and height of the parallel that is the image of height z of the unit
-/// sphere, radius = equator sqrt(1 - z^2).
+/// Half of a closed surface of revolution that is symmetric about its equator. A point at height z of the unit sphere maps to a parallel with the
+/// radius equator sqrt(1 - z^2) and the given height.
 struct Meridian {
   double equator;
-  std::function<double(double z)> height, slope;  ///< the latter by z
+  std::function<double(double z)> height, slope;  ///< slope: derivative of height with respect to z
 
-  /// int_0^z radius ds: the area between the equator and the parallel over 2 pi.
+  /// Returns int_0^z radius ds, the area between the equator and the parallel divided by 2 pi.
   double area(double z) const {
     constexpr int panels = 8;
     const quadrature::GaussRule& rule = quadrature::gauss(10);
@@ -29,7 +29,7 @@ struct Meridian {
     return sum;
   }
 
-  /// Its derivative by z.
+  /// Returns the derivative of area(z).
   double density(double z) const {
     const double along = equator * equator * z;
     return std::sqrt(along * along + equator * equator * (1 - z * z) * slope(z) * slope(z));
@@ -42,7 +42,7 @@ Meridian spheroid(double equator, double pole) {
 
 Meridian red_cell_meridian(double radius) {
   const auto half_thickness = [](double z) { return red_cell({std::sqrt(1 - z * z), 0, z})[2]; };
-  const auto slope = [](double z) {  // of z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
+  const auto slope = [](double z) {  // derivative of z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
     const auto [c0, c1, c2] = red_cell_profile;
     const double r2 = 1 - z * z;
     return (c0 + c1 * r2 + c2 * r2 * r2) / 2 - z * z * (c1 + 2 * c2 * r2);
@@ -50,7 +50,7 @@ Meridian red_cell_meridian(double radius) {
   return {radius, [=](double z) { return radius * half_thickness(z); }, [=](double z) { return radius * slope(z); }};
 }
 
-/// The particle's own axis of revolution, 2 for x3.
+/// Returns the particle's own axis of revolution, 2 for x3.
 int axis_of(const ParticleShape& shape) {
   if (shape.shape == "sphere" || shape.shape == "red cell") return 2;
   if (shape.semi_axes) {
@@ -68,7 +68,7 @@ Meridian resting_meridian(const ParticleShape& shape, int axis) {
   return spheroid(semi_axes[(axis + 1) % 3], semi_axes[axis]);
 }
 
-/// The oblate spheroid of a given half area over 2 pi.
+/// Returns the oblate spheroid whose half area divided by 2 pi is `area`.
 Meridian spheroid_of(double reduced_volume, double area) {
   const auto of_ratio = [&](double ratio) {
     const Meridian unit = spheroid(1, ratio);
@@ -76,7 +76,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
     return spheroid(scale, scale * ratio);
   };
   const double volume = reduced_volume * std::pow(4 * std::numbers::pi * area, 1.5) / (6 * std::sqrt(std::numbers::pi));
-  double low = 0, high = 1;  // of the semi-axes' ratio, with which the volume grows
+  double low = 0, high = 1;  // ratio of the semi-axes, with which the volume grows
   for (int k = 0; k < 60; ++k) {
     const double middle = (low + high) / 2;
     const Meridian one = of_ratio(middle);
@@ -85,7 +85,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// The z of `other` between whose parallel and the equator there is the area that `one` has.
+/// Returns the z of `other` whose area to the equator equals that of `one` at the given z.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

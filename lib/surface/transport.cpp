@@ -15,20 +15,20 @@ namespace tanktread::surface {
 
 namespace {
 
-/// A corner of the grid: place, velocity, unstressed place (if there is one), height over the plane.
+/// A corner of the grid: position, velocity, unstressed position (if there is one), height above the plane.
 struct Corner {
   Vec3 x, v, unstressed;
   double height;
 };
 
-/// The curve so far: circulation and length; the weight of its points (6.6), and their mean angular velocity times it.
+/// Sums over the curve so far: circulation, length, weight of its points (6.6), and weighted angular velocity.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
   bool onwards = false, backwards = false;  // whether a piece moves along the curve, or against it
 
-  /// The piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
+  /// Adds the piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {
     const bool above[3] = {a.height >= 0, b.height >= 0, c.height >= 0};
     if (above[0] == above[1] && above[1] == above[2]) return;
@@ -44,7 +44,7 @@ struct Circuit {
       unstressed[n++] = from.unstressed + share * (to.unstressed - from.unstressed);
     }
     const Vec3 normal = (b.x - a.x).cross(c.x - a.x), along = x[1] - x[0];
-    if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;  // at a corner: rounding has its direction
+    if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;  // at a corner, round-off determines the direction
     const double sense = along.dot(Vec3::UnitY().cross(normal)) > 0 ? 1 : -1;
     const double treads = sense * along.dot(v[0] + v[1]) / 2;
     circulation += treads;
@@ -66,8 +66,8 @@ struct Circuit {
 using kernel::n_harmonics;
 using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
-/// Integrals over the surface x/R: of products of harmonics (the lower triangle), harmonics times v.n, harmonics times n; the last of these with x/R
-/// are 3 V/R^3.
+/// Integrals over the surface x/R: of products of harmonics (the lower triangle), of harmonics times v.n, and of harmonics times n. The integrals of
+/// x/R times n are the diagonal entries V/R^3, whose sum is 3 V/R^3.
 struct Sums {
   Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
   Eigen::Map<Values> motion;
@@ -81,7 +81,7 @@ struct Sums {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
-  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // where rounding shall not decide on a side
+  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // round-off must not decide on a side
   const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {
     const auto [low, high] = hull(places[e], 1);
@@ -121,7 +121,7 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R^3 times the identity, but for the rule; with them a translation has no rest
+  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R^3 times the identity but for quadrature errors; gives no residual for a translation
   Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();
   const Values motion = all.motion - all.normals * frame;

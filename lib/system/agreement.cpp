@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::seconds patience(30);
 
-/// Of all ranks; none where there is one only.
+/// Communicator of all ranks; null if there is only one rank.
 MPI_Comm& everyone() {
   static MPI_Comm comm = MPI_COMM_NULL;
   return comm;
@@ -27,7 +27,7 @@ int rank() {
   return mine;
 }
 
-/// Waits until all have come to `request`; one that has met an error does so only for a while.
+/// Waits until all ranks have arrived at `request`. A rank that has an error waits only for `patience` and then ends all ranks.
 void wait(MPI_Request& request, int code, const std::string& message) {
   const auto start = std::chrono::steady_clock::now();
   for (int here = 0; MPI_Test(&request, &here, MPI_STATUS_IGNORE), !here;) {

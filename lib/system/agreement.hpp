@@ -1,5 +1,5 @@
 #pragma once
-// What all ranks agree on, whatever the data of each one says: an outcome, a decision, and that all of them are still there.
+// Agreement of all ranks on an outcome or a decision, even if their local data differ, and detection of ranks that have failed.
 
 #include <functional>
 #include <span>
@@ -11,41 +11,42 @@
 
 namespace tanktread::coupling {
 
-/// Prepares the calls below, which must not meet those of any other communicator. Collective; part of a Session.
+/// Duplicates the communicator for the calls below, which must not interfere with calls of other communicators. Collective; called by Session.
 void begin_agreements();
 
-/// The largest `mine` of all ranks. Collective. A rank with an `error` that not all of them share may be waited for in a call that it will not come
-/// to: after half a minute it says the error and ends all of them with exit code 3.
+/// Returns the largest `mine` of all ranks. If this rank has an `error` that other ranks do not share, they may be waiting in a call that this rank
+/// will never reach. After half a minute this rank then prints the error and ends all ranks with exit code 3. Collective.
 int largest(int mine, const std::string& error = {});
 
-/// The error of one of the ranks, on all of them; empty where none has one. Collective; see `largest`.
+/// Returns the error of one of the ranks on all ranks; empty if no rank has an error. Collective; see `largest`.
 std::string error_of_any(const std::string& mine);
 
-/// Calls `act` on every rank and returns why it failed on any of them: what the exception says, or an empty text. UserErrors are not caught.
+/// Calls `act` on every rank. Returns the message of the exception if it failed on any rank, and otherwise an empty text. UserErrors are not caught.
 /// Collective.
 std::string failure_of_any(const std::function<void()>& act);
 
-/// Returns the largest outcome of all ranks, and if not all of them are 0 the reason that one of them gives. Collective; see `largest`.
+/// Returns the largest outcome of all ranks and, if it is not 0, the reason given by one rank. Collective; see `largest`.
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 
-/// Returns whether a net that all ranks hold is finite, as the first rank finds it. Collective.
+/// Returns whether a net that all ranks hold is finite, as determined by the first rank. Collective.
 bool finite(const Net& net);
 
-/// Returns whether any rank has been told to stop, so that all of them stop together. Collective.
+/// Returns whether any rank has received a stop signal, so that all ranks stop together. Collective.
 bool any_told_to_stop(bool told);
 
-/// Returns the numbers that `choose` returns on the first rank. It is not called on other ranks. A decision based on data that differ by round-off
-/// between ranks is one decision this way. If it throws, every rank throws RunFailure. Collective.
+/// Returns the values that `choose` returns on the first rank; it is not called on other ranks. This makes a decision unique if its data differ by
+/// round-off between ranks. If `choose` throws, every rank throws RunFailure. Collective.
 std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
-/// The first rank's numbers, on every rank: of data that should be equal to the bit, so that a decision is one even where it is not. Collective.
+/// Replaces the values on every rank by those of the first rank. For data that should be bitwise equal, so that all ranks decide alike even if they
+/// are not. Collective.
 void take_first(std::span<double> numbers);
 double of_first(double mine);
 bool of_first(bool mine);
 
-/// Lets all ranks end the program together: returns once every rank is here. Where an error (`code` is 2 or 3) is one that not all ranks share,
-/// after half a minute this one says `message`, unless it is the first rank, which has said it, and ends all of them with `code`. Collective, and
-/// the last call of main before the Session ends.
+/// Lets all ranks end the program together: returns when every rank has arrived. If `code` is 2 or 3 (an error) and other ranks, which do not share
+/// the error, have not arrived after half a minute, this rank prints `message` and ends all ranks with `code`. The first rank does not print, because
+/// it has already printed the message. Collective; must be the last call of main before the Session ends.
 void leave_together(int code, const std::string& message);
 
 }  // namespace tanktread::coupling

@@ -1,4 +1,4 @@
-// What a Capsule is made of.
+// Construction of a Capsule.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Every particle with its space and its rows.
+/// Returns the parameters with the space and the rows of every particle set.
 CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
   place(parameters.particles);
@@ -28,8 +28,8 @@ std::optional<VelocityProjection> chosen_projection(const spline::Space& space, 
   return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
 }
 
-/// By how much a control point gives way to a force, in waves between the longest of a surface and the shortest of a mesh, of wave number k: a sheet
-/// in a fluid does by 1/(4 mu k) of velocity over force per area, or less where it is viscous itself.
+/// Returns the mobility of each control point: velocity per force, for waves of wave number k between the longest on a surface and the shortest on a
+/// mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the viscosity of the sheet itself.
 Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
   for (const Particle& one : particles) {
@@ -103,7 +103,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
 
 Capsule::~Capsule() = default;
 
-/// The layers of velocities, and those of the Jacobian where they are at other places.
+/// Constructs the layers for velocities, and separate layers for the Jacobian if velocities are evaluated at other points.
 void Capsule::make_layers() {
   using stokes::Layer;
   const surface::Symmetry& symmetry = parameters_.symmetry;
@@ -127,8 +127,8 @@ void Capsule::make_layers() {
   if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
 }
 
-/// Sums for the own points run over fundamental elements, those that touch the points or their images; or, where an element is an image of itself,
-/// over all that touch the points.
+/// Sets the rank-owned points, and the elements that sums for these points run over: the fundamental elements that touch the points or their images.
+/// If an element is its own image, sums run over all elements that touch the points.
 void Capsule::own(const surface::Share& share) {
   const surface::Symmetry& symmetry = parameters_.symmetry;
   const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };

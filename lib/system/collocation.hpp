@@ -9,19 +9,19 @@
 
 namespace tanktread::coupling {
 
-/// N_A at sites, shape (sites, N).
+/// Returns the values N_A at sites, shape (sites, N).
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites);
 
-/// Gauss points q on a surface, for what collocation leaves over: on an element like h^4 times a quartic, which as many points a direction as the
-/// degree integrate.
+/// Gauss points q on a surface, to integrate the residual of collocation. On an element the residual behaves like h^4 times a quartic, and as many
+/// Gauss points per direction as the degree integrate it.
 struct BetweenSites {
   stokes::Sites places;
-  Eigen::SparseMatrix<double> values;   ///< N_A at them, shape (places, N)
-  Eigen::SparseMatrix<double> weights;  ///< N_A(q) times the share of the area that q stands for, shape (N, places)
+  Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)
+  Eigen::SparseMatrix<double> weights;  ///< N_A(q) times the area that q represents, shape (N, points)
 };
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
 
-/// R_iA = N_A(xi_i) at the collocation sites, shape (N, N): from control values to values at the sites (4.2).
+/// Returns R_iA = N_A(xi_i) at the collocation sites, shape (N, N): maps control values to values at the sites (4.2).
 Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space);
 
 }  // namespace tanktread::coupling

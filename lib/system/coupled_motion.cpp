@@ -11,7 +11,7 @@ namespace tanktread::coupling {
 namespace {
 Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 
-/// The rows of a net; an empty net stays empty.
+/// Returns the rows of a block of a net; an empty net stays empty.
 Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
 }  // namespace
 
@@ -43,7 +43,7 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
   int n = 0;
   for (int i = 0; i < static_cast<int>(field.size()); ++i) {
     if (met[static_cast<std::size_t>(i)]) continue;
-    std::map<int, double> sum{{i, 1}};  // over the images of coefficient i
+    std::map<int, double> sum{{i, 1}};  // sum over the images of coefficient i
     for (const auto& map : maps) sum[map[static_cast<std::size_t>(i)].first] += map[static_cast<std::size_t>(i)].second;
     for (const auto& [to, value] : sum) {
       met[static_cast<std::size_t>(to)] = true;
@@ -101,7 +101,7 @@ Net CoupledMotion::velocity(const Net& y) {
   return rate;
 }
 
-/// Velocity of the fluids minus that of the control points; empty if none slides.
+/// Returns the velocity of the fluids minus the velocity of the control points; empty if no control point slides.
 Net CoupledMotion::slip_at(const Net& x) {
   if (!capsule_.slides()) return {};
   const std::shared_ptr<Evaluation> e = capsule_.evaluate(x);
@@ -129,10 +129,10 @@ void CoupledMotion::linearise(const Net& y) {
   capsule_.linearise(shape(y));
 }
 
-/// B of the shape; the identity of the fields.
+/// Multiplies the shape by B and leaves the fields unchanged.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
 
-/// B J delta of the shape, or J delta if control points slide or `solved`; J delta of the fields.
+/// Returns B J delta for the shape, or J delta if control points slide or `solved` is set; J delta for the fields.
 Net CoupledMotion::right(const Net& delta, bool solved) {
   Net load = Net::Zero(n_, 3);
   std::vector<Eigen::VectorXd> values;
@@ -151,7 +151,7 @@ Net CoupledMotion::right(const Net& delta, bool solved) {
   return result;
 }
 
-/// (left - shift (right + secants)) delta = rhs.
+/// Solves (left - shift (right + secants)) delta = rhs.
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   capsule_.prepare_step(shift);
   const auto apply = [&](const double* in, double* out) {

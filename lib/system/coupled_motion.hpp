@@ -10,14 +10,14 @@
 
 namespace tanktread::coupling {
 
-/// State y = (x, q_1, q_2, ...): the control net of all particles, followed by the coefficients of each field, stored contiguously in rows of three
-/// numbers (the last row is filled with zeros). Coefficients are multiplied by R_C sqrt(control points/coefficients) of their particle, so that the
-/// Euclidean inner product of states weights fields and shape alike and does not depend on the unit of length.
+/// State y = (x, q_1, q_2, ...): the control net of all particles, followed by the coefficients of each field. Coefficients are stored contiguously
+/// in rows of three, and the last row is padded with zeros. The coefficients of a field are multiplied by R_C sqrt(control points/coefficients) of
+/// their particle, so that the Euclidean inner product of states gives similar weight to fields and shape and does not depend on the unit of length.
 ///
-///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   the load of each field added to that of its particle                          (4.33)
+///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
-/// The Jacobian of the fields is exact. The Krylov solver sees x and q, preconditioned by the field's own block, and by the lower block triangle if
-/// the field follows the shape. Calls are collective; every rank holds all fields.
+/// The Jacobian of the fields is exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field
+/// and, if the field follows the shape, also the lower triangular block. Calls are collective; every rank stores all fields.
 class CoupledMotion : public Dynamics {
  public:
   struct On {
@@ -25,25 +25,26 @@ class CoupledMotion : public Dynamics {
     membrane::Field* field;
   };
 
-  /// `capsule` and the fields must outlive this.
+  /// `capsule` and the fields must outlive this object.
   CoupledMotion(Capsule& capsule, std::vector<On> fields);
 
   Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
   Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
-  Net with_shape(Net y, const Net& shape) const;             ///< the state with another control net
+  Net with_shape(Net y, const Net& shape) const;             ///< the state y with its control net replaced
   Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
   void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
   const std::vector<On>& fields() const { return fields_; }
-  Eigen::Index n_rows() const { return rows_; }  ///< of a state
+  Eigen::Index n_rows() const { return rows_; }  ///< number of rows of a state
 
-  /// Orthonormal basis of the coefficients of field k that have this parity under the symmetry, a column each; all if its images are not known.
+  /// Returns an orthonormal basis, one column each, of the coefficients of field k that have this parity under the symmetry. If the images of the
+  /// coefficients are not known, the basis spans all coefficients.
   Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
-  bool knows_images(const surface::Symmetry& symmetry) const;  ///< of all fields
+  bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if the images of the coefficients of all fields are known
 
-  /// The gradient of the sum that field k conserves, as a state; of no rows if there is none.
+  /// Returns the gradient of the sum that field k conserves, as a state; no rows if the field conserves none.
   Net conserved(std::size_t k) const;
 
-  /// The change of the state y if control points move along the surfaces by this small displacement and nothing else does.
+  /// Returns the change of the state y if control points move along the surfaces by this small displacement and the surfaces do not move.
   Net slid(const Net& y, const Net& along);
 
   /// Sets the state of the fields only.
@@ -72,16 +73,16 @@ class CoupledMotion : public Dynamics {
   Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
   Net symmetric(Net rate) const override;
   double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
-  /// The largest of the capsule's norm and the root mean square changes of the fields' coefficients.
+  /// Returns the largest of the capsule's norm and the root mean square changes of the coefficients of each field.
   double norm(const Net& displacement) const override;
 
  private:
   struct Block {
     On on;
-    Eigen::Index first, size;  // among the numbers of a state
+    Eigen::Index first, size;  // position and number of the coefficients within a state
     double scale;
-    spline::Block rows;        // of its particle
-    Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty: nothing is symmetric
+    spline::Block rows;        // rows of its particle in the net
+    Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
   };
   Net left(const Net& delta);
   Net right(const Net& delta, bool solved = false);

@@ -47,7 +47,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   }
 }
 
-/// At a plain pole, where elements have no normal themselves, the mean of theirs close by.
+/// At a pole without an element normal, the normals of the adjacent elements close to the pole are averaged.
 Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
   const surface::Point p = surface::point(space, x, sites.front());
   if (p.jacobian > 1e-9 * std::max(p.a1.squaredNorm(), p.a2.squaredNorm())) return p.n;
@@ -58,13 +58,13 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 }
 
 namespace {
-/// The part of a field along the interface, row by row.
+/// Returns the tangential part of a field, row by row.
 Net along_interface(const Net& normals, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) field.row(i) -= normals.row(i).dot(field.row(i)) * normals.row(i);
   return field;
 }
 
-/// The change of n n.field where the normals change by n'.
+/// Returns the change of n n.field for a change n' of the normals.
 Net turned(const Net& normals, const Net& change, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
@@ -73,25 +73,26 @@ Net turned(const Net& normals, const Net& change, Net field) {
   return field;
 }
 
-/// U (6.4) from b = dV/dx, for 3 V = b.x; of a velocity that is the same everywhere exactly that one.
+/// Returns the mean velocity U (6.4) from b = dV/dx, where 3 V = b.x. Exact if the velocity is uniform.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
 }
 
-/// Half the vorticity of v, averaged over the interior, from b = dV/dx; of a rotation exactly that one.
+/// Returns half the vorticity of v, averaged over the interior, from b = dV/dx. Exact for a rigid rotation.
 Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
   const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
   const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
   return Vec3(gradient(2, 1) - gradient(1, 2), gradient(0, 2) - gradient(2, 0), gradient(1, 0) - gradient(0, 1)) / 2;
 }
 
-/// Velocity of places y in a rotation.
+/// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
-/// Omega_s (4.14) of a velocity u at the sites y, whose share of the area is about |b|.
+/// Returns Omega_s (4.14) of a velocity u at the sites y. |b| is used as the area weight of a site.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // deviations from a sphere below 3 % turn with the fluid rather than by themselves, which noise would have a say in
+  constexpr double hold = 1e-3;  // regularisation: if the shape deviates from a sphere by less than 3 %, the mesh rotates with the fluid, because
+                                 // noise would dominate Omega_s
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;
@@ -106,13 +107,13 @@ Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net
   return moments.ldlt().solve(across);
 }
 
-/// Control points x of a drop, b = dV/dx there, and its velocity v; and at its sites.
+/// Control points x of a drop, b = dV/dx and fluid velocity v there; positions, normals and velocities at its sites.
 struct Moving {
   Net x, b, v;
   Net places, normals, velocities;
 };
 
-/// The rigid motion W about the mean of the control points that the mesh of a drop shares (4.14).
+/// Returns the rigid motion W (4.14), about the mean of the control points, that the mesh of a drop shares.
 RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
@@ -122,7 +123,7 @@ RigidMotion shared_motion(const Moving& drop) {
   return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
 }
 
-/// The rotation that takes one net about its mean nearest to another.
+/// Returns the rotation about the mean that fits one net best to another.
 Mat3 rotation_between(const Net& from, const Net& to) {
   return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
 }
@@ -135,20 +136,21 @@ Net InterfaceMotion::normals_at(const Net& x) const {
   });
 }
 
-/// Sets w at own collocation sites, from the density f.
+/// Sets w at the rank-owned collocation sites from the density f.
 void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
   for (const Drop& drop : drops_) {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // on the initial shape, as A0 is
+    const Net density = block.rows(f) * turn;  // in the frame of the initial shape, like A0
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();
   }
 }
 
-/// Control values of W + n n.(v - W) + (1 - n n).w, W at x with b = dV/dx there, w from the density f (empty: none); rest: v - W - w at the places.
+/// Returns the control values of W + n n.(v - W) + (1 - n n).w, with W at x where b = dV/dx, and w from the density f (no w if f is empty). Sets
+/// `rest` to v - W - w at the sites.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;

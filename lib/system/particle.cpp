@@ -61,7 +61,7 @@ std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
 
 namespace {
 
-/// Adds the work that `add` gives in the rows of a particle.
+/// Adds the work computed by `add` to the rows of a particle.
 template <class Add>
 void add_rows(const spline::Block& block, Net& work, const Add& add) {
   Net own = Net::Zero(block.n_points, 3);

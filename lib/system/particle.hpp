@@ -1,5 +1,5 @@
 #pragma once
-// A capsule, drop or rigid body among others.
+// A capsule, drop or rigid body among several particles.
 
 #include <memory>
 #include <optional>
@@ -16,75 +16,75 @@
 
 namespace tanktread::coupling {
 
-/// What drives a rigid body: force and torque on it, about the centre of its volume; or it moves as prescribed.
+/// Drive of a rigid body: the force and the torque on it about its centre of volume, or its prescribed motion.
 struct Rigid {
   bool prescribed = false;
-  RigidMotion motion;                                  ///< as prescribed
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< otherwise
+  RigidMotion motion;                                  ///< prescribed motion
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< used if the motion is not prescribed
 };
 
-/// What a particle is made of. Its rows of the stacked nets are those of `block`.
+/// Material and discretisation of a particle. Its rows in the stacked nets are given by `block`.
 struct Particle {
-  const spline::Space* space = nullptr;  ///< its own; outlives the system
+  const spline::Space* space = nullptr;  ///< space of this particle; outlives the system
   spline::Block block;
   double viscosity_ratio = 1;                 ///< lambda
   double radius = 1;                          ///< R_C
   membrane::Material material;
-  stokes::Measure measure = stokes::Measure::reference;  ///< of its weak load: (3.7) or (3.6); any of a rigid body
-  std::string interface_motion = "material";  ///< of the control points of a drop
-  double interface_speed = 0;                 ///< of its relaxing motion, length/time
-  std::optional<double> kept_volume;          ///< V0 to be kept, where it is not that of the initial net: on another mesh
+  stokes::Measure measure = stokes::Measure::reference;  ///< measure of its weak load: (3.7) or (3.6); not used for a rigid body
+  std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
+  double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
+  std::optional<double> kept_volume;  ///< volume V0 to be kept, if it is not the volume of the initial net, for example after a change of mesh
 
-  /// In addition to elasticity and bending, on its own space. The work of loads on a rigid body is force and torque on it.
+  /// Loads in addition to elasticity and bending, on `space`. For a rigid body the work of the loads gives the force and torque on it.
   std::vector<std::shared_ptr<membrane::Load>> loads;
-  std::optional<Rigid> rigid;                 ///< of a body that does not deform; it has no fluid, no membrane and no interface
+  std::optional<Rigid> rigid;                 ///< set for a body that does not deform; it has no inner fluid, no membrane and no interface
 
   bool slides() const { return interface_motion != "material"; }
 };
 
-/// Where particles lie that are stacked in their order.
+/// Sets the blocks of particles that are stacked in their order.
 void place(std::span<Particle> particles);
 
-/// The materials of all their elements, equal ones once.
+/// Returns the materials of all elements, each distinct material once.
 membrane::Materials materials(std::span<const Particle> particles);
 
-/// Returns what their loads are measured on.
+/// Returns the common measure of the loads of all particles, or by_element if the measures differ.
 stokes::Measure measure(std::span<const Particle> particles);
 
-/// Returns for each element whether loads are measured on the present surface there.
+/// Returns for each element whether loads are measured on the current surface there.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
-/// Returns the net that loads are measured on: the rows of `x` or of `unstressed`, as each particle's measure says.
+/// Returns the net on which loads are measured: for each particle the rows of `x` or `unstressed`, depending on the particle's measure.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
-/// The factor of the particle's double layer, 1 - lambda; -1 of a rigid body, whose density is w of (2.23).
+/// Returns the factor of the particle's double layer: 1 - lambda, or -1 for a rigid body, whose density is w of (2.23).
 double viscosity_contrast(const Particle& particle);
 
-/// The same of each of their control points.
+/// Returns the viscosity contrast of each control point of all particles.
 Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles);
 
-/// The same of each of their elements; none where all are 0.
+/// Returns the viscosity contrast of each element of all particles; empty if all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 
-/// The loads of all particles, in addition to elasticity and bending, as one of the stacked nets: shape (N, 3), N control points of all. The caller
-/// sums what the local functions give over ranks and images. The nets that several loads of one particle sum follow each other; loads of different
-/// particles share them. Uses no MPI.
+/// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). The caller sums the
+/// results of the local functions over ranks and symmetry images. Several loads of one particle have consecutive sum nets; loads of different
+/// particles share sum nets. Uses no MPI.
 class Loads {
  public:
   Loads() = default;
-  /// `elements`: those that this rank's sums run over, ascending.
+  /// `elements`: elements that this rank integrates over, ascending.
   Loads(std::span<const Particle> particles, std::span<const int> elements);
 
   bool empty() const { return all_.empty(); }
   std::size_t n_sums() const { return n_sums_; }
 
-  /// Adds the local part of dE/dx, and returns the sums that are to be completed.
+  /// Adds the local part of dE/dx and returns the sums, which the caller must complete.
   std::vector<Net> add_work(const Net& x, Net& work) const;
   void add_global_work(const Net& x, const std::vector<Net>& sums, Net& work) const;
 
-  /// Returns the energy that the membrane of particle p stores by its loads.
+  /// Returns the energy that the membrane of particle p stores through its loads.
   double energy(const Net& x, const std::vector<Net>& sums, std::size_t p) const;
-  /// Adds dE/dx of loads that the membrane stores, from all elements.
+  /// Adds dE/dx of the loads that store energy in the membrane, integrated over all elements.
   void add_stored_work(const Net& x, Net& work) const;
 
   void linearise(const Net& x, const std::vector<Net>& sums);
@@ -95,7 +95,7 @@ class Loads {
   struct One {
     std::size_t particle;
     spline::Block block;
-    std::vector<int> elements;  // of this rank, from 0 at the particle's first
+    std::vector<int> elements;  // elements of this rank, numbered from 0 within the particle
     std::shared_ptr<membrane::Load> load;
     std::size_t first_sum;
 

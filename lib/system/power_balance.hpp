@@ -1,5 +1,5 @@
 #pragma once
-// What the flow and forces do to the particles, and where it goes.
+// Balance of the power that the flow and forces put into the particles, and that is stored or dissipated.
 
 #include <optional>
 
@@ -15,30 +15,31 @@
 
 namespace tanktread::coupling {
 
-/// Powers at one moment, force x velocity, of all particles.
+/// Powers of all particles at one time, force x velocity.
 struct Powers {
-  double flow = 0;         ///< that the ambient flow puts in beyond what the fluid alone would take (6.11)
-  double forces = 0;       ///< of weights, forces on membranes and bodies, and contacts
-  double storing = 0;      ///< rate of the energy of the membranes
-  double membranes = 0;    ///< dissipated in them
-  double fluids = 0;       ///< dissipated in the fluids, beyond what the ambient flow would dissipate everywhere: the rest of these (6.12)
-  double left_over = 0;    ///< of what the velocities miss of (2.22) between the collocation sites (6.13)
+  double flow = 0;         ///< input of the ambient flow, without the power that the fluid would take without particles (6.11)
+  double forces = 0;       ///< input of weights, forces on membranes and bodies, and contacts
+  double storing = 0;      ///< rate of change of the energy stored in the membranes
+  double membranes = 0;    ///< dissipation in the membranes
+  double fluids = 0;       ///< dissipation in the fluids beyond that of the undisturbed ambient flow, computed as the remainder of the balance (6.12)
+  double left_over = 0;    ///< power of the residual of (2.22) between the collocation sites (6.13)
 
   void add_columns(Columns& to) const;
 };
 
-/// Of (6.12) half the sum of the magnitudes of what flow and forces put in, of what the fluids dissipate, and of the rest: what is put in where
-/// all that is dissipated or stored is positive.
+/// Returns half the sum of the magnitudes of three terms of (6.12): the input by flow and forces, the dissipation in the fluids, and the remaining
+/// terms. Equals the power input if all dissipation and storage is positive.
 double turnover(double flow, double forces, double fluids);
 
-/// The balance of power of particles that deform, and of rigid bodies among them, in affine flows or a tube.
+/// Evaluates the power balance of deformable particles, and of rigid bodies among them, in affine flows or in a tube.
 class PowerBalance {
  public:
-  /// Of the system's particles on their present meshes. What is given by reference outlives this.
+  /// `capsule`: the system with its particles on their current meshes. References must outlive this object.
   PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity, const quadrature::Options& quadrature,
                const std::optional<stokes::PlaneWall>& wall, const Ranks& ranks);
 
-  /// At x, where control points move by `slope`. One evaluation of the layers at 2 x 2 Gauss points of each element. Collective.
+  /// Returns the powers at x, where control points move with the velocity `slope`. Evaluates the layers once at 2 x 2 Gauss points per element.
+  /// Collective.
   Powers operator()(const Net& x, const Net& slope);
 
  private:
@@ -52,7 +53,7 @@ class PowerBalance {
   double viscosity_;
   const Ranks& ranks_;
   stokes::Sites places_;
-  Eigen::SparseMatrix<double> values_;  // N_A there
+  Eigen::SparseMatrix<double> values_;  // N_A at `places_`
   membrane::MassMatrix mass_;
   stokes::Layer single_;
   std::optional<stokes::Layer> double_;

@@ -26,13 +26,13 @@ using MultiVector = Tpetra::MultiVector<>;
 
 namespace {
 
-/// Whether a launcher of MPI (Open MPI's, or one that speaks PMIx or PMI) started this process. One that none did starts no MPI: its devices,
-/// plugins and threads would take longer than a small run.
+/// Returns whether an MPI launcher (of Open MPI, or one that uses PMIx or PMI) started this process. MPI is not started without a launcher, because
+/// its devices, plugins and threads would take longer to start than a small run.
 bool launched() {
   return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}, [](const char* name) { return std::getenv(name); });
 }
 
-/// Arguments of Kokkos, which would answer to `--help` too. They are taken from those of the program.
+/// Arguments of Kokkos. They are removed from the arguments of the program, because Kokkos would also respond to `--help`.
 struct KokkosArguments {
   std::vector<char*> all;
   int count = 0;
@@ -163,7 +163,7 @@ void Ranks::add(std::span<Net* const> nets) const {
 void Ranks::add(std::span<double> numbers) const {
   if (size() == 1) return;
   const auto clock = impl_->time();
-  constexpr std::size_t at_a_time = 1 << 24;  // MPI counts by int, and what is sent is a copy: a matrix may be larger than either allows
+  constexpr std::size_t at_a_time = 1 << 24;  // MPI counts by int and the sent data are a copy, so that a large matrix is sent in parts
   for (std::size_t first = 0; first < numbers.size(); first += at_a_time) {
     const std::span<double> part = numbers.subspan(first, std::min(at_a_time, numbers.size() - first));
     const std::vector<double> mine(part.begin(), part.end());

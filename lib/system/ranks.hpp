@@ -1,5 +1,5 @@
 #pragma once
-// Who computes which rows, and how every rank gets all of them.
+// Distribution of rows among the MPI ranks, and exchange of the results.
 
 #include <array>
 #include <chrono>
@@ -16,10 +16,11 @@
 
 namespace tanktread::coupling {
 
-/// MPI, where a launcher started this process, and what Trilinos needs beside it, for as long as it lives: the first object of main.
+/// Session of MPI and Kokkos. Starts MPI only if an MPI launcher started this process. Must be the first object of main, and lasts as long as it
+/// lives.
 class Session {
  public:
-  /// Takes the arguments `--kokkos-...` away.
+  /// Removes the arguments `--kokkos-...` from the command line.
   Session(int* argc, char*** argv);
   ~Session();
   int rank() const;
@@ -29,8 +30,9 @@ class Session {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The ranks of the run. Control nets are replicated; work is split by their rows. A rank fills the rows of its own control points, which
-/// `replicate` gives to all by a Tpetra import. Far sums by clusters alone are added up (`share` of the layers), and depend on the ranks by rounding.
+/// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
+/// points, and `replicate` distributes them to all ranks by a Tpetra import. The far sums by clusters are the only ones that are summed over ranks
+/// (`share` of the layers); they depend on the number of ranks by round-off.
 class Ranks {
  public:
   Ranks();
@@ -38,23 +40,26 @@ class Ranks {
   int rank() const;
   int size() const;
 
-  /// Counts the time of all that waits for others, the waiting included, to the phase `exchange` from now on; `phases` outlives this.
+  /// Adds the time of all exchanges from now on, including the time spent waiting for other ranks, to the phase `exchange`. `phases` must outlive
+  /// this object.
   void measure(Phases& phases);
 
-  /// States the rows that this rank fills, of nets with n rows; each row has one owner. Collective.
+  /// Sets the rows that this rank computes in nets of n rows. Each row has one owner. Collective.
   void own(const std::vector<int>& rows, int n);
 
-  /// The same where only the rows of fundamental control points have owners, and the others are their images.
+  /// Sets the rows that this rank computes, if only the rows of fundamental control points have owners and the other rows are their symmetry images.
+  /// Collective.
   void own(const std::vector<int>& rows, surface::Symmetry symmetry);
 
-  /// Divides the control points of a space among the ranks: returns the points whose rows this rank fills. Collective.
+  /// Divides the control points of a space among the ranks, and returns the points whose rows this rank computes. Collective.
   std::vector<int> divide_points(const spline::Space& space, const surface::Symmetry& symmetry);
-  std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< the fundamental points in equal parts, whatever their neighbours
+  std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides the fundamental points into equal parts in their order,
+                                                                        ///< regardless of neighbourhood
 
-  /// Fills in the rows of other ranks and those of images. Collective.
+  /// Fills in the rows of other ranks and of symmetry images. Collective.
   void replicate(Net& net) const;
 
-  /// Returns a net of n rows on every rank. `fill` sets the rows of own points in a net of zeros. Collective.
+  /// Returns a net of n rows on every rank. `fill` sets the rank-owned rows in a net of zeros. Collective.
   template <class Fill>
   Net filled(Eigen::Index n, const Fill& fill) const {
     Net net = Net::Zero(n, 3);
@@ -63,7 +68,7 @@ class Ranks {
     return net;
   }
 
-  /// Returns a matrix of that size that all ranks assemble together: the sum of what each adds to a matrix of zeros. Collective.
+  /// Returns a matrix of this size on every rank: the sum of the contributions that all ranks add to a matrix of zeros. Collective.
   template <class Matrix, class Assemble>
   Matrix assembled(Eigen::Index rows, Eigen::Index columns, const Assemble& assemble) const {
     Matrix matrix = Matrix::Zero(rows, columns);
@@ -72,14 +77,13 @@ class Ranks {
     return matrix;
   }
 
-  /// Returns n rows of numbers on every rank. `evaluate(own, rows)` sets the rows of items that are this rank's share in a matrix of zeros.
-  /// Collective.
+  /// Returns a matrix of n rows on every rank. `evaluate(items, rows)` sets the rows of this rank's share of items in a matrix of zeros. Collective.
   template <class Matrix, class Evaluate>
   Matrix divided(int n, Eigen::Index width, const Evaluate& evaluate) const {
     return assembled<Matrix>(n, width, [&](Matrix& rows) { evaluate(share(n), rows); });
   }
 
-  /// Returns the numbers of each rank, in their order. Collective.
+  /// Returns the values of all ranks, in the order of the ranks. Collective.
   template <std::size_t n>
   std::vector<std::array<double, n>> gathered(const std::array<double, n>& mine) const {
     std::vector<std::array<double, n>> all(static_cast<std::size_t>(size()), std::array<double, n>{});
@@ -88,7 +92,7 @@ class Ranks {
     return all;
   }
 
-  /// Returns the sums over all ranks of their parts of several arrays of numbers. Collective.
+  /// Returns the sums of several arrays over all ranks. Collective.
   template <std::size_t n>
   std::array<std::vector<double>, n> of_all(std::array<std::vector<double>, n> parts) const {
     std::vector<std::span<double>> all(parts.begin(), parts.end());
@@ -96,25 +100,26 @@ class Ranks {
     return parts;
   }
 
-  /// Returns the kernel evaluations of all ranks together. Collective.
+  /// Returns the number of kernel evaluations of all ranks together. Collective.
   stokes::Evaluations of_all(const stokes::Evaluations& own) const;
 
-  /// The rank that is to do item k of n equal ones that come in a row.
+  /// Returns the rank that processes item k of n consecutive items of equal cost.
   int owner(int k, int n) const { return k * size() / n; }
 
-  /// Adds up the nets of all ranks, whose rows of fundamental points count. Sums of one number and zeros are exact. Collective.
+  /// Sums nets over all ranks in place. Only rows of fundamental points are summed; the images follow. A sum of one value and zeros is exact.
+  /// Collective.
   void add(std::span<Net* const> nets) const;
 
-  /// Adds up the numbers of all ranks, in place. Sums of one number and zeros are exact. Collective.
+  /// Sums values over all ranks in place. A sum of one value and zeros is exact. Collective.
   void add(std::span<double> numbers) const;
 
-  /// Which of n items that come in a row this rank is to do; see owner. Ascending.
+  /// Returns the items, out of n consecutive ones, that this rank processes, in ascending order; see owner.
   std::vector<int> share(int n) const;
 
-  /// Whether any rank says so (a signal, a limit). Collective.
+  /// Returns true if `mine` is true on any rank (a stop signal, a limit). Collective.
   bool any(bool mine) const;
 
-  /// Rank 0's value, on every rank (places in a file). Collective.
+  /// Returns the value of rank 0 on every rank (used for positions in a file). Collective.
   double first(double mine) const;
   void first(std::span<std::int64_t> numbers) const;
 

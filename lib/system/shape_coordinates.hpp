@@ -1,5 +1,5 @@
 #pragma once
-// Small changes of shape as a column of numbers.
+// Representation of small changes of shape by a vector of coordinates.
 
 #include <span>
 #include <vector>
@@ -17,56 +17,58 @@
 
 namespace tanktread::coupling {
 
-/// Coordinates of small displacements of a net x, and of rates of change: at each collocation site three components, or, of a drop whose mesh slides
-/// along its interface, the one along the normal of x, for the others change no shape,
+/// Coordinates y of small displacements d of a net x, and of rates of change. At each collocation site there are three coordinates, the components of
+/// d. If the mesh of a drop slides along its interface, there is one coordinate per site, the component along the normal of x, because tangential
+/// displacements do not change the shape,
 ///
 ///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
 ///
-/// and of that part of such a y that a translation has, the translation itself, which moves the mesh along the interface as well.
-/// Where velocities are projected, y are the control values of a scalar field there, that of the best fit to n.d; what moves the mesh along would
-/// otherwise show in them by the fourth power of the element.
+/// A translation of a drop is represented exactly: the part of y that belongs to a translation moves the mesh tangentially as well. If velocities are
+/// projected (VelocityProjection), y contains the control values of a scalar field instead, the best fit to n.d. Otherwise y would be affected by
+/// tangential mesh motion, to fourth order in the element size.
 ///
-/// A mesh that slides by itself goes along with such a displacement, once `follow` is called, by what leaves it at rest on the shape: with w the rate
-/// at which it slides, and t' the derivative of t along d,
+/// After `follow` has been called, a mesh that relaxes by itself moves tangentially with such a displacement so that it remains at rest on the
+/// displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
-/// Of a symmetric scene those of fundamental sites, and what its images turn around at a site is left out: they tell the symmetric fields alone, or
-/// those of another parity (surface/symmetry.hpp), for whom nothing else may know of the symmetry.
+/// If the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there. They
+/// represent the symmetric fields only, or the fields of another parity (surface/symmetry.hpp). For another parity, no other part of the system may
+/// use the symmetry.
 ///
-/// Of a rigid body those of six orthonormal fields, its translations and rotations.
+/// For a rigid body the coordinates are the coefficients of six orthonormal fields, which span its translations and rotations.
 ///
-/// Of a state with fields on the surfaces (CoupledMotion), once `add_fields` is called, there follow those of the fields' coefficients as they are
-/// without the part of the displacement that moves control points along the surface:
+/// For a state with fields on the surfaces (CoupledMotion), after `add_fields` has been called, the changes of the field coefficients q follow,
+/// without the contribution of the tangential part of the displacement:
 ///
-///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q where control points slide by t alone                   (4.34)
+///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q if control points only slide along the surface by t      (4.34)
 class ShapeCoordinates {
  public:
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                    const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
 
-  /// Lets meshes go along, as `dynamics` has them at x. Collective.
+  /// Lets relaxing meshes follow displacements (4.26), with the mesh motion of `dynamics` at x. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
-  /// Adds those of the fields at the state y, which changes of states are about. The motion must outlive this.
+  /// Adds the coordinates of the fields. Changes are relative to the state y. `motion` must outlive this object.
   void add_fields(CoupledMotion& motion, const Net& y);
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates, or the change of a state
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< of a field of these control values, or of the change of a state
-  bool admits(const Net& field) const;                  ///< whether it is nearly one of those that symmetry leaves
-  Net admitted(Net field) const;                        ///< the one of those with its values at fundamental points
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of the field with these control values, or of the change of a state
+  bool admits(const Net& field) const;                  ///< true if the field nearly has the symmetry of the coordinates
+  Net admitted(Net field) const;                        ///< the field with this symmetry that has the same values at fundamental points
 
  private:
   struct Coordinate {
     int site;
-    Vec3 direction;  // 0: of the projected field
+    Vec3 direction;  // zero for a coordinate of the projected scalar field
   };
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // with these coordinates; less the one across the interface
+    Net field, rest;              // displacement with these coordinates; `field` minus its part in the coordinates across the interface
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;
@@ -79,20 +81,20 @@ class ShapeCoordinates {
   void add_along(int site, const Vec3& normal);
 
   std::vector<Coordinate> all_;
-  std::vector<Net> rigid_;         // orthonormal motions of bodies, whose coordinates come last
-  std::vector<Coordinate> along_;  // of drops, tangential
-  Eigen::MatrixXd following_;      // those of the mesh that follows, of coordinates y; empty: it does not
-  std::vector<Translation> translations_;  // of drops
+  std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; their coordinates come last
+  std::vector<Coordinate> along_;  // tangential coordinates t of drops
+  Eigen::MatrixXd following_;      // maps y to the tangential coordinates t of a mesh that follows; empty if no mesh follows
+  std::vector<Translation> translations_;  // translations of drops
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;
   surface::Parity parity_;
   Eigen::SparseMatrix<double> sites_;  // R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
-  Net normals_;  // at its sites, of drops
-  CoupledMotion* motion_ = nullptr;     // of a state with fields
-  Net state_;                           // that changes are about
-  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the numbers of a state behind its control net, a column each
+  Net normals_;  // normals of drops at the sites of the projection
+  CoupledMotion* motion_ = nullptr;     // set if the state has fields
+  Net state_;                           // state that changes are relative to
+  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the part of a state after its control net, one column each
 };
 
 }  // namespace tanktread::coupling

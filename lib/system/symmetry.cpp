@@ -62,7 +62,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation) {
-  constexpr double fitted = 1e-2;  // a sphere of three elements a side is one to 1e-3
+  constexpr double fitted = 1e-2;  // a sphere of three by three elements per face satisfies this to 1e-3
   const Vec3 centre = block.rows(unstressed).colwise().mean().transpose();
   Net field = Net::Zero(x.rows(), 3);
   double across = 0, all = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Which symmetries a scene has, so that only a part of it needs to be solved.
+// Detects the symmetries of a scene, so that only a part of it needs to be solved.
 
 #include <memory>
 #include <optional>
@@ -18,34 +18,35 @@
 
 namespace tanktread::coupling {
 
-/// `Symmetry/*` of the deck.
+/// Options `Symmetry/*` of the deck.
 struct SymmetryOptions {
-  std::string use = "auto";  ///< or none
+  std::string use = "auto";  ///< "auto" or "none"
 
   void declare(deck::Section& section);
 };
 
-/// Whether v(c + S y) = S v(c + y), with S = diag(signs) and c the middle of the net, at its control points, gradients included.
+/// Returns whether the flow has the symmetry: v(c + S y) = S v(c + y) and its gradient, evaluated at the control points, where S = diag(signs) and c
+/// is the centre of the net.
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net);
 
 using LoadList = std::vector<std::shared_ptr<membrane::Load>>;
 
-/// Returns the reflections that flow, in every direction that it takes, loads, the normal of a plane wall, space and all nets have in common, or only
-/// the identity if the options ask for that. What else bounds the fluid has to be looked at here too.
+/// Returns the reflections that the flow (in all its directions over time), the loads, the normal of a plane wall, the space and all nets have in
+/// common. Returns only the identity if the options ask for it. Any other boundary of the fluid must be checked here too.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const stokes::AmbientFlow& flow, const LoadList& loads = {}, const Vec3& wall_normal = Vec3::Zero());
 
-/// The same in a channel: mirror planes and half turns that leave its wall as it is.
+/// Returns the symmetries of a scene in a channel: mirror planes and half turns that map the wall onto itself.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const surface::TubeWall& wall, const LoadList& loads = {});
 
-/// Control values, on points `block` of the net x, of the rates at which material points pass each other along the surface where the unstressed
-/// surface turns in itself about the axis x_{axis+1} through its centre:
+/// Returns the control values, on the points `block` of the net x, of the rates at which material points move relative to the membrane's shape when
+/// the unstressed surface rotates onto itself about the axis x_{axis+1} through its centre:
 ///
 ///   D x = F (e_k x (X - X_c)),   F the deformation gradient                                                        (4.22)
 ///
-/// Tensions do not change by that, so that a membrane that treads around a steady shape moves by v = omega D x. Nothing where the unstressed surface
-/// is not one that turns in itself, or has a pole, where F is not known.
+/// This motion does not change tensions, so that a membrane that tank-treads around a steady shape moves by v = omega D x. Returns nothing if the
+/// unstressed surface is not a surface of revolution about the axis, or if it has a pole, where F is undefined.
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation);
 

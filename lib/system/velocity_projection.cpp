@@ -14,14 +14,14 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Places on every element.
+/// Returns the tensor rule whose points are the zeros of B4 on an element.
 quadrature::TensorRule at_zeros() {
   const double from_end = 0.5 - std::sqrt(0.25 - 1 / std::sqrt(30.));  // t (1 - t) = 1/sqrt(30)
   const quadrature::GaussRule rule{Eigen::Vector2d(from_end, 1 - from_end), Eigen::Vector2d(0.5, 0.5)};
   return quadrature::tensor(rule, rule);
 }
 
-/// N_A and its derivatives at all places of some elements, shapes (places, N).
+/// N_A and its derivatives at all points of some elements, shapes (points, N).
 struct Functions {
   Eigen::SparseMatrix<double> value, s, t;
 };
@@ -60,7 +60,7 @@ Net cross(const Net& a, const Net& b) {
   return product;
 }
 
-/// N_A times the area that each place stands for, but for a factor, on the surface with this net; shape (N, places).
+/// Returns N_A times the area that each point represents on the surface with this net, up to a constant factor; shape (N, points).
 Eigen::SparseMatrix<double> weighted(const Functions& of, const Net& net) {
   const Eigen::VectorXd areas = cross(of.s * net, of.t * net).rowwise().norm();
   return of.value.transpose() * areas.asDiagonal();

@@ -1,5 +1,5 @@
 #pragma once
-// Control values of a velocity by least squares, in place of collocation.
+// Control values of a velocity by least squares instead of collocation.
 
 #include <vector>
 
@@ -14,34 +14,37 @@
 
 namespace tanktread::coupling {
 
-/// The field whose values at places between the collocation sites are nearest to those given,
+/// Least-squares fit of a spline field to values at points between the collocation sites,
 ///
 ///   v = (sum_q w_q N(q) N(q)^T)^-1 sum_q w_q N(q) u(q),   w_q the share of the unstressed area                            (4.21)
 ///
-/// The cubic spline that fits a smooth u best errs by h^4 B4(t)/24 times its fourth derivative on an element of length h, with the Bernoulli
-/// polynomial B4 = t^4 - 2 t^3 + t^2 - 1/30. Collocated at the knots it errs like B4(t) + 1/30, whose mean is not 0: the load of the next shape, the
-/// volume and every layer at a distance see it. Places are the zeros of B4, two a direction, where the best fit does not err.
+/// The cubic spline that fits a smooth u best has the error h^4 B4(t)/24 times the fourth derivative of u on an element of length h, with the
+/// Bernoulli polynomial B4 = t^4 - 2 t^3 + t^2 - 1/30. Collocation at the knots has an error proportional to B4(t) + 1/30, whose mean is not 0 and
+/// which therefore affects the load of the next shape, the volume and every layer at a distance. The points q are the zeros of B4, two per parametric
+/// direction, where the best fit has no error.
 class VelocityProjection {
  public:
-  /// Symmetric velocities are asked for in the fundamental part alone.
+  /// If the scene is symmetric, velocities are evaluated in the fundamental part only.
   VelocityProjection(const spline::Space& space, const Net& unstressed, const surface::Symmetry& symmetry,
                      const membrane::DirectSolverOptions& direct, const Ranks& ranks);
 
   const stokes::Sites& sites() const { return sites_; }
-  const std::vector<int>& own() const { return own_; }                         ///< sites of this rank, ascending; each has one rank
+  const std::vector<int>& own() const { return own_; }                         ///< sites of this rank, ascending; each site belongs to one rank
   const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< N_A at the sites, shape (sites, N)
   Net normals(const Net& x) const;                                             ///< unit normals of the surface x at the sites
-  Net control_values(const Net& at_sites) const;                               ///< v (4.21), symmetric
-  Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;        ///< the same of a scalar that all images share, as a normal part
+  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), symmetric
+  Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< control values of a scalar that is equal at all symmetry images, such as
+                                                                         ///< a normal component
 
  private:
   surface::Symmetry symmetry_;
-  bool folded_ = false;  // sites are those of fundamental elements, whose sums are to be folded
+  bool folded_ = false;  // true if the sites lie on fundamental elements only, so that sums must be folded
   stokes::Sites sites_;
   std::vector<int> own_;
-  Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // N_A and its derivatives; w_q N_A, shape (N, sites)
+  Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // N_A and its derivatives, shape (sites, N); w_q N_A, shape (N, sites)
   membrane::SymmetricSolver mass_;
-  Eigen::SparseMatrix<double> fundamental_, images_;  // rows of scalar sums that tell it; all control values from the fundamental ones
+  Eigen::SparseMatrix<double> fundamental_, images_;  // maps scalar sums to the fundamental rows; maps fundamental control values to all control
+                                                      // values
   membrane::DirectSolver scalar_mass_;
 };
 

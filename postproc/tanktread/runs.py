@@ -190,7 +190,8 @@ class Study:
         if before and (where in self._made or not self.fresh) and self._stands(before):
             return before
         self._made.add(where)
-        launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        # without --bind-to none, runs side by side would all be bound to the first cores
+        launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(ranks)] if ranks > 1 else []
         if before and before.code == 4 and not self.fresh:
             words = ["--resume", str(where)]
         else:

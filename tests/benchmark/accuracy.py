@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which mesh and tolerances an accuracy takes, and what it costs: the table of inputs/ACCURACY.md, or that of any deck.
+"""Which mesh and tolerances an accuracy takes, and what it costs: the table of inputs/manual/accuracy/index.md, or that of any deck.
 
     tests/benchmark/accuracy.py                      # a quarter of an hour; runs are kept under results/accuracy
     tests/benchmark/accuracy.py --scene shear tube   # these scenes

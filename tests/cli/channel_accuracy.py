@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # label: long
-# Channels to the digits that inputs/ACCURACY.md promises: the empty constriction, a slender one, what is straight or nearly so, what passes a
+# Channels to the digits that inputs/manual/accuracy/channels.md promises: the empty constriction, a slender one, what is straight or nearly so, what passes a
 # mirrored channel that was meshed anew.
 import pathlib
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # label: long
-# A sphere beside a plane wall to the digits that inputs/ACCURACY.md promises, from a gap of 2 to 0.003 radii; how fast a capsule is driven away
+# A sphere beside a plane wall to the digits that inputs/manual/accuracy/plane_wall.md promises, from a gap of 2 to 0.003 radii; how fast a capsule is driven away
 # from far.
 import numpy
 

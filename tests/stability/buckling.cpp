@@ -1,6 +1,7 @@
-// A membrane under compression: without resistance to bending the wave that grows fastest is the shortest one of the mesh, with it a wave of its
-// own. On a sphere that is uniformly compressed the answer is the lowest mode of the energy's second derivative H against the mass matrix:
-// a flat membrane under the tension -T with bending modulus B has -T k^2 + B k^4, without end where B = 0, lowest at k^2 = T/2B otherwise.
+// Membrane under compression. Without resistance to bending, the fastest growing wave is the shortest one of the mesh; with it, the wave has a length
+// of its own. On a uniformly compressed sphere the wave is the lowest mode of the energy's second derivative H with respect to the mass matrix. A
+// flat membrane under the tension -T with bending modulus B has the eigenvalues -T k^2 + B k^4: not bounded below if B = 0, otherwise lowest at k^2 =
+// T/2B.
 
 #include <cmath>
 
@@ -15,7 +16,7 @@
 namespace tanktread {
 namespace {
 
-/// Wave number of the lowest mode, from the work that the tension does on it; 0 where nothing is unstable.
+/// Returns the wave number of the lowest mode, computed from the work of the tension on it; 0 if no mode is unstable.
 double lowest_wave(int n, double bending) {
   const Evolution run({"Surface/elements per side=" + std::to_string(n)});
   const double shrunk = 0.97;
@@ -38,14 +39,14 @@ double lowest_wave(int n, double bending) {
 
 TEST(CompressedMembrane, WithoutBendingBucklesAsFinelyAsTheMeshAllows) {
   const double coarse = lowest_wave(4, 0), fine = lowest_wave(5, 0);
-  EXPECT_GT(fine, 1.25 * coarse);  // 11.4 and 7.6 measured: two elements a wave
+  EXPECT_GT(fine, 1.25 * coarse);  // measured: 11.4 and 7.6, which is two elements per wave
   EXPECT_GT(coarse, 6);
 }
 
 TEST(CompressedMembrane, WithBendingBucklesInAWaveOfItsOwn) {
   const double coarse = lowest_wave(4, 2e-3), fine = lowest_wave(5, 2e-3);
   EXPECT_GT(coarse, 3);
-  EXPECT_NEAR(fine / coarse, 1, 0.05);  // 4.7 and 4.8
+  EXPECT_NEAR(fine / coarse, 1, 0.05);  // measured: 4.7 and 4.8
 }
 
 TEST(CompressedMembrane, WithMoreBendingBucklesInNoWaveShorterThanItself) { EXPECT_LT(lowest_wave(4, 0.1), 2); }

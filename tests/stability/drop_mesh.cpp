@@ -1,5 +1,5 @@
-// The mesh of a drop in an extension: carried with the fluid its elements are drawn out until they fold; moved across the interface only, or
-// relaxed along it, they are not. Map drop-mesh of tests/benchmark/atlas.py.
+// Mesh of a drop in an extensional flow. If the mesh is convected with the fluid, its elements are stretched until they fold. If it only moves across
+// the interface, or is relaxed along it, they are not. Map drop-mesh of tests/benchmark/atlas.py.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace tanktread {
 namespace {
 
-/// The mesh at a time, or where the run fails.
+/// Returns the quality of the mesh at a time, or when the run fails.
 surface::Quality mesh_at(const std::string& motion, double time) {
   Evolution run({"Flow/type=uniaxial extension", "Membrane/law=surface tension", "Membrane/capillary number=0.1",
                  "Surface/elements per side=4", "Time/tolerance=1e-3", "Interface/motion=" + motion});
@@ -30,7 +30,7 @@ TEST(MeshOfADrop, CarriedWithTheFluidIsDrawnOutAndOnesThatAreNotKeepTheirShape) 
     EXPECT_LT(quality.aspect_ratio, carried / 2) << motion;
     EXPECT_GT(quality.jacobian_ratio, 0.2) << motion;
   }
-  EXPECT_LT(mesh_at("material", 1).aspect_ratio, carried / 1.5);  // it goes on and on
+  EXPECT_LT(mesh_at("material", 1).aspect_ratio, carried / 1.5);  // stretching continues in time
 }
 
 }  // namespace

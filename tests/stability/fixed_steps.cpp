@@ -1,4 +1,4 @@
-// How long may a fixed step be? Explicit steps, and the sub-iteration of Crank-Nicolson, are bound by the fastest mode of the mesh (4.5); the
+// Largest fixed time steps. Explicit steps and the sub-iteration of Crank-Nicolson are limited by the fastest mode of the mesh (4.5); the
 // quasi-Newton iteration of TR-BDF2 is not. Maps fixed-step, fixed-step-dilatation and fixed-step-mesh of tests/benchmark/atlas.py.
 
 #include <cmath>
@@ -20,16 +20,16 @@ Settings with(Settings settings, const std::string& scheme, double step) {
   return settings;
 }
 
-/// Whether the run comes to `end` with the energy of steps under control of the error, within 5 %.
+/// Returns true if the run reaches `end` with the energy of a run with error control, within 5 %.
 bool follows(const Settings& settings, const std::string& scheme, double step, double end) {
   Evolution reference(settings), run(with(settings, scheme, step));
   reference.to(end);
   try {
-    while (run.state.time < end && run.energy() < 2 * reference.energy()) run.step(end);  // what blows up grows costly
+    while (run.state.time < end && run.energy() < 2 * reference.energy()) run.step(end);  // an unstable run becomes expensive
   } catch (const RunFailure&) {
     return false;
   }
-  return std::abs(run.energy() / reference.energy() - 1) < 0.05;  // false for what is not a number
+  return std::abs(run.energy() / reference.energy() - 1) < 0.05;  // false for NaN
 }
 
 Settings capsule(double ca, int n, double dilatation = 1) {
@@ -38,7 +38,7 @@ Settings capsule(double ca, int n, double dilatation = 1) {
   return settings;
 }
 
-/// 2.51/rho by (4.5) with elements of pi/(2 n).
+/// Returns 2.51/rho by (4.5), for elements of size pi/(2 n).
 double explicit_limit(double ca, int n, double dilatation = 1) { return 2.51 * ca / ((1 + dilatation) * n); }
 
 TEST(FixedStep, OfAnExplicitSchemeIsBoundByTheStiffnessWhateverCaAndC) {
@@ -63,7 +63,7 @@ TEST(FixedStep, OfSubIteratedCrankNicolsonIsShorterThanTheExplicitOne) {
   EXPECT_FALSE(follows(capsule(0.1, 3), "crank-nicolson", limit, 30 * limit));
 }
 
-/// Section 4.2: structured mesh of 842 control points with its poles on x2, Ca = 0.45, by the paper's scheme.
+/// Returns the settings of section 4.2 of the paper: structured mesh of 842 control points with its poles on x2, Ca = 0.45, the paper's scheme.
 Settings poles_on_x2() {
   return {"Surface/mesh=polar",           "Surface/pole axis=x2", "Surface/azimuthal elements=40", "Surface/meridional elements=20",
           "Quadrature/rule=fixed",        "Quadrature/points=8",  "Volume/constraint=flux",        "Membrane/capillary number=0.45",
@@ -72,7 +72,7 @@ Settings poles_on_x2() {
 
 TEST(FixedStepLong, OfAHundredthOfCaDoesNotConvergeWithPolesOutOfTheShearPlane) {
   Evolution run(with(poles_on_x2(), "crank-nicolson", 0.0045));
-  EXPECT_THROW(run.to(0.4), RunFailure);  // at 0.16 measured
+  EXPECT_THROW(run.to(0.4), RunFailure);  // measured: at the time 0.16
 }
 
 TEST(FixedStepLong, ReducedByAQuarterOrChosenByTheSchemeConvergesThere) {

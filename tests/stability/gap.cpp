@@ -1,5 +1,5 @@
-// Gaps: the faces of a thin rigid disc come closer to each other than the points of a fixed rule are apart, and its integrals are lost; rules by
-// tolerance do not see the gap. Map gap of tests/benchmark/atlas.py.
+// Gaps. If the faces of a thin rigid disc are closer to each other than the points of a fixed quadrature rule, its integrals are wrong. Rules by
+// tolerance are not affected by the gap. Map gap of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>
@@ -11,7 +11,7 @@
 namespace tanktread {
 namespace {
 
-/// Relative error of the drag on a disc of radius 1 by its integrals: against the same mesh with tight ones.
+/// Returns the relative error of the drag on a disc of radius 1 due to quadrature, compared with a tight tolerance on the same mesh.
 double integral_error(double half_thickness, const std::vector<std::string>& rule) {
   const std::vector<std::string> disc{"Surface/elements per side=4", "Particle/forces=integral",
                                       "Particle/semi-axes=[1.0, 1.0, " + std::to_string(half_thickness) + "]"};
@@ -25,11 +25,12 @@ double integral_error(double half_thickness, const std::vector<std::string>& rul
 TEST(Gap, IsLostByAFixedRuleWhosePointsAreFurtherApart) {
   const std::vector<std::string> fixed{"Quadrature/rule=fixed", "Quadrature/points=4"};
   EXPECT_LT(integral_error(0.5, fixed), 1e-3);
-  EXPECT_GT(integral_error(0.1, fixed), 5 * integral_error(0.5, fixed));  // 2e-4 and 6e-6 measured
+  EXPECT_GT(integral_error(0.1, fixed), 5 * integral_error(0.5, fixed));  // measured: 2e-4 and 6e-6
 }
 
 TEST(Gap, IsKeptByRulesOfATolerance) {
-  for (const double h : {0.5, 0.1}) EXPECT_LT(integral_error(h, {"Quadrature/tolerance=1e-7"}), 1e-5) << h;  // the equation multiplies it
+  // the solution of the equation amplifies the quadrature error
+  for (const double h : {0.5, 0.1}) EXPECT_LT(integral_error(h, {"Quadrature/tolerance=1e-7"}), 1e-5) << h;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A fixed Gauss rule on the degenerate elements of plain poles: the pressure does not converge, as Figure 9(a) of the paper says. Rules by
-// tolerance cure it on the same surface, and so does the paper's transformation of the elements.
+// Fixed Gauss rule on the degenerate elements of plain poles: the pressure does not converge, as in Figure 9(a) of the paper. Rules by tolerance on
+// the same surface converge, and so does the paper's transformation of the elements.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace tanktread {
 namespace {
 
-/// L2 error of the pressure with so many elements along a meridian.
+/// Returns the L2 error of the pressure, with `meridional` elements along a meridian.
 double pressure_error(const std::string& poles, const std::string& rule, int meridional) {
   return rigid_solution("spheroid_polar.yaml",
                         {"Surface/poles=" + poles, "Quadrature/rule=" + rule, "Particle/forces=integral",
@@ -20,8 +20,8 @@ double pressure_error(const std::string& poles, const std::string& rule, int mer
 TEST(PlainPoles, StagnateUnderAFixedRule) {
   const double coarse = pressure_error("plain", "fixed", 4), middle = pressure_error("plain", "fixed", 8),
                fine = pressure_error("plain", "fixed", 16);
-  EXPECT_GT(middle, coarse / 3);  // the space's order would be a factor of 8
-  EXPECT_GT(fine, coarse / 3);    // and here 64
+  EXPECT_GT(middle, coarse / 3);  // at the order of the space it would be smaller by a factor of 8
+  EXPECT_GT(fine, coarse / 3);    // at the order of the space: a factor of 64
   EXPECT_GT(fine, 1e-3);
 }
 

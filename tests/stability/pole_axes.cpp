@@ -1,5 +1,5 @@
-// The strong form on the structured mesh, Ca = 0.45 (section 4.2 of the paper, Figure 12): steps vanish, first with the poles on x2. The weak form
-// runs through. Map load-form of tests/benchmark/atlas.py.
+// Strong form on the structured mesh, Ca = 0.45 (section 4.2 of the paper, Figure 12): the step size goes to zero, earliest with the poles on x2. The
+// weak form completes the run. Map load-form of tests/benchmark/atlas.py.
 
 #include <string>
 
@@ -11,7 +11,7 @@
 namespace tanktread {
 namespace {
 
-/// Time that the run came to, of two.
+/// Returns the time that the run reached; its final time is 2.
 double reached(const std::string& load, const std::string& axis) {
   Evolution run({"Surface/mesh=polar", "Surface/pole axis=" + axis, "Surface/azimuthal elements=16", "Surface/meridional elements=8",
                  "Membrane/capillary number=0.45", "Membrane/load=" + load, "Time/minimum step=1e-4"});
@@ -23,7 +23,7 @@ double reached(const std::string& load, const std::string& axis) {
 }
 
 TEST(PoleAxes, StallTheStrongForm) {
-  for (const char* axis : {"x1", "x2"}) EXPECT_LT(reached("strong", axis), 2) << axis;  // 1.8 and 1.5 measured; on x3 later
+  for (const char* axis : {"x1", "x2"}) EXPECT_LT(reached("strong", axis), 2) << axis;  // measured: 1.8 and 1.5; with the poles on x3 it is later
 }
 
 TEST(PoleAxes, DoNotMatterToTheWeakForm) {

@@ -1,7 +1,8 @@
-// The strong form t = -div_s tau (P-3) at the Greville points of a coarse mesh, and the weak form on the same mesh with the same steps.
+// The strong form t = -div_s tau (P-3) at the Greville points of a coarse mesh, compared with the weak form on the same mesh with the same steps.
 //
-// Second derivatives of a cubic surface are of second order only, and the load that they give is not the gradient of an energy. The capsule is
-// drawn out, faster than the flow can do it, until steps vanish. The paper reports it for its structured mesh with poles; here there are none.
+// Second derivatives of a cubic surface are only of second order, and the load computed from them is not the gradient of an energy. The capsule is
+// stretched faster than the flow can stretch it, until the step size goes to zero. The paper reports this for its structured mesh with poles; the
+// mesh here has none.
 
 #include <algorithm>
 #include <limits>
@@ -21,10 +22,10 @@ std::vector<std::string> settings(double ca, const char* load, const char* schem
           std::string("Membrane/load=") + load, std::string("Time/scheme=") + scheme, "Time/minimum step=1e-7", "Surface/elements per side=6"};
 }
 
-/// How long the capsule is, along any axis of space.
+/// Returns the largest extent of the capsule along a coordinate axis.
 double length(const Evolution& run) { return run.deformation().lengths.maxCoeff(); }
 
-/// Smallest mean curvature over the collocation sites: positive for an ellipsoid, negative in the valleys of a saw-tooth.
+/// Returns the smallest mean curvature at the collocation sites: positive for an ellipsoid, negative in the valleys of a saw-tooth shape.
 double smallest_curvature(const Evolution& run) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& sites : run.body().space.collocation)
@@ -46,9 +47,9 @@ void expect_stall(double ca, const char* scheme) {
   }
   weak.to(strong.state.time);
   EXPECT_LT(last_step, 1e-5 * longest_step);
-  EXPECT_GT(longest, 1.25 * length(weak));  // 1.3 and 1.5 measured, in a few hundredths of a time unit
+  EXPECT_GT(longest, 1.25 * length(weak));  // measured: 1.3 and 1.5, within a few hundredths of a time unit
   EXPECT_GT(strong.energy(), 3 * weak.energy());
-  EXPECT_LT(smallest_curvature(strong), -1);  // valleys sharper than the radius
+  EXPECT_LT(smallest_curvature(strong), -1);  // valleys with a radius of curvature below R_C
 
   weak.to(2);
   EXPECT_LT(weak.steps, 60);

@@ -1,6 +1,6 @@
-// Planar hyperbolic flow at Ca = 0.8, where a capsule's tips are sharper than the elements of a coarse mesh: valleys appear beside the tips and a
-// compression that is not there. On the paper's 218 control points (section 4.3, Figures 17 and 18) the shape is right and the traction is not.
-// Maps hyperbolic and tip-traction of tests/benchmark/atlas.py.
+// Planar hyperbolic flow at Ca = 0.8, in which a capsule's tips are sharper than the elements of a coarse mesh: valleys next to the tips and a
+// compression appear that are not physical. On the paper's 218 control points (section 4.3, Figures 17 and 18) the shape is right and the traction is
+// not. Maps hyperbolic and tip-traction of tests/benchmark/atlas.py.
 
 #include <algorithm>
 #include <limits>
@@ -31,17 +31,17 @@ Tip tip(int n, double ca) {
 
 TEST(Tips, OnACoarseMeshAreCompressedAlthoughTheMembraneIsNot) {
   const Tip coarse = tip(4, 0.8), fine = tip(6, 0.8);
-  EXPECT_LT(coarse.smallest_tension, -0.1);  // -0.25 measured
-  EXPECT_GT(fine.smallest_tension, 0);       // 0.05 measured
+  EXPECT_LT(coarse.smallest_tension, -0.1);  // measured: -0.25
+  EXPECT_GT(fine.smallest_tension, 0);       // measured: 0.05
 }
 
-TEST(Tips, OfAWeakerFlowNeedNoFinerMesh) { EXPECT_GT(tip(4, 0.45).smallest_tension, -0.03); }  // -0.01 measured
+TEST(Tips, OfAWeakerFlowNeedNoFinerMesh) { EXPECT_GT(tip(4, 0.45).smallest_tension, -0.03); }  // measured: -0.01
 
 struct Steady {
   double traction, taylor;
 };
 
-/// Per present area, at the tip, where four elements meet.
+/// Returns the traction per current area at the tip, where four elements meet, and the Taylor parameter.
 Steady steady(int n, const std::vector<std::string>& settings) {
   std::vector<std::string> all{"Flow/type=planar hyperbolic", "Membrane/law=Skalak", "Membrane/area dilatation=1", "Membrane/capillary number=0.8",
                                "Surface/elements per side=" + std::to_string(n), "Time/tolerance=1e-3"};
@@ -61,9 +61,9 @@ Steady steady(int n, const std::vector<std::string>& settings) {
 
 TEST(Tips, OnThePapersMeshHaveTheRightShapeAndTheWrongTraction) {
   const Steady fine = steady(12, {}), present = steady(6, {"Membrane/load measure=current", "Volume/constraint=flux"}), unstressed = steady(6, {});
-  EXPECT_LT(present.traction, 0.93 * fine.traction);  // 0.89 measured; 0.83 in the paper
-  EXPECT_GT(unstressed.traction, present.traction);   // 0.94 of the fine one measured
-  EXPECT_NEAR(present.taylor, fine.taylor, 0.005);    // 0.0025 measured
+  EXPECT_LT(present.traction, 0.93 * fine.traction);  // measured: 0.89; in the paper: 0.83
+  EXPECT_GT(unstressed.traction, present.traction);   // measured: 0.94 of the fine mesh's traction
+  EXPECT_NEAR(present.taylor, fine.taylor, 0.005);    // measured: 0.0025
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Accuracy that is asked for and not got, or paid for and not asked for. Maps step-tolerance, quadrature-tolerance and volume-drift of
+// Tolerances that are not met, or that cost more than they are worth. Maps step-tolerance, quadrature-tolerance and volume-drift of
 // tests/benchmark/atlas.py.
 
 #include <cmath>
@@ -32,7 +32,7 @@ Outcome stiff(const std::string& scheme, const std::string& tolerance, const std
 TEST(Tolerances, OfAnExplicitSchemeAtItsStabilityLimitBuyNothingWhenLoose) {
   const Outcome loose = stiff("bs3", "1e-2"), tight = stiff("bs3", "1e-5");
   EXPECT_NEAR(static_cast<double>(loose.evaluations) / tight.evaluations, 1, 0.1);
-  EXPECT_GT(loose.volume_error, 100 * tight.volume_error);  // noise of the stiff modes drifts
+  EXPECT_GT(loose.volume_error, 100 * tight.volume_error);  // noise of the stiff modes makes the volume drift
   EXPECT_LT(stiff("tr-bdf2", "1e-2").evaluations, loose.evaluations / 4);
 }
 
@@ -41,7 +41,8 @@ TEST(Tolerances, OfAStepDoNotReachTheVolumeUnderTheExactConstraint) {
 }
 
 Outcome unconstrained(const std::vector<std::string>& quadrature) {
-  std::vector<std::string> settings{"Volume/constraint=none", "Membrane/load measure=current", "Time/tolerance=1e-6"};  // steps that leak nothing
+  // time steps so accurate that they lose no volume
+  std::vector<std::string> settings{"Volume/constraint=none", "Membrane/load measure=current", "Time/tolerance=1e-6"};
   settings.insert(settings.end(), quadrature.begin(), quadrature.end());
   return outcome(settings, 2);
 }

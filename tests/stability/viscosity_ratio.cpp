@@ -1,5 +1,5 @@
-// Viscosity ratios towards 0 and 100. The system for the velocity nearly loses its breathing mode as lambda -> 0: without the flux constraint
-// volume goes with it. Map viscosity-ratio of tests/benchmark/atlas.py.
+// Viscosity ratios near 0 and up to 100. As lambda -> 0, the breathing mode nearly becomes a null vector of the system for the velocity, so volume is
+// lost without the flux constraint. Map viscosity-ratio of tests/benchmark/atlas.py.
 
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ struct Outcome {
   double volume_error, iterations;
 };
 
-/// At time 0.5; iterations of the velocity's system, each.
+/// Returns the volume error at time 0.5, and the mean number of iterations per evaluation of the velocity.
 Outcome outcome(const std::string& ratio, const std::string& constraint) {
   Evolution run({"Surface/elements per side=3", "Particle/viscosity ratio=" + ratio, "Volume/constraint=" + constraint,
                  "Membrane/load measure=current"});
@@ -26,12 +26,12 @@ Outcome outcome(const std::string& ratio, const std::string& constraint) {
 }
 
 TEST(ViscosityRatio, TowardsZeroLosesVolumeWithoutTheFluxConstraint) {
-  EXPECT_GT(outcome("0.001", "none").volume_error, 0.01);  // 0.07 measured
+  EXPECT_GT(outcome("0.001", "none").volume_error, 0.01);  // measured: 0.07
   EXPECT_LT(outcome("0.001", "exact").volume_error, 1e-7);
 }
 
 TEST(ViscosityRatio, NeedsNoMoreIterationsAtEitherEndWithIt) {
-  for (const char* ratio : {"0.001", "0.1", "10", "100"}) EXPECT_LT(outcome(ratio, "exact").iterations, 12) << ratio;  // 7 to 9 measured
+  for (const char* ratio : {"0.001", "0.1", "10", "100"}) EXPECT_LT(outcome(ratio, "exact").iterations, 12) << ratio;  // measured: 7 to 9
 }
 
 }  // namespace viscosity_ratio_test

@@ -1,4 +1,4 @@
-// Flow through ducts by boundary elements, against what is known exactly: orders, and accuracy up to the wall.
+// Flow through ducts by boundary elements, compared with exact solutions: orders of convergence, and accuracy up to the wall.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 
 double ellipse_rate(double a, double b) { return pi * std::pow(a * b, 3) / (4 * (a * a + b * b)); }
 
-/// Relative error of the flow rate with outline and density on the same n elements.
+/// Returns the relative error of the flow rate, with n elements for both outline and density.
 double rate_error(const Outline& isogeometric, int n, double exact) { return BoundaryProfile(isogeometric, n).flow_rate() / exact - 1; }
 
 TEST(DuctByBoundaryElements, HasAFlowRateOfOrderFour) {
@@ -29,10 +29,10 @@ TEST(DuctByBoundaryElements, HasAFlowRateOfOrderFour) {
     EXPECT_NEAR(std::log2(coarse / fine), 4, 0.1);
     EXPECT_LT(std::abs(fine), 2e-7);
   };
-  check(ellipse(1, 1), ellipse_rate(1, 1));  // the degenerate scale of the logarithm
+  check(ellipse(1, 1), ellipse_rate(1, 1));  // R = 1 is the degenerate scale of the logarithmic kernel
   check(ellipse(0.4, 0.4), ellipse_rate(0.4, 0.4));
   check(ellipse(1, 0.5), ellipse_rate(1, 0.5));
-  const double trefoil_rate = 0.3089934973;  // ten digits, by extrapolation of another program
+  const double trefoil_rate = 0.3089934973;  // ten digits, extrapolated from results of another program
   EXPECT_NEAR(std::log2(rate_error(trefoil(48), 48, trefoil_rate) / rate_error(trefoil(96), 96, trefoil_rate)), 4, 0.2);
 }
 
@@ -44,7 +44,7 @@ TEST(DuctByBoundaryElements, GainsAnOrderWhereTheOutlineIsExact) {
 }
 
 TEST(DuctByBoundaryElements, HasTheFlowRateOfSectionsWithCorners) {
-  const double tolerance = 1e-7;  // a hundredth of what is asked for; measured: 1.1e-8, 3e-9, 9e-9, 1e-7
+  const double tolerance = 1e-7;  // a hundredth of the requirement; measured: 1.1e-8, 3e-9, 9e-9, 1e-7
   EXPECT_LT(std::abs(rate_error(polygon({{0, 0}, {1, 0}, {0.5, std::sqrt(0.75)}}), 96, std::sqrt(3) / 320)), tolerance);
   EXPECT_LT(std::abs(rate_error(polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), 96, stokes::rectangle_profile({1, 1})->flow_rate())), tolerance);
   EXPECT_LT(std::abs(rate_error(polygon({{0, 0}, {1, 0}, {1, 3}, {0, 3}}), 96, stokes::rectangle_profile({1, 3})->flow_rate())), tolerance);
@@ -53,7 +53,7 @@ TEST(DuctByBoundaryElements, HasTheFlowRateOfSectionsWithCorners) {
       << "infinite shear rate at one corner";
 }
 
-/// Largest errors of u and of its gradient at a distance from the wall of 1e-3 R_T, over the largest u and gradient.
+/// Largest errors of u and of its gradient at the distance 1e-3 R_T from the wall, divided by the largest u and gradient.
 struct NearWall {
   double velocity = 0, gradient = 0;
 };
@@ -64,9 +64,9 @@ NearWall near_wall(const Outline& o, const DuctProfile& profile, const DuctProfi
   const Vec2 c = o.centroid();
   exact.evaluate(1, &c[0], &c[1], &top, &none2, &none3);
   for (int k = 0; k < o.n_sides(); ++k)
-    for (const double u : o.knots(k, 499)) {  // no multiple of the elements: all places between nodes
+    for (const double u : o.knots(k, 499)) {  // 499 is no multiple of the number of elements, so all positions between nodes occur
       const Vec2 x = o.point(k, u) - 1e-3 * o.radius() * o.normal(k, u);
-      if (o.distance(x) < 0.99e-3 * o.radius()) continue;  // beside a corner
+      if (o.distance(x) < 0.99e-3 * o.radius()) continue;  // adjacent to a corner
       double a, a2, a3, b, b2, b3;
       profile.evaluate(1, &x[0], &x[1], &a, &a2, &a3);
       exact.evaluate(1, &x[0], &x[1], &b, &b2, &b3);
@@ -87,7 +87,7 @@ TEST(DuctByBoundaryElements, KeepsItsAccuracyUpToTheWall) {
   check(ellipse(1, 0.5).spline(96), *stokes::ellipse_profile({1, 0.5}));
   check(ellipse(1, 0.5), *stokes::ellipse_profile({1, 0.5}));
   check(polygon({{-0.5, -1.5}, {0.5, -1.5}, {0.5, 1.5}, {-0.5, 1.5}}), *stokes::rectangle_profile({1, 3}));  // measured: 4e-8, 6e-6
-  check(trefoil(96), BoundaryProfile(trefoil(96), 384));  // the spline itself: what it leaves of the trefoil is not the elements' fault
+  check(trefoil(96), BoundaryProfile(trefoil(96), 384));  // the reference uses the same spline, so its deviation from the trefoil does not count
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Capsules whose law is given by its strain energy move as those of the same law that is built in.
+// Capsules whose membrane law is given by its strain energy move like capsules with the same built-in law.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ TEST(Expression, MovesACapsuleAsTheBuiltInLawDoes) {
   const std::vector<std::string> same = {"Membrane/law=expression", "Membrane/constants/C/value=2",
                                          "Membrane/energy=(I1^2 + 2*I1 - 2*I2 + C*I2^2)/4"};
   EXPECT_LT((after_three_steps(same) - skalak).cwiseAbs().maxCoeff(), 1e-13);
-  EXPECT_GT((skalak - rubber).cwiseAbs().maxCoeff(), 1e-4);  // they differ from each other
+  EXPECT_GT((skalak - rubber).cwiseAbs().maxCoeff(), 1e-4);  // the two laws give different results
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// A drop with a viscous interface, nearly a sphere, in a slow linear flow: its shape at rest and the velocity on it (3.28). The velocity is linear
-// in the flow and in the shape: both follow from the velocities of a sphere in the flow and of a disturbed one in a fluid at rest.
+// Nearly spherical drop with a viscous interface in a slow linear flow: its steady shape and the velocity on it (3.28). The velocity is linear in the
+// flow and in the disturbance of the shape. So both results follow from the velocities of a sphere in the flow and of a disturbed sphere in a fluid
+// at rest.
 
 #include <cmath>
 #include <ostream>
@@ -24,7 +25,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
   return out << c.flow << ", lambda " << c.viscosity_ratio << ", B_s " << c.shear << ", B_k " << c.dilatational << ", mesh " << c.motion;
 }
 
-/// The coefficients of Y n and grad_s Y/2 in a field on the sphere; mu = R_C = sigma = 1.
+/// Coefficients of Y n and grad_s Y/2 in a field on the sphere; mu = R_C = sigma = 1.
 struct Coefficients {
   double normal = 0, tangential = 0;
 };
@@ -45,7 +46,7 @@ class Drop {
 
   const Evolution& scene() const { return scene_; }
 
-  /// By least squares on the sphere, where the squares of Y and of grad_s Y have integrals in the proportion 1 : 6.
+  /// Returns the coefficients by least squares on the sphere, where the integrals of the squares of Y and grad_s Y have the ratio 1 : 6.
   Coefficients coefficients(const Net& field) const {
     Coefficients sum;
     double square = 0;
@@ -65,9 +66,9 @@ class Drop {
 
   Coefficients at_rest() { return of(scene_.body().rest); }
 
-  /// By the amplitude f of Y in the shape r = 1 + f Y.
+  /// Returns the derivative of the coefficients with respect to the amplitude f of Y in the shape r = 1 + f Y.
   Coefficients response() {
-    constexpr double f = 1e-3;  // central differences err by f^2
+    constexpr double f = 1e-3;  // central differences have an error of order f^2
     const spline::Space& space = scene_.body().space;
     Net change(space.n_points, 3);
     for (int i = 0; i < space.n_points; ++i) {
@@ -77,13 +78,13 @@ class Drop {
     membrane::SymmetricSolver collocation;
     collocation.factor(coupling::collocation_matrix(space));
     change = f * collocation.solve(change);
-    const double apart = 2 * coefficients(change).normal;  // of the two shapes, as the splines have them
+    const double apart = 2 * coefficients(change).normal;  // difference of the amplitudes of the two spline shapes
     const Coefficients more = of(scene_.body().rest + change), less = of(scene_.body().rest - change);
     return {(more.normal - less.normal) / apart, (more.tangential - less.tangential) / apart};
   }
 
  private:
-  /// The mesh and the fluids move across the interface alike; along it the fluids' velocity is asked for.
+  /// Returns the coefficients of the mesh's normal velocity, which is that of the fluids, and of the fluids' tangential velocity.
   Coefficients of(const Net& x) {
     return {coefficients(scene_.capsule->velocity(x)).normal, coefficients(scene_.capsule->evaluate(x)->fluid_velocity()).tangential};
   }
@@ -102,7 +103,7 @@ TEST_P(ViscousInterface, OfADropInASlowFlowRestsAsBoussinesqAndScrivenHaveIt) {
 
   const double w_exact = 5 / (5 + 5 * c.viscosity_ratio + 6 * c.dilatational + 4 * c.shear);
   const double f_exact = (5 + (3 + 4.5 * c.viscosity_ratio + 6 * c.dilatational) * w_exact) / 4;
-  EXPECT_NEAR(f / f_exact, 1, 1e-4);  // the mesh errs by 8e-5 and 1.9e-4 at most
+  EXPECT_NEAR(f / f_exact, 1, 1e-4);  // errors of the mesh are at most 8e-5 here and 1.9e-4 below
   EXPECT_NEAR(w / w_exact, 1, 3e-4);
 }
 

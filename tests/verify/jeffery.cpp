@@ -1,4 +1,4 @@
-// Free rigid spheroids in simple shear against Jeffery 1922: the period, measured from the inclination, and the orbit out of the plane of the flow.
+// Free rigid spheroids in simple shear compared with Jeffery 1922: the period, measured from the inclination, and the orbit out of the plane of flow.
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ namespace jeffery_test {
 
 using std::numbers::pi;
 
-/// inputs/jeffery.yaml with settings, in the time loop's hands.
+/// Run of inputs/jeffery.yaml with settings, step by step.
 struct Tumbling {
   Scene scene;
   coupling::Ranks ranks;
@@ -46,7 +46,7 @@ struct Tumbling {
 TEST(Jeffery, PeriodIsThatOfTheExactOrbit) {
   const double ratio = 1.5, exact = 2 * pi * (ratio + 1 / ratio);
   Tumbling run({"Time/final time=14.5"});
-  // Zeros of the inclination after the start, half a turn apart; between two steps it is as good as straight.
+  // Zeros of the inclination after the start, half a rotation apart, by linear interpolation between two steps.
   std::vector<double> zeros;
   double time = 0, angle = run.inclination();
   while (run.state.time < run.scene.time.final_time) {
@@ -56,7 +56,7 @@ TEST(Jeffery, PeriodIsThatOfTheExactOrbit) {
     time = run.state.time, angle = now;
   }
   ASSERT_EQ(zeros.size(), 2u);
-  EXPECT_NEAR(2 * (zeros[1] - zeros[0]) / exact, 1, 1e-6);  // the mesh of six elements a side and the steps take 1e-7
+  EXPECT_NEAR(2 * (zeros[1] - zeros[0]) / exact, 1, 1e-6);  // six elements per side and the steps cause errors of 1e-7
   EXPECT_NEAR(zeros[1] / exact, 1, 1e-6);
 }
 
@@ -72,7 +72,7 @@ TEST(Jeffery, OrbitOutOfThePlaneIsClosed) {
   const double constant = orbit();
   while (run.state.time < run.scene.time.final_time) {
     run.step();
-    EXPECT_NEAR(orbit() / constant, 1, 2e-5);  // the mesh is not symmetric about this axis: 1e-5
+    EXPECT_NEAR(orbit() / constant, 1, 2e-5);  // the mesh is not symmetric about this axis, which causes 1e-5
   }
   EXPECT_LT((run.axis() - start).norm(), 1e-5);
 }

@@ -1,5 +1,5 @@
-// Layer integrals where their rules are put to the test: thin and long shapes, surfaces that almost touch. Errors at every tolerance against a
-// reference rule that shares nothing with the program's. Allowed is a factor over the tolerance, about twice the largest one measured.
+// Layer integrals on difficult surfaces: thin and long shapes, and surfaces that almost touch. Errors at every tolerance are compared with an
+// independent reference rule. The allowed error is the tolerance times a factor, about twice the largest ratio measured.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ using stokes::CrossLayer;
 
 Vec3 density(const Vec3& p) { return {1 + std::sin(p[0]) + p[1], p[2] * p[0] - 0.3, std::cos(p[1] + p[2])}; }
 
-/// A particle on the cube mesh of n elements a side, with a smooth density on it.
+/// Particle on the cube mesh of n elements per side, with a smooth density on it.
 struct Particle {
   spline::Space space;
   Net x, f;
@@ -61,7 +61,8 @@ surface::ParticleShape red_cell() {
   return shape;
 }
 
-/// (1 / 8 pi) int kernel(x - y, n) (f - f(y)) dG by brute force; f(y) only where the target y lies on the surface and the layer is double.
+/// Computes (1 / 8 pi) int kernel(x - y, n) (f - f(y)) dG by brute force. f(y) is only subtracted in the double layer and if the target y lies on the
+/// surface.
 class Reference {
  public:
   explicit Reference(const Particle& p) : particle_(p), surface_(p.space, p.x) {
@@ -111,7 +112,7 @@ void keeps_tolerances(const char* name, const Particle& p, double allowed, std::
 }
 
 TEST(LayersOfThinShapes, KeepTheRequestedTolerance) {
-  // Elements of the two spheroids are longer than the shape is thick, and their density varies on them.
+  // Elements of the two spheroids are longer than the spheroids are thick, and the density varies within them.
   keeps_tolerances("spheroid 1 : 5", Particle(4, spheroid(1, 0.2)), 5, {1e-3, 1e-5, 1e-8});
   keeps_tolerances("spheroid 5 : 1", Particle(4, spheroid(0.5, 2.5)), 5, {1e-3, 1e-5, 1e-8});
   keeps_tolerances("red cell", Particle(4, red_cell()), 6, {1e-3, 1e-5, 1e-8});
@@ -126,7 +127,7 @@ TEST(LayersOfThinShapesLong, KeepTheRequestedTolerance) {
   }
 }
 
-/// Points of a unit sphere that is a gap away from the unit sphere, on the x3 axis, about the place of contact.
+/// Returns points on a unit sphere above the unit sphere on the x3 axis, at the distance `gap`, around the point of closest approach.
 Net beside(double gap) {
   const double angles[] = {0, 1e-3, 0.01, 0.03, 0.1, 0.3, 1};
   Net at(7, 3);
@@ -134,7 +135,7 @@ Net beside(double gap) {
   return at;
 }
 
-/// The density close to a point of the surface. As a constant taken out of the double layer it gives nothing outside.
+/// Returns the density close to a point of the surface. Subtracting this constant does not change the double layer outside of the surface.
 Vec3 value_nearby(const Particle& p, const Vec3& at) {
   Vec3 value;
   double least = HUGE_VAL;
@@ -175,12 +176,12 @@ TEST(LayersAcrossGapsLong, KeepTheRequestedTolerance) {
   for (const int n : {3, 6, 8}) keeps_tolerances_across_gaps(Particle(n, sphere(1)), 2, 3, tolerances);
 }
 
-/// Two surfaces p and q on one space of both, a gap apart, where a collocation point of q is next to a place on p. Only p gives a layer.
+/// Two surfaces p and q in one common space, a gap apart. A collocation point of q faces a point of p. The layers are those of p only.
 struct Film {
   spline::Space space;
   Net x, v;
-  std::vector<int> targets;  ///< on q: those next to p, and some around
-  Net exact[2];              ///< single and double layer of p there
+  std::vector<int> targets;  ///< collocation points on q closest to p, and some around them
+  Net exact[2];              ///< single and double layer of p at these targets
 
   Film(const Particle& p, const Particle& q, const Reference& reference, const spline::Site& contact, int facing, double gap,
        bool continuous) {
@@ -224,12 +225,12 @@ struct Film {
   }
 };
 
-/// Largest errors over the tolerance and over the largest value of the layer, for several contacts.
+/// Checks the largest errors, relative to the largest value of the layer and to the tolerance, for several contacts.
 void keeps_tolerances_across_films(const char* name, const Particle& p, int n, double single_allowed, double double_allowed,
                                    std::initializer_list<double> tolerances) {
   const Particle q(n, sphere(1));
   const Reference reference(p);
-  const int side = n * n;  // elements of a face
+  const int side = n * n;  // number of elements per face
   const std::pair<spline::Site, int> contacts[] = {
       {{7, 0.37, 0.61}, q.space.n_points / 3}, {{side + n + 1, 0.5, 0.5}, q.space.n_points / 2}, {{3 * side, 0, 0}, 5}};
   for (const double gap : {0.3, 0.1, 0.03, 0.01, 1e-3})

@@ -1,4 +1,4 @@
-// The layer integrals against a reference rule that shares nothing with the program's, and against exact solutions.
+// Layer integrals compared with an independent reference rule and with exact solutions.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace tanktread {
 namespace layers_test {
 
-/// A strongly deformed, S-shaped surface of the cube mesh, and a smooth load on it.
+/// Strongly deformed, S-shaped surface of the cube mesh with a smooth load on it.
 struct Scene {
   spline::Space space;
   Net unstressed, x, f;
@@ -45,7 +45,7 @@ struct Scene {
     std::iota(all.begin(), all.end(), 0);
   }
 
-  /// (H v)_i of (2.2) with v = f.
+  /// Returns (H v)_i of (2.2) with v = f.
   Net double_reference() const {
     return by_brute_force([](const Vec3& r, const Vec3& n) { return stokes::stresslet(r, n); }, true);
   }
@@ -55,7 +55,7 @@ struct Scene {
   }
 
  private:
-  /// (1 / 8 pi) int kernel(x - x_i, n) f dG at every collocation point, or of f - f(x_i).
+  /// Returns (1 / 8 pi) int kernel(x - x_i, n) f dG at every collocation point; if `less_its_own`, with f - f(x_i) in place of f.
   Net by_brute_force(const std::function<Mat3(const Vec3& r, const Vec3& n)>& kernel, bool less_its_own) const {
     const verify::BruteForce surface(space, x);
     std::vector<verify::Casteljau> field;
@@ -77,10 +77,10 @@ double largest_error(const Net& u, const Net& reference) {
   return (u - reference).rowwise().norm().maxCoeff() / reference.rowwise().norm().maxCoeff();
 }
 
-/// Root mean square over the targets, relative: the extraordinary points alone limit the largest error to order 2.7.
+/// Returns the relative root mean square error over the targets. The largest error would only be of order 2.7, because of the extraordinary points.
 double mean_error(const Net& u, const Net& reference) { return (u - reference).norm() / reference.norm(); }
 
-/// The error is below the requested one at every target. Prints what it took.
+/// Checks that the error is below the tolerance at every target. Prints the kernel evaluations.
 void keeps_its_tolerance(bool single, const char* name, const Scene& scene, double finest = 1e-10) {
   const Net reference = single ? scene.reference() : scene.double_reference();
   Net u = Net::Zero(scene.space.n_points, 3);
@@ -105,7 +105,7 @@ TEST(SingleLayer, KeepsTheRequestedToleranceAtTheCollocationPointsOfADeformedSur
   keeps_its_tolerance(true, "deformed, n = 6", Scene(6));
 }
 
-/// Targets in the middle of elements, near an edge and near a corner.
+/// Returns a scene with targets in the middle of elements, near an edge and near a corner.
 Scene with_targets_inside_elements(int n) {
   Scene scene(n);
   const double place[3][2] = {{0.5, 0.5}, {0.05, 0.4}, {0.9, 0.95}};
@@ -129,7 +129,7 @@ TEST(DoubleLayer, KeepsTheRequestedToleranceAtPointsInsideElements) {
   keeps_its_tolerance(false, "n = 4, targets inside elements", with_targets_inside_elements(4));
 }
 
-/// Elements of different sizes, T-junctions, and the tiny pieces at extraordinary points of Catmull-Clark surfaces.
+/// The meshes have elements of different sizes, T-junctions, and the tiny pieces at extraordinary points of Catmull-Clark surfaces.
 TEST(Layers, KeepTheRequestedToleranceOnLocallyRefinedMeshes) {
   constexpr auto rule = spline::ExtraordinaryRule::catmull_clark;
   const spline::TMesh coarse = spline::cube(4, 2);
@@ -140,7 +140,7 @@ TEST(Layers, KeepTheRequestedToleranceOnLocallyRefinedMeshes) {
   keeps_its_tolerance(false, "refined locally", scene);
 }
 
-/// Elements that are collapsed to a point on one side, or strongly sheared around it.
+/// The elements have one side collapsed to a point, or are strongly sheared around it.
 TEST(Layers, KeepTheRequestedToleranceAtPoles) {
   for (const auto poles : {spline::PoleRule::plain, spline::PoleRule::c1, spline::PoleRule::bezier_transform}) {
     const spline::PolarMesh mesh{12, 6, poles, 1};
@@ -151,13 +151,13 @@ TEST(Layers, KeepTheRequestedToleranceAtPoles) {
     const char* const name = poles == spline::PoleRule::plain ? "plain poles"
                              : poles == spline::PoleRule::c1  ? "C1 poles"
                                                               : "transformed poles";
-    const double finest = poles == spline::PoleRule::bezier_transform ? 1e-8 : 1e-10;  // the pieces' shear costs the last digit: 3e-10
+    const double finest = poles == spline::PoleRule::bezier_transform ? 1e-8 : 1e-10;  // the shear of the pieces limits the error to 3e-10
     keeps_its_tolerance(true, name, scene, finest);
     keeps_its_tolerance(false, name, scene, finest);
   }
 }
 
-/// The sphere of the cube mesh with n elements a side, and the error of a layer of a vector spherical harmonic.
+/// Sphere of the cube mesh with n elements per side, and the error of a layer of a vector spherical harmonic.
 struct Sphere {
   spline::Space space;
   Net x;
@@ -189,7 +189,7 @@ struct Sphere {
   }
 };
 
-/// Vector spherical harmonics of the solid harmonic H = x1^2 - x2^2 + x1 x3 (n = 2): grad_s Y = grad H - n Y e_r on the unit sphere.
+/// Vector spherical harmonics of the solid harmonic H = x1^2 - x2^2 + x1 x3 (n = 2); grad_s Y = grad H - n Y e_r on the unit sphere.
 struct Harmonic {
   static constexpr int n = 2;
   static double y(const Vec3& e) { return e[0] * e[0] - e[1] * e[1] + e[0] * e[2]; }
@@ -199,8 +199,8 @@ struct Harmonic {
   static Vec3 x(const Vec3& e) { return e.cross(slope(e)); }
 };
 
-/// Single layer: V, W, X to n / ((2n+1)(2n+3)), (n+1) / ((2n+1)(2n-1)), 1 / (2n+1) times themselves; the principal value of the double
-/// layer: to 3/2 / ((2n+1)(2n+3)), -3/2 / ((2n+1)(2n-1)), -3/2 / (2n+1), and H is that plus 1/2.
+/// The eigenvalues of V, W, X under the single layer are n / ((2n+1)(2n+3)), (n+1) / ((2n+1)(2n-1)), 1 / (2n+1). Under the principal value of the
+/// double layer they are 3/2 / ((2n+1)(2n+3)), -3/2 / ((2n+1)(2n-1)), -3/2 / (2n+1). H is the principal value plus 1/2.
 TEST(Layers, HaveTheEigenvaluesOfTheSphereToTheOrderOfTheSpace) {
   constexpr double n = Harmonic::n, up = (2 * n + 1) * (2 * n + 3), down = (2 * n + 1) * (2 * n - 1);
   const struct {
@@ -222,11 +222,11 @@ TEST(Layers, HaveTheEigenvaluesOfTheSphereToTheOrderOfTheSpace) {
     std::printf("%s layer, %s_2: error %.2e (n = 6), %.2e (n = 12), order %.2f\n", mode.single ? "single" : "double", mode.name, at_6,
                 at_12, order);
     EXPECT_LT(at_12, mode.single ? 2e-5 : 5e-5) << mode.name;
-    EXPECT_GT(order, 3.2) << mode.name;  // h^4, held back around extraordinary points, where the normal errs with h^2.7
+    EXPECT_GT(order, 3.2) << mode.name;  // h^4, except near extraordinary points, where the error of the normal is of order h^2.7
   }
 }
 
-/// Traction on a prolate spheroid (semi-axes a, a, c) that moves at U: the single layer of f_i = F_i h / (4 pi a^2 c), h = n.x, is U.
+/// The traction on a prolate spheroid (semi-axes a, a, c) that moves at U is f_i = F_i h / (4 pi a^2 c) with h = n.x; its single layer is U.
 TEST(SingleLayer, OfTheTractionOnAMovingSpheroidIsItsVelocity) {
   const double a = 0.8, c = 1.2, e = std::sqrt(1 - a * a / (c * c)), l = std::log((1 + e) / (1 - e));
   const double along = 16 * std::numbers::pi * c * e * e * e / (-2 * e + (1 + e * e) * l);
@@ -255,7 +255,8 @@ TEST(SingleLayer, OfTheTractionOnAMovingSpheroidIsItsVelocity) {
   EXPECT_GT(std::log2(error[0] / error[1]), 3.5);
 }
 
-/// Points on both sides of the surface over generic places of some elements, at the distance d/h; v where they stand, and whether they are within.
+/// Points on both sides of the surface at the distance d/h from generic points of some elements. `v`: density at the closest point. `inside`: whether
+/// the point is inside.
 struct Beside {
   Net at, v;
   std::vector<bool> inside;
@@ -272,7 +273,7 @@ struct Beside {
   }
 };
 
-/// The double layer of v - v0 with v0 the velocity nearby; what the constant gives is known (2.3).
+/// Returns the double layer of v, evaluated with v - v0, where v0 is the density nearby. The contribution of the constant v0 is known (2.3).
 Net double_layer(stokes::CrossLayer& layer, const Net& v, const Net& v0, const Beside& points, const std::vector<int>& all) {
   Net u(points.at.rows(), 3);
   layer.apply(v, v0, points.at, all, u);
@@ -317,9 +318,9 @@ TEST(CrossLayer, KeepsTheRequestedToleranceAsATargetApproachesTheSurface) {
       }
       std::printf("d/h = %.0e  requested %.0e  errors: single %.1e  double %.1e  int T n %.1e  kernel evaluations: near %lld\n", distance,
                   tolerance, single, twofold, angle, forces.evaluations().near + stresses.evaluations().near);
-      EXPECT_LT(single, 2 * tolerance) << distance;  // each panel's rule is chosen for itself, and their errors add up
+      EXPECT_LT(single, 2 * tolerance) << distance;  // the rule of each panel is chosen separately, and their errors add up
       EXPECT_LT(twofold, tolerance) << distance;
-      EXPECT_LT(angle, 10 * tolerance) << distance;  // without the subtraction of a constant this one is nearly singular of second order
+      EXPECT_LT(angle, 10 * tolerance) << distance;  // the constant is not subtracted, so this integral is nearly singular of second order
     }
   }
 }

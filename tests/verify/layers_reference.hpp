@@ -1,7 +1,6 @@
 #pragma once
-// Layer potentials by brute force, sharing nothing with the program's rules but the surface: far 12 x 12 Gauss on every element, close
-// elements cut in four again and again towards the target, and polar rules of 20 x 32 points in the metric at the target on the
-// elements that hold it.
+// Layer potentials by brute force, independent of the program's quadrature. Far elements use 12 x 12 Gauss points. Close elements are divided into
+// four parts recursively towards the target. Elements that contain the target use polar rules of 20 x 32 points in the metric at the target.
 
 #include <array>
 #include <cmath>
@@ -17,7 +16,7 @@
 
 namespace tanktread::verify {
 
-/// Where a rule meets the surface: weight of the area element included in `jacobian`.
+/// Quadrature point on the surface. `jacobian` includes the quadrature weight.
 struct SurfacePoint {
   int element;
   double s, t;
@@ -25,7 +24,7 @@ struct SurfacePoint {
   double jacobian;
 };
 
-/// Bezier points of one field on one element; values and tangents by de Casteljau's scheme.
+/// Field on one element by its Bezier points, with values and tangents by de Casteljau's algorithm.
 class Casteljau {
  public:
   Casteljau(const spline::Element& element, const Net& net) : n_(element.degree + 1) {
@@ -34,7 +33,7 @@ class Casteljau {
     points_ = element.extraction->transpose() * own;
   }
 
-  std::array<Vec3, 3> operator()(double s, double t) const {  // x, x_,s, x_,t
+  std::array<Vec3, 3> operator()(double s, double t) const {  // returns x, x_,s, x_,t
     Polygon rows, slopes, row;
     for (int j = 0; j < n_; ++j) {
       for (int i = 0; i < n_; ++i) row[i] = points_.row(n_ * j + i);
@@ -68,7 +67,7 @@ class BruteForce {
     }
   }
 
-  /// sum of integrand(point) dG for a target on the elements of `sites`, or for one off the surface (no sites).
+  /// Returns the integral of integrand(point) dG for a target on the elements of `sites`, or off the surface if there are no sites.
   Vec3 integrate(const Vec3& target, const std::vector<spline::Site>& sites,
                  const std::function<Vec3(const SurfacePoint&)>& integrand) const {
     Vec3 sum = Vec3::Zero();
@@ -97,7 +96,7 @@ class BruteForce {
   }
 
  private:
-  /// The part of an element within `half` of (s, t).
+  /// Integrates over the square part of an element within `half` of (s, t); divides it if it is close to the target.
   template <class Add>
   void parts(int e, const Vec3& target, double s, double t, double half, const Add& add) const {
     const auto [x, a, b] = shapes_[e](s, t);
@@ -120,7 +119,7 @@ class BruteForce {
   template <class Add>
   void polar(const spline::Site& site, const Add& add) const {
     const auto [x, a1, a2] = shapes_[site.element](site.s, site.t);
-    if (!(a1.norm() > 1e-9 && a2.norm() > 1e-9)) return whole(site.element, add);  // at a pole the area vanishes with r
+    if (!(a1.norm() > 1e-9 && a2.norm() > 1e-9)) return whole(site.element, add);  // at a pole the area element vanishes linearly with r
     const double corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
     const auto &radial = quadrature::gauss(20), &angular = quadrature::gauss(32);
     for (int k = 0; k < 4; ++k) {

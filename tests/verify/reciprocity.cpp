@@ -1,4 +1,5 @@
-// Lorentz' reciprocal theorem for two surfaces apart: what the layers of one do on the other is what those of the other do on the first.
+// Lorentz' reciprocal theorem for two separate surfaces: the work of the single layer of one on the density of the other is the same in both
+// directions.
 
 #include <cmath>
 #include <numeric>
@@ -16,7 +17,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// A deformed surface with a smooth density on it.
+/// Deformed surface with a smooth density on it.
 struct Body {
   spline::Space space;
   Net x, density;
@@ -34,7 +35,7 @@ struct Body {
   }
 };
 
-/// int g.(S f) dG over `on`, with f on `from`: Gauss quadrature of `order` points a direction.
+/// Returns int g.(S f) dG over `on`, where f is the density on `from`, by Gauss quadrature with `order` points per direction.
 double work(const Body& on, const Body& from, int order) {
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(order);
   std::vector<Vec3> places, strengths;
@@ -60,7 +61,7 @@ TEST(Reciprocity, SingleLayersOfTwoDeformedSurfacesWorkOnEachOtherAlike) {
   const Body one(3, {0, 0, 0}, 0.2), other(4, {0.5, 3.2, -0.4}, -0.15);
   const double there = work(other, one, 12), back = work(one, other, 12);
   EXPECT_GT(std::abs(there), 0.1);
-  EXPECT_NEAR(there, back, 1e-10 * std::abs(there));  // layers to 1e-12, outer Gauss rule of 12 points
+  EXPECT_NEAR(there, back, 1e-10 * std::abs(there));  // layers have the tolerance 1e-12, the outer Gauss rule 12 points
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Two hundred random refinement sequences, six levels deep: the spaces stay nested and independent. The long form does the same on more meshes
-// and with more marks.
+// Two hundred random refinement sequences, six levels deep: the spaces stay nested and the functions linearly independent. The long form uses more
+// meshes and more marks.
 
 #include <gtest/gtest.h>
 
@@ -51,15 +51,15 @@ TEST(Refinement, TwoHundredSequencesOnSurfacesWithPolesStayNested) {
     for (unsigned seed = 0; seed < 100; ++seed) run_sequence(base[seed % 2], seed, options, found);
     expect_nested(found);
     EXPECT_EQ(found.finest, 1);
-    // Measured 12.3 under `c1`, scaled 11.1. The one function of a plain pole stands for a whole row, and its column is as long as that row has
-    // points: 14 (8 x 4) to 19 (32 x 16) without cuts, 24 here, where the cube has 9. With columns of length one, which is what a direct solution
-    // feels, it is 9.4 at most.
+    // Measured with `c1`: 12.3, scaled 11.1. With `plain`, one function per pole replaces a whole row. The norm of its column grows with the number
+    // of points of that row: the condition is 14 (8 x 4) to 19 (32 x 16) without refinement and 24 here; the cube has 9. With columns scaled to
+    // length one, which is what matters for a direct solver, it is at most 9.4.
     EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
     EXPECT_LT(found.scaled, 15);
   }
 }
 
-/// Refines a field step by step, then takes everything back at once and projects it. Returns the largest change of a control point.
+/// Refines a field step by step, then coarsens back to the first mesh at once and projects the field. Returns the largest change of a control point.
 double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceOf& space_of) {
   std::mt19937 generator(seed);
   TMesh mesh = base;

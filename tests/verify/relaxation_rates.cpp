@@ -1,4 +1,5 @@
-// Spheres in a fluid at rest: how fast their harmonics relax, against Lamb's solution (4.18) for drops and the 2 x 2 system (4.19) of capsules.
+// Relaxation rates of the harmonics of spheres in a fluid at rest, compared with Lamb's solution (4.18) for drops and the 2 x 2 system (4.19) of
+// capsules.
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +20,13 @@ namespace relaxation_rates_test {
 
 using Pair = Eigen::Vector2d;
 
-/// (4.18), of sigma/(mu R).
+/// Returns the rate (4.18) in units of sigma/(mu R).
 double drop_rate(int l, double lambda) {
   const double a = (2. * l * l + 4 * l + 3) * lambda + 2. * l * (l + 2), b = 2. * l * l + 1 + 2. * (l * l - 1) * lambda;
   return -(l - 1.) * l * (l + 1) * (l + 2) * (2 * l + 1) * (lambda + 1) / (a * b);
 }
 
-/// The slow and the fast rate of (4.19), of G/(mu R), viscosity ratio 1.
+/// Returns the slow and the fast rate of (4.19) in units of G/(mu R), for the viscosity ratio 1.
 Pair capsule_rates(int l, double dilatation) {
   const double k = dilatation, n = l * (l + 1.);
   Eigen::Matrix2d load, waves;
@@ -54,13 +55,13 @@ struct Sphere {
     modes = motion::spectrum(*scene.capsule, shapes, x, {scene.capsule->geometry().volume_gradient(x)}, options, {});
   }
 
-  /// The rate, within 5 % of this one, of the mode that is most nearly a displacement of harmonic 2, Y r and grad Y.
+  /// Returns, among the modes with rates within 5 % of `near`, the rate of the mode closest to a displacement by the second harmonic, Y r and grad Y.
   double second_harmonic(double near) const {
     const Net& x = scene.body().rest;
     Eigen::MatrixXd fields(3 * x.rows(), 4);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
       const Vec3 r = x.row(i).transpose().normalized();
-      const Vec3 slopes[] = {{-r[0], -r[1], 2 * r[2]}, {r[0], -r[1], 0}};  // half the gradients of the solid harmonics
+      const Vec3 slopes[] = {{-r[0], -r[1], 2 * r[2]}, {r[0], -r[1], 0}};  // half of the gradients of two solid harmonics
       for (int k = 0; k < 2; ++k) {
         fields.block<3, 1>(3 * i, 2 * k) = slopes[k].dot(r) * r;
         fields.block<3, 1>(3 * i, 2 * k + 1) = slopes[k] - slopes[k].dot(r) * r;
@@ -93,7 +94,7 @@ TEST_P(OfDrops, ConvergeToLambsSolution) {
   const double coarse = std::abs(Sphere(drop, 5).second_harmonic(exact) / exact - 1);
   const double fine = std::abs(Sphere(drop, 10).second_harmonic(exact) / exact - 1);
   EXPECT_LT(fine, 1e-4);
-  EXPECT_GT(std::log2(coarse / fine), 3);  // 2.9 between n = 4 and 8, 3.4 between 6 and 12
+  EXPECT_GT(std::log2(coarse / fine), 3);  // order 2.9 between n = 4 and 8, 3.4 between 6 and 12
 }
 
 TEST_P(OfDrops, ConvergeFasterWhereVelocitiesAreProjected) {
@@ -141,7 +142,7 @@ TEST(RelaxationRates, OfRigidMotionsAndOfTheVolumeAreZeroAndNamed) {
   }
   EXPECT_EQ(count[motion::ModeKind::translation], 3);
   EXPECT_EQ(count[motion::ModeKind::rotation], 3);
-  EXPECT_EQ(count[motion::ModeKind::labels], 0);  // at rest a sphere's are its rotations
+  EXPECT_EQ(count[motion::ModeKind::labels], 0);  // for a sphere at rest these modes are the rotations
   EXPECT_EQ(count[motion::ModeKind::volume], 1);
 }
 

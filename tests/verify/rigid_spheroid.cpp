@@ -1,5 +1,5 @@
-// The resistance problem of the paper's section 4.1 against the exact solution (Oberbeck 1876): observed orders in the size of the elements, and
-// the errors themselves. Quadrature 1e-8 and solver 1e-10, as the decks have them: what is left is the mesh.
+// The resistance problem of the paper's section 4.1 compared with the exact solution (Oberbeck 1876): orders of convergence in the element size, and
+// errors. Quadrature has the tolerance 1e-8 and the solver 1e-10, as in the decks, so the remaining error is that of the mesh.
 
 #include <cmath>
 #include <numbers>
@@ -28,7 +28,7 @@ double order(double coarse, double fine) { return std::log2(coarse / fine); }
 
 TEST(RigidSpheroid, ConvergesOnTheCubeMesh) {
   const RigidSolution coarse = on_cube(3), fine = on_cube(6);
-  // The extraordinary points hold the normal below the third order of the space, and the pressure with it.
+  // Because of the extraordinary points, the orders of normal and pressure are below 3, the order of the space.
   EXPECT_GE(order(coarse.surface.normal, fine.surface.normal), 2.6);
   EXPECT_GE(order(coarse.surface.pressure, fine.surface.pressure), 2.9);
   EXPECT_GE(order(coarse.integral_error, fine.integral_error), 3.7);
@@ -64,22 +64,22 @@ TEST(RigidSpheroid, ConvergesOnTheStructuredMesh) {
 TEST(RigidSpheroid, TurnsAgainstTheExactTorque) {
   const RigidSolution s = on_cube(6, {"Particle/velocity=[0, 0, 0]", "Particle/angular velocity=[0.3, -1, 0.5]", "Particle/center=[1, 2, -3]",
                                       "Particle/orientation=[20, 0, 40]"});
-  EXPECT_LT(s.torque_error, 3e-7);  // three times that of the drag: as the cube of the size
+  EXPECT_LT(s.torque_error, 3e-7);  // three times the error of the drag, because the torque grows with the cube of the size
   EXPECT_LT(s.surface.pressure, 3e-3);
-  EXPECT_LT(s.force.norm(), 1e-7);  // symmetry
+  EXPECT_LT(s.force.norm(), 1e-7);  // zero by symmetry
 }
 
 TEST(RigidSpheroid, FeelsOnlyItsMotionRelativeToTheFlow) {
   const RigidSolution moving = on_cube(3);
   const RigidSolution held =
       on_cube(3, {"Flow/type=uniform", "Flow/velocity=[0.7071067811865476, 0, 0.7071067811865476]", "Particle/velocity=[0, 0, 0]"});
-  EXPECT_LT((moving.force - held.force).norm() / held.force.norm(), 1e-9);  // the solver's tolerance
+  EXPECT_LT((moving.force - held.force).norm() / held.force.norm(), 1e-9);  // tolerance of the solver
   EXPECT_NEAR(moving.error, held.error, 1e-9);
 }
 
-/// Force and torque of the flow of a deck on a body that is held in it, by the reciprocal theorem: int z.v_inf dG, z the density of a rigid motion.
-/// On an ellipsoid z h^-1 is a polynomial, h dG = abc dOmega over the unit sphere, and Gauss points integrate the product with v_inf exactly. Of a
-/// sphere that is Faxen's law.
+/// Returns force and torque of the deck's flow on a body held in it, by the reciprocal theorem: int z.v_inf dG, where z is the density of a rigid
+/// motion. On an ellipsoid z h^-1 is a polynomial and h dG = abc dOmega on the unit sphere. So Gauss points integrate the product with v_inf exactly.
+/// For a sphere this is Faxen's law.
 std::pair<Vec3, Vec3> on_a_held_ellipsoid(const Vec3& semi_axes, const std::vector<std::string>& settings) {
   Scene scene;
   deck::Document deck = deck::read({SOURCE_DIRECTORY "/inputs/spheroid_cube.yaml"}, settings);

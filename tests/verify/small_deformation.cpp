@@ -1,6 +1,6 @@
-// Nearly spherical capsules and drops: D -> (5/4) (2 + nu)/(1 + nu) Ca in shear with the surface Poisson ratio nu, C/(1 + C) for Skalak and 1/2
-// for neo-Hookean membranes (Barthes-Biesel & Rallison 1981); D -> (35/32) Ca for a drop of the outer fluid's viscosity (Taylor 1932).
-// Twice as much in planar hyperbolic flow and 1.5 times in uniaxial extension.
+// Nearly spherical capsules and drops. In shear, D -> (5/4) (2 + nu)/(1 + nu) Ca, with the surface Poisson ratio nu = C/(1 + C) for Skalak and 1/2
+// for neo-Hookean membranes (Barthes-Biesel & Rallison 1981). For a drop with the viscosity of the outer fluid, D -> (35/32) Ca (Taylor 1932). D is
+// twice as large in planar hyperbolic flow and 1.5 times as large in uniaxial extension.
 
 #include <cmath>
 #include <ostream>
@@ -14,7 +14,7 @@ namespace {
 
 struct Case {
   const char* flow;
-  double of_shear;  ///< this many times as much as in shear
+  double of_shear;  ///< ratio of D to its value in shear
   const char* law;
   double dilatation;  ///< Skalak's C
 
@@ -28,8 +28,8 @@ struct Case {
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.flow << ", " << c.law << ", C = " << c.dilatation; }
 
-/// D/Ca when it is steady: the slowest mode of a capsule decays with exp(-t/(4.7 Ca)), that of a drop with exp(-t/(2.2 Ca)), so that 1e-5 of
-/// it is left. The membrane is compressed somewhere in every one of these flows and would wrinkle, but in times of order 1, not of order Ca.
+/// Returns the steady D/Ca. The slowest mode of a capsule decays like exp(-t/(4.7 Ca)), that of a drop like exp(-t/(2.2 Ca)), so the remaining
+/// transient is 1e-5. The membrane is compressed somewhere in all of these flows and would wrinkle, but only in times of order 1, not of order Ca.
 double slope(const Case& c, double ca) {
   std::vector<std::string> settings = {"Flow/type=" + std::string(c.flow), "Membrane/law=" + std::string(c.law),
                                        "Membrane/capillary number=" + std::to_string(ca), "Surface/elements per side=6",
@@ -45,12 +45,12 @@ class SmallDeformation : public testing::TestWithParam<Case> {};
 TEST_P(SmallDeformation, GrowsWithTheCapillaryNumberAsTheoryHasIt) {
   const Case& c = GetParam();
   const double middle = slope(c, 0.01), fine = slope(c, 0.005);
-  double limit = fine + (fine - middle) / 3;  // reversing the flow mirrors the shape: D/Ca is even in Ca
-  if (c.flow == std::string("uniaxial extension")) {  // but not here: a parabola through three values
+  double limit = fine + (fine - middle) / 3;  // D/Ca is even in Ca because reversing the flow mirrors the shape
+  if (c.flow == std::string("uniaxial extension")) {  // here D/Ca is not even in Ca; the limit is that of a parabola through three values
     const double finest = slope(c, 0.0025);
     limit = (8 * finest - 6 * fine + middle) / 3;
   }
-  EXPECT_NEAR(limit / c.limit(), 1, c.is_drop() ? 1e-3 : 2e-4);  // n = 6: 6e-4 and 1.2e-4 measured
+  EXPECT_NEAR(limit / c.limit(), 1, c.is_drop() ? 1e-3 : 2e-4);  // measured with n = 6: 6e-4 and 1.2e-4
 }
 
 INSTANTIATE_TEST_SUITE_P(FlowsAndLaws, SmallDeformation,

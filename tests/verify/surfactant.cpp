@@ -1,5 +1,5 @@
-// A drop with surfactant, nearly a sphere: how its second harmonic and that of the concentration change, (3.19), and the steady shape in a slow
-// uniaxial extension, (3.20).
+// Nearly spherical drop with surfactant: the rates of change of the second harmonics of shape and concentration, (3.19), and the steady shape in a
+// slow uniaxial extension, (3.20).
 
 #include <cmath>
 
@@ -17,7 +17,7 @@
 namespace tanktread {
 namespace surfactant_test {
 
-/// d(f, g)/dt by (f, g), of the tension sigma at the concentration 1; mu = R_C = 1.
+/// Returns the matrix that maps (f, g) to d(f, g)/dt. `tension`: sigma at the concentration 1; mu = R_C = 1.
 Eigen::Matrix2d theory(double lambda, double tension, double elasticity, double diffusivity) {
   Eigen::Matrix2d mobility, load, motion;
   mobility << 10 * (lambda + 1), 6 * (3 * lambda + 2), 3 * lambda + 2, 13 * lambda + 12;
@@ -45,7 +45,7 @@ struct Laden {
   const spline::Space& space() const { return scene.body().space; }
   const Net& rest() const { return scene.body().rest; }
 
-  /// int N_A (n Y, Y) dG of the sphere, the first three columns for n Y.
+  /// Returns int N_A (n Y, Y) dG on the sphere. The first three columns belong to n Y.
   Eigen::MatrixX4d moments() const {
     Eigen::MatrixX4d sum = Eigen::MatrixX4d::Zero(space().n_points, 4);
     each_point([&](const spline::Element& element, const spline::Basis& basis, const surface::Point& p, double area) {
@@ -69,7 +69,7 @@ struct Laden {
     }
   }
 
-  /// y of the sphere with the displacement f Y n and the concentration 1 + g Y.
+  /// Returns the state y of the sphere with the displacement f Y n and the concentration 1 + g Y.
   Net displaced(double f, double g) const {
     membrane::MassMatrix mass(space());
     const Eigen::SparseMatrix<double> m0 = mass.update(rest());
@@ -83,7 +83,7 @@ struct Laden {
     return y;
   }
 
-  /// d(f, g)/dt at y.
+  /// Returns d(f, g)/dt at the state y.
   Eigen::Vector2d rates(const Net& y) {
     const double e = 1e-4;
     const Net slope = motion.velocity(y);
@@ -146,7 +146,7 @@ TEST(Surfactant, TheFreeEnergyOfADropLeftAloneFalls) {
   EXPECT_LT(largest - smallest, 0.1);
 }
 
-/// D/Ca where it is steady.
+/// Returns the steady D/Ca.
 double slope(double ca, double diffusivity, const std::vector<std::string>& equation) {
   std::vector<std::string> settings = {"Flow/type=uniaxial extension", "Surface/elements per side=5", "Solvers/projection=least squares",
                                        "Membrane/surface tension=" + std::to_string(1 / ca), "Time/tolerance=" + std::to_string(2e-4 * ca)};
@@ -159,7 +159,7 @@ double slope(double ca, double diffusivity, const std::vector<std::string>& equa
   state.step = motion::first_step(drop.motion, state, drop.scene.scene.time);
   const double mass = drop.surfactant.mass(drop.motion.coefficients(state.x, 0));
   while (state.time < 60 * ca) scheme->advance(drop.motion, state, 60 * ca);
-  EXPECT_NEAR(drop.surfactant.mass(drop.motion.coefficients(state.x, 0)) / mass, 1, 1e-13);  // round-off of some hundred steps
+  EXPECT_NEAR(drop.surfactant.mass(drop.motion.coefficients(state.x, 0)) / mass, 1, 1e-13);  // round-off of a few hundred steps
   return drop.scene.capsule->geometry().deformation(drop.motion.shape(state.x)).taylor_inertia / ca;
 }
 
@@ -169,7 +169,7 @@ TEST_P(SurfactantInExtension, DeformsADropAsTheoryOfSmallDeformationHasIt) {
   const double diffusivity = GetParam(), elasticity = 0.4 / 0.6, tension = 0.6;
   const std::vector<std::string> linear = {"Interface/surfactant/elasticity number=0.4"};
   const double coarse = slope(0.01, diffusivity, linear), middle = slope(0.005, diffusivity, linear), fine = slope(0.0025, diffusivity, linear);
-  const double limit = (8 * fine - 6 * middle + coarse) / 3;  // a parabola through three values
+  const double limit = (8 * fine - 6 * middle + coarse) / 3;  // the limit of a parabola through three values
   const double exact = 15. / 32 / tension * (35 * diffusivity + 4 * elasticity * tension) / (10 * diffusivity + elasticity * tension);
   EXPECT_NEAR(limit / exact, 1, 1e-4) << coarse << ' ' << middle << ' ' << fine;
 }

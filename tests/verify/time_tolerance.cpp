@@ -1,5 +1,5 @@
-// Time/tolerance bounds the error of a whole run for every scheme and viscosity ratio: a capsule in simple shear, Ca = 0.3, compared with an explicit
-// scheme with a much smaller tolerance on the same mesh. The error of D is taken at times half a unit apart.
+// Time/tolerance bounds the error of a whole run for every scheme and viscosity ratio. A capsule in simple shear, Ca = 0.3, is compared with an
+// explicit scheme with a much smaller tolerance on the same mesh. The error of D is evaluated at times half a unit apart.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ std::vector<double> deformations(const Scene& scene, const std::string& scheme, 
   return found;
 }
 
-/// Largest difference to the reference, divided by the tolerance.
+/// Returns the largest difference from the reference, divided by the tolerance.
 double error_over_tolerance(const Scene& scene, const std::vector<double>& reference, const std::string& scheme, double tolerance) {
   const std::vector<double> found = deformations(scene, scheme, tolerance);
   double largest = 0;
@@ -44,7 +44,7 @@ double error_over_tolerance(const Scene& scene, const std::vector<double>& refer
   return largest / tolerance;
 }
 
-// The reference, bs3 at 1e-6, errs by 1e-6: less than a twentieth of each bound.
+// The error of the reference, bs3 with the tolerance 1e-6, is 1e-6: less than a twentieth of each bound.
 TEST(TimeTolerance, BoundsTheErrorOfARunForEveryViscosityRatio) {
   for (const char* ratio : {"0.2", "1", "5", "20"}) {
     const Scene scene{.ratio = ratio};
@@ -72,7 +72,7 @@ TEST(TimeTolerance, BoundsTheErrorOfExplicitSchemes) {
 TEST(TimeToleranceLong, BoundsTheErrorOverThreeDecades) {
   for (const char* ratio : {"0.05", "0.2", "1", "2", "5", "10", "50"}) {
     const Scene scene{.n = 6, .end = 7.5, .ratio = ratio};
-    const std::vector<double> reference = deformations(scene, "bs3", 1e-7);  // errs by 4e-7, a hundredth of the least bound
+    const std::vector<double> reference = deformations(scene, "bs3", 1e-7);  // its error is 4e-7, a hundredth of the smallest bound
     for (const char* scheme : {"tr-bdf2", "bdf3", "auto"})
       for (const auto& [tolerance, bound] : {std::pair(1e-3, 2.0), {1e-4, 2.0}, {1e-5, 4.0}})
         EXPECT_LT(error_over_tolerance(scene, reference, scheme, tolerance), bound) << scheme << " " << ratio << " " << tolerance;

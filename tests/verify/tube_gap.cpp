@@ -1,4 +1,4 @@
-// A sphere almost as wide as the tube: what is integrated across the gap keeps the tolerance asked for.
+// Sphere almost as wide as the tube: integrals across the gap keep the requested tolerance.
 
 #include <cmath>
 #include <numeric>
@@ -36,7 +36,7 @@ Net layer(const spline::Space& space, const Net& x, CrossLayer::Kernel kernel, d
   return u;
 }
 
-/// Largest error at this tolerance over the largest value.
+/// Returns the largest error at this tolerance, divided by the largest value.
 double error(const spline::Space& space, const Net& x, CrossLayer::Kernel kernel, double tolerance, const Net& f, const Net& at) {
   const Net u = layer(space, x, kernel, tolerance, f, at), exact = layer(space, x, kernel, 1e-12, f, at);
   return (u - exact).rowwise().norm().maxCoeff() / exact.rowwise().norm().maxCoeff();
@@ -47,7 +47,7 @@ TEST(TubeGap, LayersKeepTheirToleranceAcrossIt) {
   Net rings(wall.net.rows(), 3);
   for (int i = 0; i < wall.space.n_points; ++i)
     rings.row(i) = surface::value(wall.space, wall.net, wall.space.collocation[static_cast<std::size_t>(i)].front()).transpose();
-  for (const double gap : {0.2, 0.02}) {  // over R_C
+  for (const double gap : {0.2, 0.02}) {  // gap divided by R_C
     const Sphere inside = sphere(1 / (1 + gap), Vec3::Zero(), 6);
     const Net sites = coupling::collocation_matrix(inside.space) * inside.net;
     const Net load = field(inside.net, Vec3(3, 1, -2)), traction = field(wall.net, Vec3(2, -1, 1));

@@ -1,5 +1,5 @@
-// An interface of viscosity ratio lambda that keeps the shape of a sphere and bears no load: three routes to the pressure drop, of which
-// the paper's sign of (2.7) misses the other two.
+// Interface with viscosity ratio lambda that keeps the shape of a sphere and bears no load. The pressure drop is computed in three ways. With the
+// sign of (2.7) as printed in the paper, that equation contradicts the other two.
 
 #include <cmath>
 
@@ -20,7 +20,7 @@ struct Interface {
   coupling::Tube::Checks checks;
 };
 
-/// v = v_inf + (1 - lambda) H v + u(v)                                                                            (2.5)
+/// Solves v = v_inf + (1 - lambda) H v + u(v) (2.5)
 Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   coupling::Ranks ranks;
   Phases phases;
@@ -38,7 +38,7 @@ Interface interface(const Sphere& sphere, const Duct& duct, double ratio) {
   stokes::Rows<double> rows;
   layer.assemble(sphere.net, all, rows);
   const Eigen::SparseMatrix<double> sites = coupling::collocation_matrix(sphere.space);
-  Eigen::MatrixXd free = (ratio - 1) * rows;  // R - (1 - lambda) H, dense, as the preconditioner
+  Eigen::MatrixXd free = (ratio - 1) * rows;  // dense matrix R - (1 - lambda) H, the preconditioner
   for (int k = 0; k < sites.outerSize(); ++k)
     for (Eigen::SparseMatrix<double>::InnerIterator at(sites, k); at; ++at)
       for (int c = 0; c < 3; ++c) free(3 * at.row() + c, 3 * at.col() + c) += at.value();
@@ -68,16 +68,16 @@ TEST(InterfaceInATube, HasOnePressureDropByThreeRoutes) {
     for (const double ratio : {0.2, 5., 1e4}) {
       const Interface is = interface(sphere, duct, ratio);
       const double drop = is.response.pressure_drop;
-      EXPECT_NEAR(is.checks.pressure_by_flux / drop, 1, 2e-4) << a << ' ' << ratio;  // 1e-5 to 1e-4, of the meshes
+      EXPECT_NEAR(is.checks.pressure_by_flux / drop, 1, 2e-4) << a << ' ' << ratio;  // the meshes cause errors of 1e-5 to 1e-4
       EXPECT_NEAR(is.checks.pressure_by_force / drop, 1, 2e-4) << a << ' ' << ratio;
-      EXPECT_GT(drop * (ratio - 1), 0) << ratio;  // a stiffer blob costs pressure
+      EXPECT_GT(drop * (ratio - 1), 0) << ratio;  // a more viscous interior increases the pressure drop
     }
   }
 }
 
 TEST(InterfaceInATube, BecomesTheRigidSphere) {
   const Interface is = interface(sphere(0.5, Vec3::Zero(), 6), circular_duct(), 1e4);
-  EXPECT_NEAR(is.response.pressure_drop / 0.52183918, 1, 5e-4);  // 2e-4 is left of 1/lambda, 1e-4 is the sphere's mesh
+  EXPECT_NEAR(is.response.pressure_drop / 0.52183918, 1, 5e-4);  // 2e-4 is due to 1/lambda, 1e-4 to the mesh of the sphere
   const Eigen::VectorXd along = is.velocity.col(0);
   EXPECT_LT(along.maxCoeff() - along.minCoeff(), 2e-3);
   EXPECT_NEAR(along.mean(), 1.67984674, 2e-4);

@@ -1,5 +1,5 @@
-// The rigid sphere in a tube, held against the exact solution on the axis, the asymptotic one off it, and values that other
-// discretisations agree on.
+// Rigid sphere in a tube, compared with the exact solution on the axis, the asymptotic solution off it, and values on which other discretisations
+// agree.
 
 #include <cmath>
 #include <numbers>
@@ -15,8 +15,8 @@ using std::numbers::pi;
 
 double error(double value, double exact) { return std::abs(value / exact - 1); }
 
-/// The exact multipole solution on the axis, a over R_T: drags K1 (towed) and K2 (held, 2 V in front), speed of the free sphere over
-/// the mean velocity, and the pressure drops R_T/(mu V).
+/// Exact multipole solution on the axis: radius a divided by R_T; drags K1 (towed) and K2 (held, with the factor 2 V in front); speed of the free
+/// sphere divided by the mean velocity; pressure drops in units of mu V/R_T.
 struct Exact {
   double a, towed, held, speed, free_drop, held_drop;
 };
@@ -39,7 +39,8 @@ void expect_exact(RigidSphere& sphere, const Exact& is, const Tolerance& within)
 }
 
 TEST(RigidSphereInATube, OnTheAxisIsTheMultipoleSolution) {
-  // The default wall. With 602 points on the sphere 2e-6, 3e-6 and 1.6e-4 in the drags, of which half is the sphere's (order 4).
+  // With the default wall and 602 points on the sphere, the errors of the drags are 2e-6, 3e-6 and 1.6e-4, of which half is due to the sphere (order
+  // 4).
   const Tolerance within[] = {{1e-5, 1e-6, 1e-4}, {1e-5, 1e-6, 1e-4}, {3e-4, 1e-4, 1e-4}};
   for (int k = 0; k < 3; ++k) {
     RigidSphere s(sphere(exact[k].a, Vec3::Zero(), 10), circular_duct());
@@ -56,25 +57,27 @@ TEST(RigidSphereInATube, DoesNotFeelWhereTheTubeEnds) {
   const Net place = coupling::placed(Vec3::Zero());
   for (const double a : {0.5, 0.8}) {
     const Sphere sphere = tanktread::sphere(a, Vec3::Zero(), 6);
-    RigidSphere s(sphere, circular_duct()), longer(sphere, circular_duct(24, 40, 4 * pi));  // no fewer elements around the sphere
+    // the longer tube has no fewer elements around the sphere
+    RigidSphere s(sphere, circular_duct()), longer(sphere, circular_duct(24, 40, 4 * pi));
     EXPECT_LT(error(longer.body->motion(place).velocity[0], s.body->motion(place).velocity[0]), 1e-5) << a;
     EXPECT_LT(error(longer.body->pressure_drop(place), s.body->pressure_drop(place)), 1e-5) << a;
   }
 }
 
 TEST(RigidSphereInATube, OffTheAxisMovesAsOnOtherMeshes) {
-  // 40 x 40 graded points around spherical harmonics; 0.2 off the axis of a tube that is not much wider.
+  // Reference: 40 x 40 graded wall points, and spherical harmonics on the sphere, which is 0.2 off the axis with a gap of only 0.2.
   RigidSphere s(sphere(0.6, Vec3(0, 0.2, 0), 8), circular_duct());
-  const Net place = coupling::placed(Vec3(3, 0.2, 0));  // anywhere along the tube
+  const Net place = coupling::placed(Vec3(3, 0.2, 0));  // the axial position does not matter
   const coupling::RigidMotion motion = s.body->motion(place);
   EXPECT_LT(error(motion.velocity[0], 1.459211), 2e-5);
   EXPECT_LT(error(motion.angular_velocity[2], 0.34762), 2e-4);
   EXPECT_LT(error(s.body->pressure_drop(place), 2.45144), 2e-4);
-  EXPECT_LT(motion.velocity.tail<2>().norm(), 1e-6);  // reversible: no migration
+  EXPECT_LT(motion.velocity.tail<2>().norm(), 1e-6);  // no migration because the problem is reversible
 }
 
 TEST(RigidSphereInATube, OffTheAxisAddsTheAsymptoticPressureDrop) {
-  // dp R/(mu V) = (160/3) a^3 b^2 + ...: the next term is about three times a^2 of it, times four at b = 0.3.
+  // Asymptotically dp R/(mu V) = (160/3) a^3 b^2 + ... At b = 0.3 the next term is about 3 a^2 times this one, so it is four times as large for twice
+  // the radius.
   double ratio[2];
   int k = 0;
   for (const double a : {0.05, 0.1}) {
@@ -82,7 +85,7 @@ TEST(RigidSphereInATube, OffTheAxisAddsTheAsymptoticPressureDrop) {
     ratio[k++] = s.body->pressure_drop(coupling::placed(Vec3(0, 0, 0.3))) / (160. / 3 * a * a * a * 0.09);
   }
   EXPECT_NEAR(ratio[0], 1, 0.01);
-  EXPECT_NEAR((4 * ratio[0] - ratio[1]) / 3, 1, 1e-3);  // what is left of the second order
+  EXPECT_NEAR((4 * ratio[0] - ratio[1]) / 3, 1, 1e-3);  // the error after extrapolation of the second-order term
 }
 
 }  // namespace tube_rigid_test

@@ -1,5 +1,5 @@
 #pragma once
-// A sphere in a tube, for tests that hold it against exact solutions.
+// Sphere in a tube, for comparisons with exact solutions.
 
 #include <cmath>
 #include <memory>
@@ -25,7 +25,7 @@ struct Sphere {
   Vec3 centre;
 };
 
-/// n elements a side of a cube.
+/// Returns a sphere of the cube mesh with n elements per side.
 inline Sphere sphere(double a, const Vec3& centre, int n) {
   const spline::TMesh mesh = spline::cube(n);
   Sphere s{spline::space(mesh, spline::ExtraordinaryRule::g1), {}, a, centre};
@@ -35,7 +35,7 @@ inline Sphere sphere(double a, const Vec3& centre, int n) {
   return s;
 }
 
-/// m elements around x1, r from pole to pole.
+/// Returns a sphere with poles on the x1 axis, m elements around it and r from pole to pole.
 inline Sphere polar_sphere(double a, const Vec3& centre, int m, int r) {
   spline::PolarMesh mesh;
   mesh.azimuthal = m, mesh.meridional = r, mesh.poles = spline::PoleRule::c1;
@@ -46,7 +46,7 @@ inline Sphere polar_sphere(double a, const Vec3& centre, int m, int r) {
   return s;
 }
 
-/// A duct of mean velocity 1 and viscosity 1, and its wall.
+/// Duct with mean velocity 1 and viscosity 1, and its wall.
 struct Duct {
   std::shared_ptr<const stokes::DuctFlow> flow;
   surface::TubeWall wall;
@@ -62,7 +62,7 @@ struct Duct {
   }
 };
 
-/// Of the unit circle; the default wall unless said otherwise.
+/// Returns a duct of radius 1; by default with the default wall.
 inline Duct circular_duct(int around = 24, int along = 25, double length = 2 * std::numbers::pi) {
   surface::TubeOptions options;
   options.present = true;
@@ -71,7 +71,7 @@ inline Duct circular_duct(int around = 24, int along = 25, double length = 2 * s
   return {std::make_shared<stokes::DuctFlow>(options, 1.0, 1.0), options, length};
 }
 
-/// The rigid sphere in the duct.
+/// Rigid sphere in the duct.
 struct RigidSphere {
   Sphere sphere;
   coupling::Ranks ranks;
@@ -93,14 +93,14 @@ struct RigidSphere {
     body = std::make_unique<coupling::FreeBodyInTube>(*resistance, sphere.centre, radius, flow, 1.0, solvers);
   }
 
-  /// Force density on the fluid of the sphere that is towed along the axis with unit speed in quiescent fluid, and of the one that is
-  /// held in the flow.
+  /// Return the force density on the fluid: of the sphere towed along the axis with unit speed in quiescent fluid, and of the sphere held in the
+  /// flow.
   Net towed() {
     return resistance->force_density(coupling::rigid_velocity(resistance->surface(), {Vec3::UnitX(), Vec3::Zero()}, Vec3::Zero()));
   }
   Net held() { return resistance->force_density(-resistance->ambient(flow)); }
 
-  /// Axial force on the fluid over 6 pi mu a.
+  /// Returns the axial force on the fluid divided by 6 pi mu a.
   double drag(const Net& f) const { return resistance->force(f)[0] / (6 * std::numbers::pi * radius); }
 };
 

@@ -1,5 +1,5 @@
-// Tubes that are not round, where no exact solution is known: values on which finer and finer meshes around spherical harmonics settled;
-// and the empty tube.
+// Tubes that are not round, for which no exact solution is known: compared with values to which results on finer and finer wall meshes converged,
+// with spherical harmonics on the sphere. Also the empty tube.
 
 #include <cmath>
 #include <numbers>
@@ -54,7 +54,7 @@ TEST(TubeSections, TrilobeCarriesASphereOffItsAxis) {
   const auto profile = std::make_shared<stokes::BoundaryProfile>(outline, 96);
   const Duct duct(std::make_shared<stokes::DuctFlow>(outline, profile, 1.0, 1.0), o, 2 * pi);
   const Motion is = free_sphere(duct, 0.5, Vec3(0, 0.05, -0.05), 8);
-  EXPECT_NEAR(is.speed / 1.693137, 1, 1e-4);  // that was a spline of fewer points: the outlines differ a little
+  EXPECT_NEAR(is.speed / 1.693137, 1, 1e-4);  // the reference used a spline with fewer points, so its outline is slightly different
   EXPECT_NEAR(is.drop / 0.826648, 1, 5e-4);
 }
 
@@ -66,13 +66,13 @@ TEST(TubeSections, SquareWithItsFourCornersCarriesASphere) {
   const Motion half = free_sphere(duct, 0.5, Vec3::Zero(), 8), wide = free_sphere(duct, 0.8, Vec3::Zero(), 8);
   EXPECT_NEAR(half.speed / 1.808701, 1, 5e-5);
   EXPECT_NEAR(half.drop / 0.320876, 1, 2e-4);
-  EXPECT_NEAR(wide.speed / 1.42892, 1, 3e-4);  // six elements a side resolve the gap of 0.2 R_T so far
+  EXPECT_NEAR(wide.speed / 1.42892, 1, 3e-4);  // accuracy of this mesh of the sphere across the gap of 0.2 R_T
   EXPECT_NEAR(wide.drop / 4.3359, 1, 1e-3);
 }
 
 TEST(TubeSections, EmptyTubeIsPoiseuilleAndSampson) {
-  // With a unit of pressure drop and no row (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, end losses of an orifice at either end; and what
-  // other meshes gave.
+  // With unit pressure drop and without equation (2.7): Q/dp = pi/(8 (L + 3 pi/8)) to 2 %, where 3 pi/8 accounts for the end losses of an orifice at
+  // each end; compared also with results on other meshes.
   const double lengths[] = {4, 2 * pi}, known[] = {0.077170, 0.053449};
   for (const int k : {0, 1}) {
     const coupling::Wall wall(circular_duct(21, 17, lengths[k]).wall, {});

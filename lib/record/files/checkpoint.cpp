@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Step of a snapshot's file name, or -1.
+/// Returns the step in a snapshot's file name, or -1 if it is not such a name.
 int step_of(const std::string& name) {
   constexpr std::string_view before = "snapshot_", after = ".hdf";
   if (!name.starts_with(before) || !name.ends_with(after)) return -1;
@@ -32,7 +32,7 @@ int step_of(const std::string& name) {
   return error == std::errc() && end == last ? step : -1;
 }
 
-/// The numbers of a checkpoint by their names, which stand one a line.
+/// Returns the numbers of a checkpoint by their names, which are stored one per line.
 std::map<std::string, double> numbers(const hdf::Id& file) {
   hdf::Shape shape;
   const std::vector<double> values = hdf::read_doubles(file, "checkpoint/numbers", shape);
@@ -75,7 +75,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   }
   checkpoint.numbers = numbers(file);
   for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
-  const auto keys = hdf::attribute_names(file, "checkpoint");  // versions before had no checksum
+  const auto keys = hdf::attribute_names(file, "checkpoint");  // checkpoints of earlier versions have no checksum
   if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
     throw std::runtime_error(path.string() + ": the checkpoint is not as it was written");
   return checkpoint;
@@ -116,7 +116,7 @@ namespace {
 
 std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
 
-/// Nets of a kind, by their numbers.
+/// Store or read nets of one kind under numbered names.
 void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
   for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
 }

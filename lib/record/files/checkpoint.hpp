@@ -1,5 +1,5 @@
 #pragma once
-// Saved steps: what a run goes on from.
+// Checkpoints, from which a run is resumed.
 
 #include <filesystem>
 #include <map>
@@ -13,39 +13,40 @@
 
 namespace tanktread::output {
 
-/// What a run needs to go on, to the last bit: control nets, the frozen operator's geometry, the memory of the step controller, the
-/// effective deck. Names are free but hold no '/'. Doubles come back with the same bits.
+/// Data from which a run is resumed with bitwise the same results: control nets, the geometry of the frozen operator, the memory of the step
+/// controller, the effective deck. Names must not contain '/'. Doubles are stored exactly.
 struct Checkpoint {
   std::map<std::string, Eigen::MatrixXd> arrays;
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
 };
 
-/// Sixteen digits, others for any checkpoint that differs by a bit, short of a freak of chance; an attribute of `/checkpoint`.
+/// Returns a checksum of sixteen digits. Checkpoints that differ by a bit have different checksums, except by an improbable collision. It is an
+/// attribute of `/checkpoint`.
 std::string checksum(const Checkpoint& checkpoint);
 
-/// `snapshot_000123.hdf` for step 123.
+/// Returns the file name of a snapshot: `snapshot_000123.hdf` for step 123.
 std::string snapshot_name(int step);
 
-/// The checkpoint of a snapshot. Throws RunFailure when the system does not open it, std::runtime_error when it is damaged, be it by one bit.
+/// Reads the checkpoint of a snapshot. Throws RunFailure if the system cannot open it, std::runtime_error if it is damaged, even by one bit.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
-/// A snapshot file of a directory.
+/// Snapshot file in a directory.
 struct Snapshot {
   std::filesystem::path path;
   int step = 0;
 };
 
-/// All of them, by step; readable or not.
+/// Returns all snapshot files of a directory, sorted by step, readable or not.
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
-/// What a list of pictures needs of a snapshot.
+/// Data of a snapshot for the list of snapshots.
 struct Picture {
-  double time = 0;  ///< the number "picture time" of the checkpoint, or "time"
-  std::string run;  ///< its text "run", the identifier of the run
+  double time = 0;  ///< time of the snapshot: the number "picture time" of the checkpoint, or "time" if there is none
+  std::string run;  ///< text "run" of the checkpoint, the identifier of the run
 };
 
-/// Empty when the file cannot be read.
+/// Returns these data of a snapshot file; nothing if the file cannot be read.
 std::optional<Picture> pictured(const std::filesystem::path& path);
 
 struct Damaged {
@@ -56,20 +57,20 @@ struct Damaged {
 struct Saved {
   Snapshot file;
   Checkpoint checkpoint;
-  std::vector<Damaged> damaged;  ///< newer ones, the newest first
+  std::vector<Damaged> damaged;  ///< damaged snapshots that are newer, the newest first
 };
 
-/// The newest snapshot of a directory that is sound. None: empty. Throws RunFailure when the system does not read one that is newer (permission, a
-/// failing disk), since it may be sound.
+/// Returns the newest undamaged checkpoint of a directory; nothing if there is none. Throws RunFailure if the system cannot read a newer one
+/// (permission, a failing disk), because that one may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
-/// Adds all of `state` to the checkpoint: number "time" among others.
+/// Adds all of `state` to the checkpoint, for example the number "time".
 void store(const motion::State& state, Checkpoint& checkpoint);
 
-/// The same state, to the last bit. Throws std::out_of_range where the checkpoint holds none.
+/// Returns the stored state, bitwise the same. Throws std::out_of_range if the checkpoint lacks a part of it.
 motion::State stored_state(const Checkpoint& checkpoint);
 
-/// Whether all ranks hold the same state, to the last bit. Collective.
+/// Returns true if all ranks hold bitwise the same state. Collective.
 bool equal_on_all_ranks(const motion::State& state);
 
 }  // namespace tanktread::output

@@ -38,7 +38,7 @@ std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
   return found;
 }
 
-/// What is done to a directory; the system's refusal becomes a UserError.
+/// Runs `act` on a directory. Turns errors of the file system into a UserError.
 template <class Act>
 void in_directory(const fs::path& directory, const Act& act) try {
   act();
@@ -50,10 +50,10 @@ void in_directory(const fs::path& directory, const Act& act) try {
   throw RunFailure(std::string("cannot ") + what + " " + path.string() + ": " + std::strerror(errno));
 }
 
-/// Some file systems know no fsync, of directories above all.
+/// Flushes a file to the disk. Errors of file systems without fsync, in particular for directories, are ignored.
 bool synced(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS; }
 
-/// An existing file or directory; a pipe does not let wait.
+/// Opens an existing file or directory for reading, without blocking on a pipe.
 struct Opened {
   explicit Opened(const fs::path& path) : number(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     if (number < 0) fail("read", path);

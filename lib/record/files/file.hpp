@@ -1,5 +1,5 @@
 #pragma once
-// Files that are whole at every moment: written beside their place, then renamed into it; and the directory of a run.
+// Files that are complete at any time: each is written under another name and then renamed. Also the directory of a run.
 
 #include <bit>
 #include <cinttypes>
@@ -13,7 +13,7 @@
 
 namespace tanktread::output {
 
-/// Mixes words into one number that every bit of them changes (a chain of invertible steps, the constants of FNV-1a).
+/// Checksum that depends on every bit of its words (a chain of invertible steps, with the constants of FNV-1a).
 class Checksum {
  public:
   void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
@@ -23,7 +23,7 @@ class Checksum {
     for (const char c : text) add(static_cast<std::uint64_t>(static_cast<unsigned char>(c)));
   }
 
-  /// Sixteen hexadecimal ones.
+  /// Returns the checksum as sixteen hexadecimal digits.
   std::string digits() const {
     char text[17];
     std::snprintf(text, sizeof text, "%016" PRIx64, sum_);
@@ -34,39 +34,39 @@ class Checksum {
   std::uint64_t sum_ = 0xcbf29ce484222325u;
 };
 
-/// Whether bytes are on the disk itself, which a failure of power leaves as it is, before anything says that they are.
+/// Says whether bytes are flushed to the disk, so that they survive a power failure, before a write returns.
 enum class Durable { no, yes };
 
-/// Puts `bytes` at `path` in one step: a reader, or a run that is killed here, finds the old file or the new one, never half of one.
-/// Throws RunFailure (disk full, no permission).
+/// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed here. Throws RunFailure (disk
+/// full, no permission).
 void write_whole(const std::filesystem::path& path, std::string_view bytes, Durable durable = Durable::no);
 
-/// Returns once a file, or the names of a directory, are on the disk. Throws RunFailure.
+/// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
 
-/// Throw RunFailure with the system's reason where a file does not open (absent, no permission, too many open files, a pipe), or cannot be read to
-/// its end. A file that passes and is not understood is damaged.
+/// Throw RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe), or cannot be read to
+/// its end. If a file passes and still cannot be interpreted, it is damaged.
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 
-/// Gives a file another name, on which no run goes on: `<name>.damaged`, or `<name>.damaged.2` and so on. Returns it. Throws RunFailure.
+/// Renames a file to `<name>.damaged`, or `<name>.damaged.2` and so on, which no run is resumed from. Returns the new path. Throws RunFailure.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
-/// Throws UserError where a directory holds results of a run.
+/// Throws UserError if a directory holds results of a run.
 void check_vacant(const std::filesystem::path& directory);
 
-/// Makes `directory` ready for a run: creates it, and removes the results of an earlier run and unfinished files (only names that
-/// a run writes). Throws UserError where it cannot.
+/// Prepares `directory` for a run: creates it, and removes the results of an earlier run and unfinished files (only names that a run writes). Throws
+/// UserError if that fails.
 void start_directory(const std::filesystem::path& directory);
 
-/// The same for `--resume`: removes only unfinished files.
+/// Prepares `directory` for `--resume`: removes only unfinished files. Throws UserError if that fails.
 void tidy_directory(const std::filesystem::path& directory);
 
-/// Holds a directory, which is made where there is none, for this process alone. It is free again when this object or the process ends, however
-/// it ends; nothing is left behind. File systems that know no locks, and directories that cannot be opened, hold nothing.
+/// Lock that reserves a directory for this process, and creates it if necessary. The lock ends with this object or with the process, however it ends,
+/// and leaves no file behind. If the file system has no locks or the directory cannot be opened, nothing is locked.
 class Occupation {
  public:
-  /// Throws UserError when another process holds the directory.
+  /// Throws UserError if another process has locked the directory.
   explicit Occupation(const std::filesystem::path& directory);
   ~Occupation();
   Occupation(const Occupation&) = delete;
@@ -76,14 +76,14 @@ class Occupation {
   int descriptor_ = -1;
 };
 
-/// Row-major; an empty shape is a number.
+/// Named array of numbers. Values are row-major; an empty shape is a scalar.
 struct Array {
   std::string name, unit, description;
   std::vector<double> values;
   std::vector<std::size_t> shape;
 };
 
-/// HDF5: `/<name>`, doubles with attributes `unit` and `description`. In one step (write_whole). Throws RunFailure.
+/// Writes arrays to an HDF5 file, atomically (write_whole): `/<name>`, doubles with attributes `unit` and `description`. Throws RunFailure.
 void write_arrays(const std::filesystem::path& path, const std::vector<Array>& arrays);
 
 }  // namespace tanktread::output

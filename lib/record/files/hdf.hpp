@@ -1,5 +1,5 @@
 #pragma once
-// The few words of HDF5 that the results need. Included only by the .cpp files of this room.
+// Wrappers of the HDF5 functions that the results need. Included only by the .cpp files of this module.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace tanktread::output::hdf {
 
-/// Owns one HDF5 identifier. Throws std::runtime_error with `what` when HDF5 gave none.
+/// Owner of one HDF5 identifier. Throws std::runtime_error with `what` if the identifier is invalid.
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t), const std::string& what);
@@ -26,30 +26,31 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// A new file in memory, and its bytes as they would stand on disk: what is written to the disk goes there in one piece (write_whole), and a disk
-/// that refuses is met with the system's reason and outside of HDF5, which does not recover from it. They are the file's own, not a copy, and stand
-/// until it is written to again or closed.
+/// Return a new file in memory, and its bytes as they would be on the disk. They are written to the disk in one piece (write_whole). So write errors
+/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes belong to the file, are no copy, and
+/// are valid until it is written to again or closed.
 Id new_file();
 std::string_view image(const Id& file);
 
-/// An existing file, for reading. Throws RunFailure when the system does not open it as a file, std::runtime_error when it is no HDF5 file.
+/// Opens an existing file for reading. Throws RunFailure if the system cannot open it as a file, std::runtime_error if it is not an HDF5 file.
 Id open(const std::filesystem::path& path);
 
-using Shape = std::vector<hsize_t>;  ///< empty: a scalar
+using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
 
-/// Datasets of a file, row-major; groups on the way to `group/name` are made. `read_doubles` fills `shape` with what was found.
+/// Write or read datasets of a file, row-major. Missing groups of a name `group/name` are created. `read_doubles` sets `shape` to the shape of the
+/// dataset.
 void write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
 void write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
 void write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);
 void write(hid_t file, const std::string& name, const std::string& text);
-void write_group(hid_t file, const std::string& name);  ///< an empty one
+void write_group(hid_t file, const std::string& name);  ///< writes an empty group
 std::vector<double> read_doubles(hid_t file, const std::string& name, Shape& shape);
 std::string read_text(hid_t file, const std::string& name);
 
-/// What stands after `group/` in the names of the datasets below a group, in alphabetical order; none where there is no such group.
+/// Returns the names of the datasets below a group, without `group/`, in alphabetical order; empty if there is no such group.
 std::vector<std::string> datasets(hid_t file, const std::string& group);
 
-/// Attributes of the object `name`.
+/// Write or read attributes of the object `name`.
 void attribute(hid_t file, const std::string& name, const std::string& key, const std::string& text);
 void attribute(hid_t file, const std::string& name, const std::string& key, std::span<const std::int64_t> values);
 std::string read_attribute(hid_t file, const std::string& name, const std::string& key);

@@ -16,8 +16,8 @@ namespace tanktread::output {
 
 namespace {
 
-/// For each place, the first of all places that coincide with it. They are swept along a direction that no symmetry of a mesh has, so
-/// that few come near one another.
+/// Returns, for each point, the index of the first point that coincides with it. The points are sorted along a direction that is unrelated to the
+/// symmetries of meshes, so that only few are close to each other in this order.
 std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
@@ -83,9 +83,9 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
 
 namespace {
 
-constexpr int n_parts = 6;  // of a jet
+constexpr int n_parts = 6;  // parts of a jet: the position and five derivatives
 
-/// What each Bezier point of an element adds to the jets at the nodes of its cell. Shape (n, 6, n): point, part of the jet, node.
+/// Returns the contributions of each Bezier point of an element to the jets at the nodes of its cell. Shape (n, 6, n): point, part of the jet, node.
 std::vector<double> jet_table(int p) {
   constexpr std::array<std::array<int, 2>, n_parts> derivatives{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   const auto order = node_order(p);
@@ -101,10 +101,10 @@ std::vector<double> jet_table(int p) {
   return table;
 }
 
-/// Normals of an element, of any length, from the jets at the nodes of its cell.
+/// Returns normals of an element, not normalised, from the jets at the nodes of its cell.
 std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surface::Jet> jets) {
-  constexpr double degenerate = 1e-6;  // |a1 x a2| over |a1|_max |a2|_max of the element
-  constexpr double inset = 1e-4;       // of the way to the middle
+  constexpr double degenerate = 1e-6;  // threshold of |a1 x a2| divided by |a1|_max |a2|_max of the element
+  constexpr double inset = 1e-4;       // shift towards the middle of the element, as a fraction of the distance
   double longest_1 = 0, longest_2 = 0;
   std::vector<Vec3> normals;
   for (const surface::Jet& here : jets) {
@@ -128,7 +128,7 @@ Nodes::Nodes(surface::BezierMap map, LagrangeMesh mesh) : map_(std::move(map)), 
   for (const surface::Block& block : map_.blocks()) tables_[block.degree] = jet_table(block.degree);
 }
 
-/// Those at the nodes of its cell; the element's Bezier points.
+/// Sets the jets at the nodes of the element's cell. Returns the element's Bezier points.
 Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>& jets) const {
   const int n = map_.n_bezier(element);
   Points points;
@@ -144,7 +144,7 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
   return points;
 }
 
-/// Calls use(patch, nodes, jets) for every element, the last first: what is set again is from the first element that has the node.
+/// Calls use(patch, nodes, jets) for every element, the last one first. A shared node thus gets the value of the first element that has it.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;

@@ -14,33 +14,35 @@
 
 namespace tanktread::output {
 
-/// One cell an element, of the element's degree p, with (p + 1)^2 nodes at (i/p, j/p); neighbours share the nodes that coincide.
+/// Lagrange mesh of a surface: one cell per element, of the element's degree p, with (p + 1)^2 nodes at (i/p, j/p). Neighbouring cells share
+/// coinciding nodes.
 ///
-/// Order of the nodes of a cell (VTK): corners (0,0) (p,0) (p,p) (0,p); edges j = 0, i = p, j = p, i = 0, each with its index
-/// increasing; then the interior, i fastest. Nodes are numbered as they first come up, cell after cell.
+/// Order of the nodes of a cell (VTK): corners (0,0) (p,0) (p,p) (0,p); edges j = 0, i = p, j = p, i = 0, each with increasing index; then the
+/// interior, i fastest. Nodes are numbered in the order in which they first occur, cell by cell.
 struct LagrangeMesh {
   std::vector<std::int64_t> connectivity;  ///< node numbers, cell after cell
-  std::vector<std::int64_t> offsets;       ///< n_cells + 1: where the nodes of a cell begin
-  std::vector<spline::Site> sites;         ///< of every node, on the first element that has it: to sample what is no field of the space
+  std::vector<std::int64_t> offsets;       ///< (n_cells + 1) index in `connectivity` at which the nodes of each cell begin
+  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are no spline fields
 };
 
-/// `net` decides which nodes coincide; the unstressed surface is the best choice, since it does not change and never touches itself.
+/// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it
+/// does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
-/// (i, j) of the nodes of a cell of degree p, in their order.
+/// Returns (i, j) of the nodes of a cell of degree p, in their order.
 std::vector<std::array<int, 2>> node_order(int p);
 
-/// The nodes of a surface's Lagrange mesh, and what any number of fields are there.
+/// Evaluates fields at the nodes of a surface's Lagrange mesh.
 class Nodes {
  public:
   Nodes(surface::BezierMap map, LagrangeMesh mesh);
 
   const LagrangeMesh& mesh() const { return mesh_; }
 
-  /// A field with control values (N, 3). Shape (n_nodes, 3).
+  /// Returns the values of a field with control values of shape (N, 3), at the nodes. Shape (n_nodes, 3).
   Net values(const Net& control_values) const;
 
-  /// Calls use(node, before, now) for every node in order, with places and derivatives of two surfaces on the first element that has it.
+  /// Calls use(node, before, now) for every node in order, with positions and derivatives of two surfaces on the first element that has the node.
   template <class Use>
   void each_node(const Net& before, const Net& now, Use use) const {
     std::vector<surface::Jet> jets_before, jets_now;
@@ -52,19 +54,19 @@ class Nodes {
     }
   }
 
-  /// Exact outward unit normals, the mean over the elements that meet there. Shape (n_nodes, 3). Where an element degenerates (a pole) its
-  /// normal is taken a hair inside.
+  /// Returns exact outward unit normals, averaged over the elements that meet at a node. Shape (n_nodes, 3). If an element degenerates at a node (a
+  /// pole), its normal is evaluated slightly inside.
   Net normals(const Net& net) const;
 
  private:
-  using Points = std::array<double, 3 * (spline::max_degree + 1) * (spline::max_degree + 1)>;  ///< shape (3, n_bezier), as far as they go
+  using Points = std::array<double, 3 * (spline::max_degree + 1) * (spline::max_degree + 1)>;  ///< shape (3, n_bezier); the rest is not used
   template <class Use>
   void each_cell(const Net& net, Use use) const;
   Points jets(int element, const Net& net, std::vector<surface::Jet>& jets) const;
 
   surface::BezierMap map_;
   LagrangeMesh mesh_;
-  std::map<int, std::vector<double>> tables_;  ///< by degree
+  std::map<int, std::vector<double>> tables_;  ///< jet_table of each degree
 };
 
 }  // namespace tanktread::output

@@ -1,5 +1,5 @@
 #pragma once
-// What a run says while it runs, and when it is done.
+// Progress bar of a run, and the table at its end.
 
 #include <chrono>
 #include <cstdio>
@@ -11,16 +11,16 @@
 
 namespace tanktread::output {
 
-/// One finished step.
+/// Data of a finished step.
 struct Moment {
-  double time = 0;  ///< simulated
+  double time = 0;  ///< simulated time
   int step = 0;
-  int iterations = 0;      ///< of the step's solver
-  double deformation = 0;  ///< taylor_inertia
+  int iterations = 0;      ///< nonlinear iterations of the step
+  double deformation = 0;  ///< Taylor parameter D (taylor_inertia)
 };
 
-/// A bar that is drawn over itself where `out` is a terminal; elsewhere one plain line at most every 3 seconds, and then only after
-/// another 5 % of the run or a minute; nothing when quiet.
+/// Progress display. On a terminal it is a bar that is drawn over itself. Otherwise it is one plain line at most every 3 seconds, and only after
+/// another 5 % of the run or a minute. If `quiet`, nothing is shown.
 class Progress {
  public:
   Progress(double begin, double end, bool quiet, std::FILE* out = stderr);
@@ -29,7 +29,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void show(const Moment& moment);
-  void close();  ///< draws the last moment and leaves its line; also on destruction
+  void close();  ///< shows the last step and ends its line; called by the destructor
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -45,14 +45,14 @@ class Progress {
   bool pending_ = false, open_ = false;
 };
 
-/// The line of a moment, `seconds` after the run began (or was resumed) at simulated time `begin`, without line end, with a bar of so
-/// many characters: "[###-----]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.3987  12 s left".
+/// Returns the line for a step, without line end, with a bar of `bar` characters. `seconds`: wall time since the run began (or was resumed) at
+/// simulated time `begin`. Example: "[###-----]  45 %  t 3.375/7.5  step 24  9 iterations  D 0.3987  12 s left".
 std::string progress_line(const Moment& moment, double begin, double end, double seconds, int bar);
 
-/// "0.8 s", "42 s", "3 min 08 s", "2 h 05 min".
+/// Returns a duration as text: "0.8 s", "42 s", "3 min 08 s", "2 h 05 min".
 std::string duration(double seconds);
 
-/// The closing table: seconds and share of each phase, work counts, where the results are.
+/// Returns the closing table: seconds and share of each phase, work counts, and the directory of the results.
 std::string closing_table(const Phases& phases, const Entries<long>& counts, const std::filesystem::path& results);
 
 }  // namespace tanktread::output

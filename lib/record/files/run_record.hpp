@@ -1,5 +1,5 @@
 #pragma once
-// The record of a run, `run.h5`: one row a finished step, whole at every moment.
+// Record of a run, `run.h5`: one row per finished step. The file is complete at any time.
 
 #include <filesystem>
 #include <map>
@@ -12,50 +12,50 @@
 
 namespace tanktread::output {
 
-/// One quantity over the steps. The names are promises to scripts outside the project.
+/// One quantity as a function of the step. Scripts outside the project rely on the names.
 struct Series {
   std::string name, unit, description;
-  std::vector<double> values;  ///< one a row; row 0 is the initial state
-  std::string si;  ///< what its unit is in SI units, if the deck says
+  std::vector<double> values;  ///< one value per row; row 0 is the initial state
+  std::string si;  ///< unit in SI units, if the deck sets its units
 };
 
-/// `/series/<name>`, of one of several particles `/series/<particle>/<name>`, 1-D doubles of equal length with attributes `unit`, `description` and,
-/// where the deck says what its units are, `SI`, `1e-06 m/s`;
+/// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
+/// `unit`, `description` and, if the deck sets its units, `SI`, for example `1e-06 m/s`;
 /// `/deck`, the effective deck as text;
-/// `/provenance`, whose attributes say what made the file (version, git_commit, compiler, ranks) and which `run` it is of.
+/// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///
-/// The rows live here, and `write` puts all of them on disk in one step (write_whole): HDF5 1.10 cannot append to a file so that a process killed
-/// within leaves one that every reader opens (its single-writer mode leaves a mark that refuses them). Serial: on several ranks only the first has a
-/// record.
+/// The rows are kept in memory, and `write` writes all of them atomically (write_whole). The reason: HDF5 1.10 cannot append to a file such that
+/// every reader opens it after the process was killed (its single-writer mode leaves a mark that readers refuse). Serial: with several ranks only the
+/// first one has a record.
 class RunRecord {
  public:
-  /// A record without rows.
+  /// Creates a record without rows.
   RunRecord(std::filesystem::path path, std::string deck, std::map<std::string, std::string> provenance);
 
-  /// The record that stands at `path`. Throws UserError when it is missing or damaged.
+  /// Reads the record at `path`. Throws UserError if it is missing or damaged.
   static RunRecord load(const std::filesystem::path& path);
 
-  /// Declares a series; all of them before the first row, and again after `load`. One that exists already keeps its values; a new
-  /// one has none (not a number) in the rows that exist.
+  /// Declares a series. All series must be declared before the first row, and again after `load`. A series that exists already keeps its values. A
+  /// new one is NaN in the rows that exist.
   void declare(std::string name, std::string unit, std::string description, std::string si = {});
 
-  /// One row, a value for every series in the order of declaration. Writes nothing.
+  /// Appends one row: a value for every series in the order of declaration. Writes nothing to the disk.
   void append(std::span<const double> row);
 
-  /// Keeps the first `rows` rows, as a run that goes on from an earlier checkpoint does. Writes nothing.
+  /// Keeps only the first `rows` rows, for a run that is resumed from an earlier checkpoint. Writes nothing to the disk.
   void truncate(std::size_t rows);
 
-  /// Replaces deck and provenance (the resumed run may have other ranks and another final time). Writes nothing.
+  /// Replaces deck and provenance (a resumed run may have another number of ranks and another final time). Writes nothing to the disk.
   void describe(std::string deck, std::map<std::string, std::string> provenance);
 
   void write(Durable durable = Durable::no) const;
 
-  /// Of the first `rows` rows of every series, in whatever order the series were declared (Checksum).
+  /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum).
   std::string checksum(std::size_t rows) const;
 
   std::size_t rows() const { return series_.empty() ? 0 : series_.front().values.size(); }
   const std::vector<Series>& series() const { return series_; }
-  const std::vector<double>& values(std::string_view name) const;  ///< throws std::out_of_range
+  const std::vector<double>& values(std::string_view name) const;  ///< returns the values of a series; throws std::out_of_range
   const std::string& deck() const { return deck_; }
   const std::map<std::string, std::string>& provenance() const { return provenance_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A saved step, one closed file, at once an exact checkpoint and a picture for ParaView; and the list of all that a run has saved.
+// Snapshot: one file per saved step that is both an exact checkpoint and a mesh with fields for ParaView. Also the list of all snapshots of a run.
 
 #include <filesystem>
 #include <span>
@@ -13,34 +13,35 @@
 
 namespace tanktread::output {
 
-/// What is written of a field: a row a node.
+/// Values of a field as they are written: one row per node.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A named array at the nodes of a picture, shape (nodes, k).
+/// Named array at the nodes of a snapshot, shape (nodes, k).
 struct Field {
   std::string name;
   Rows values;
 };
 
-/// Places and normals of `net`: `Points`, which every picture has, and `Normals`, which give smooth shading. Further fields are the caller's to add.
+/// Returns the fields that every snapshot has: positions `Points` and normals `Normals` of the surface with control net `net`. Normals give smooth
+/// shading. The caller adds further fields.
 std::vector<Field> picture(const Nodes& nodes, const Net& net);
 
-/// Writes the file in one step (write_whole): `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) with `fields` at all nodes. Throws
-/// RunFailure when the disk refuses.
+/// Writes the file atomically (write_whole): `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) with `fields` at all nodes. Throws
+/// RunFailure if writing fails.
 void write_snapshot(const std::filesystem::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh,
                     std::span<const Field> fields, Durable durable = Durable::no);
 
-/// `run.hdf.series`, with which ParaView opens all snapshots of a run behind one time slider:
+/// The list `run.hdf.series`, with which ParaView opens all snapshots of a run as one time series:
 /// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}.
 class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// The list that a resumed run goes on with: snapshots up to `step` that can be read and are of `run` (Picture).
+  /// Returns the list for a resumed run: the readable snapshots up to `step` whose identifier is `run` (Picture).
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
-  void add(int step, double time);  ///< the snapshot of a step, which stands in the directory already
-  void write() const;               ///< rewrites the file
+  void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already
+  void write() const;               ///< writes the list
 
  private:
   struct Entry {

@@ -10,24 +10,24 @@
 namespace tanktread::output {
 
 template <class Value>
-using Entries = std::vector<std::pair<std::string, Value>>;  ///< in the order in which they are written
+using Entries = std::vector<std::pair<std::string, Value>>;  ///< named values, in the order in which they are written
 
 struct Summary {
-  std::string status = "done";  ///< or `steady`, `stopped: <by what>`, `failed: <reason>`
+  std::string status = "done";  ///< `done`, `steady`, `stopped: <by what>` or `failed: <reason>`
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
-  Entries<std::string> final_in_si;  ///< of those with a dimension, where the deck says what its units are
-  Entries<std::vector<double>> final_vectors;  ///< what is a vector, as a list: drag, torque
+  Entries<std::string> final_in_si;  ///< the same with their SI units, for values with a dimension, if the deck sets its units
+  Entries<std::vector<double>> final_vectors;  ///< last values of vectors, as lists: drag, torque
   std::vector<deck::Verdict> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
-  Entries<double> seconds;    ///< by phase
-  Entries<long> memory;       ///< bytes: of the rank with most, of all ranks
+  Entries<double> seconds;    ///< wall time by phase
+  Entries<long> memory;       ///< peak memory in bytes: largest of a rank, and all ranks together
   Entries<std::string> plan;  ///< what the run chose to compute, one line each
-  Entries<double> numbers;    ///< derived and dimensionless ones of the scene
-  Entries<std::string> modes;  ///< of a spectrum, what each mode is
-  std::vector<std::string> warnings;  ///< edges of the method that the run came near to, a sentence each
+  Entries<double> numbers;    ///< derived and dimensionless numbers of the scene
+  Entries<std::string> modes;  ///< kind of each mode of a spectrum
+  std::vector<std::string> warnings;  ///< warnings about limits of the method that the run came close to
 };
 
-/// The text of `summary.yaml`: YAML 1.1, every text in quotes, every double readable to its last bit.
+/// Returns the text of `summary.yaml`: YAML 1.1, every text in quotes, every double with enough digits to be read back exactly.
 std::string yaml(const Summary& summary);
 
 }  // namespace tanktread::output

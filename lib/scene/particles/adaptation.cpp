@@ -21,17 +21,17 @@ namespace tanktread {
 
 namespace {
 
-/// The particle that is looked at, and the state of all.
+/// Particle whose mesh is adapted, and the state of all particles.
 struct Subject {
   const Scene& scene;
   const Body& body;
   const spline::Block& block;
   const motion::State& state;
-  Net x;  ///< its own shape
+  Net x;  ///< rows of this particle
   std::span<const double> films;
 };
 
-/// The body and the state carried over by `move`, which gives a net of this particle on the new space.
+/// Returns `target` and the state, with every net transferred to the new space. `move` transfers one net of this particle.
 template <class Move>
 Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};
@@ -56,7 +56,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// `moved`: by how much the surfaces have been.
+/// Adds the displacement `moved` of the surfaces to the result, divided by R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
@@ -68,7 +68,7 @@ std::unique_ptr<Body> on_mesh(const Subject& of, spline::TMesh mesh) {
   return target;
 }
 
-/// A symmetric particle keeps a symmetric mesh: marks stand for all their images.
+/// Returns rules that keep the mesh of a symmetric particle symmetric: each mark also applies to the images of its element.
 spline::RepairRules rules(const Body& body) {
   spline::RepairRules result;
   for (const surface::Image& image : body.symmetry.images())
@@ -85,7 +85,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// What the indicator says about the present mesh.
+/// Marks and merges that the indicator gives for the current mesh.
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;
@@ -107,7 +107,7 @@ auto decided(const Choose& choose) {
   return items;
 }
 
-/// Of each element along s and t.
+/// Returns the length of each element along s and t.
 template <class Indicator>
 std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& found) {
   std::vector<std::array<double, 2>> lengths;
@@ -118,7 +118,7 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Of elements(mesh), from those of the space.
+/// Returns the film width at each element of the T-mesh: the smallest of the widths at its Bezier elements.
 std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
   std::vector<double> widths;
   if (films.empty()) return widths;
@@ -158,8 +158,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
 
-/// Takes out the marks of elements of the T-mesh with a side at a pole, where these stay degenerate, and under the paper's rule, which cuts none of
-/// them. What they are cut by then comes from their neighbours.
+/// Removes the marks of elements of the T-mesh with a side at a pole, if poles stay degenerate or the paper's rule is used, which does not cut them.
+/// These elements are then only cut as neighbours of cut elements.
 void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
   if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
@@ -169,7 +169,7 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
   std::erase_if(marks, degenerate);
 }
 
-/// Cuts all that is marked; where that gives more points than allowed, what is marked with limits twice, four times, ... as large.
+/// Refines all marked elements. If that exceeds the allowed number of points, tries limits that are two, four, ... times as large.
 Adapted refined(const Subject& of, const Findings& found) {
   const auto& [scene, body, block, state, x, films] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
@@ -193,7 +193,7 @@ Adapted refined(const Subject& of, const Findings& found) {
   return result;
 }
 
-/// Elements of the T-mesh in which some Bezier element's defect is above the tolerance.
+/// Returns, per element of the T-mesh, true if the defect of one of its Bezier elements exceeds the tolerance.
 std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
   const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
   std::vector<bool> over(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, false);
@@ -202,7 +202,7 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
   return over;
 }
 
-/// Coarsens; elements whose surfaces would change by more than the tolerance are left out and the rest is tried again.
+/// Coarsens. If the surfaces on some elements would change by more than the tolerance, leaves these elements out and tries the rest again.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
   const auto& [scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
@@ -250,7 +250,8 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];  // where the wall of a straight tube is
+    // moves x into the frame of a straight tube's wall
+    if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = scene;
     only[0].body = std::make_unique<Body>(std::move(body));

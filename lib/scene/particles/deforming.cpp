@@ -1,4 +1,4 @@
-// Capsules and drops in the time loop, on meshes that may change.
+// Coupled system of particles, deforming or rigid, in the time loop, on meshes that may change.
 
 #include <algorithm>
 #include <iterator>
@@ -90,7 +90,7 @@ class Deforming : public ParticleSystem {
 
   void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
 
-  /// Puts the centroid back where it is to be held; then cuts or merges elements where the rule says so.
+  /// Moves the centroid back if it is held. Then refines or coarsens meshes if a step of adaptation is due.
   bool adapt(motion::State& state, RunTotals& totals) override {
     before_.clear();
     if (holds_centre_) {
@@ -146,7 +146,7 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if (body().wall && !accurate(state)) here->solve();  // the tube's response depends on the velocity
+    if (body().wall && !accurate(state)) here->solve();  // the flow in the tube depends on the velocity
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -206,7 +206,7 @@ class Deforming : public ParticleSystem {
   const surface::Geometry& geometry(const Member& member) const { return all_ ? *member.geometry : capsule_->geometry(); }
   const membrane::Membrane& membrane(const Member& member) const { return all_ ? *member.membrane : capsule_->membrane(); }
 
-  /// Control points of all particles on their present meshes.
+  /// Returns the number of control points of all particles on their current meshes.
   Eigen::Index n_points() const {
     return std::accumulate(members_.begin(), members_.end(), 0, [](int n, const Member& member) { return n + member.body->space.n_points; });
   }
@@ -220,12 +220,13 @@ class Deforming : public ParticleSystem {
     return powers;
   }
 
-  /// The contacts' forces act from now on.
+  /// Applies the forces of the contacts from now on.
   void press() {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
-  /// That of the forces of a contact at the centroids, beside those of its particles about these.
+  /// Returns the stresslet of the two forces of a contact if they act at the centroids. The stresslet of each particle is about its own centroid and
+  /// does not contain this part.
   Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
     const auto centroid = [&](std::size_t k) {
       const Member& member = members_[contact.particle[k]];
@@ -235,7 +236,7 @@ class Deforming : public ParticleSystem {
     return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
   }
 
-  /// Everything that belongs to the present meshes. The wall of a tube stays what it was.
+  /// Builds everything that belongs to the current meshes. The wall of a tube does not change.
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
     arrange(members_);
@@ -251,12 +252,12 @@ class Deforming : public ParticleSystem {
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
-  /// Whether the slope errs by no more than the tolerance.
+  /// Returns true if the error of the slope does not exceed the tolerance.
   bool accurate(const motion::State& state) const {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
-  /// Of all particles.
+  /// Returns the force of all particles on the fluid.
   Vec3 force_on_fluid(coupling::Evaluation& here) {
     Vec3 force = Vec3::Zero();
     for (std::size_t p = 0; p < members_.size(); ++p)
@@ -266,7 +267,7 @@ class Deforming : public ParticleSystem {
     return force;
   }
 
-  /// Returns what the row of particle p is made of, but for its tank-treading. Adds the columns of its fields.
+  /// Returns the data of particle p for a row, except tank-treading. Adds the columns of its fields.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
     if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
@@ -281,7 +282,7 @@ class Deforming : public ParticleSystem {
     return std::make_unique<DeformingRow>(now);
   }
 
-  /// Velocity and tank-treading of those that deform, where the fluids move by v. Each particle is one rank's.
+  /// Sets velocity and tank-treading of the deforming particles, where the fluids move by v. Each particle is evaluated by one rank.
   void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
     const auto found = ranks_.divided<Eigen::MatrixXd>(static_cast<int>(rows.size()), 5, [&](std::span<const int> mine, Eigen::MatrixXd& to) {
       for (const int k : mine) {
@@ -297,7 +298,7 @@ class Deforming : public ParticleSystem {
         rows[p]->velocity = found.row(p).head<3>().transpose(), rows[p]->treading = {found(p, 3), found(p, 4)};
   }
 
-  /// The angle that the material of particle p has turned by.
+  /// Advances the phase of the followed material point of particle p and sets it in the row.
   void advance_phase(std::size_t p, const Net& x, double step, ParticleRow& now) {
     Member& member = members_[p];
     const Body& body = *member.body;
@@ -317,7 +318,7 @@ class Deforming : public ParticleSystem {
     return now;
   }
 
-  /// Another mesh for particle p, if its present one asks for it.
+  /// Adapts the mesh of particle p if the indicator asks for it.
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
@@ -337,7 +338,7 @@ class Deforming : public ParticleSystem {
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }
 
-  /// Contacts of particle p to the same places of another mesh.
+  /// Finds the sites of the contacts of particle p on another mesh, at the same parametric points.
   void carry_contacts(std::size_t p, const spline::Space& to) {
     if (contacts_.all.empty()) return;
     const spline::Locator locator(to);
@@ -350,7 +351,7 @@ class Deforming : public ParticleSystem {
         }
   }
 
-  /// The shape of a rigid body is known: on another mesh it is fitted again, and goes where it was.
+  /// Fits the known shape of a rigid particle again on its new mesh, and moves it to its current position.
   void fit_again(std::size_t p, Net& x) {
     const Member& member = members_[p];
     Body& body = *member.body;
@@ -361,7 +362,7 @@ class Deforming : public ParticleSystem {
         ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
   }
 
-  /// Goes on with the members' present bodies, in the shape x.
+  /// Rebuilds the system for the members' current bodies, in the shape x.
   void settle(const Net& x) {
     if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
     if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
@@ -374,17 +375,17 @@ class Deforming : public ParticleSystem {
   coupling::Ranks& ranks_;
   Phases& phases_;
   std::vector<Member> members_;
-  std::unique_ptr<Body> all_;  // several particles
+  std::unique_ptr<Body> all_;  // stacked body of several particles, or null
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
-  motion::State pictured_;  // shapes of the latest snapshot, which its fields refer to
-  std::optional<coupling::PowerBalance> power_;  // made when first asked for
-  coupling::Work work_;                     // of systems on earlier meshes
-  stokes::Evaluations kernel_evaluations_;  // the same
-  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // of which particles the latest step changed the mesh, and what they had
-  std::optional<coupling::RigidParticles> placed_;  // before the mesh changes
+  motion::State pictured_;  // state of the latest snapshot, to which its fields refer
+  std::optional<coupling::PowerBalance> power_;  // constructed at the first use
+  coupling::Work work_;                     // work of systems on earlier meshes
+  stokes::Evaluations kernel_evaluations_;  // kernel evaluations on earlier meshes
+  std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
+  std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles before the mesh changes
   std::vector<Warning> remarks_;
-  coupling::Contacts contacts_;  // that hold particles apart
+  coupling::Contacts contacts_;  // contacts that hold particles apart
   bool holds_centre_ = members_.size() == 1 && holds_centre(members_.front().scene);
 };
 

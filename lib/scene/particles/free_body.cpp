@@ -1,4 +1,4 @@
-// The free rigid body in the time loop.
+// Free rigid body in the time loop.
 
 
 #include "scene/member.hpp"
@@ -23,7 +23,7 @@ class Free : public ParticleSystem {
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
   Net start() const override { return coupling::placed(free_->centre()); }
-  /// Counts go on as if the set-up had been done once.
+  /// Continues the counts as if the set-up had been done only once.
   bool resume(Resumed& resumed) override {
     const coupling::Work again = work();
     before_ = resumed.totals.work;
@@ -95,7 +95,7 @@ class Free : public ParticleSystem {
     return body;
   }
 
-  /// The body where its resistance is that.
+  /// Returns the free body with the given resistance, in a tube or at a wall if the scene has one.
   static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::Resistance& resistance) {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.wall.present)
@@ -104,7 +104,7 @@ class Free : public ParticleSystem {
     return std::make_unique<coupling::FreeBody>(resistance, centre, body.radius, body.flow, rigid(scene, body));
   }
 
-  /// Tank-treading and phase of a body that turns as one: (6.6) is its angular velocity about the normal of the plane.
+  /// Sets tank-treading and phase of a rigid body. The frequency (6.6) is its angular velocity about the normal of the plane.
   void turn_to(const Net& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);
@@ -128,7 +128,7 @@ class Free : public ParticleSystem {
   coupling::Resistance resistance_;
   std::unique_ptr<coupling::LoneRigidBody> free_;
   PhaseAngle phase_angle_;
-  coupling::Work before_;  // of earlier parts of a resumed run
+  coupling::Work before_;  // work of earlier parts of a resumed run
 };
 
 }  // namespace

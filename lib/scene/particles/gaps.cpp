@@ -15,15 +15,15 @@ namespace tanktread {
 
 namespace {
 
-constexpr double accuracy = 1e-7;  // over R_C
+constexpr double accuracy = 1e-7;  // absolute error of gaps, divided by R_C
 
-/// The patches of a particle in the shape x, by the map that it shares with its equals where there is one.
+/// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
   if (member.geometry) return {member.geometry->bezier(), x};
   return {surface::BezierMap(member.body->space), x};
 }
 
-/// A particle's surface as closest_points takes it.
+/// Surface of a particle in the form that closest_points needs.
 struct Placed {
   surface::Patches patches;
   surface::ElementBoxes boxes;
@@ -32,22 +32,23 @@ struct Placed {
 };
 
 struct Pair {
-  double bound;  ///< the gap is at least this
+  double bound;  ///< lower bound of the gap
   std::size_t first, second;
-  Vec3 beyond;  ///< of the second one
+  Vec3 beyond;  ///< lattice vector by which the second one is shifted
 };
 
-/// Lattice vectors to move particle q by so that it may be close to p; of p itself without the one there and back, of unbounded space 0.
+/// Returns the lattice vectors that move particle q to images that may be close to p. If q is p itself, only one of each pair of opposite vectors is
+/// returned. In unbounded space the only vector is 0.
 std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optional<stokes::PeriodicCell>& cell) {
   if (!cell) return same ? std::vector<Vec3>() : std::vector<Vec3>{Vec3::Zero()};
   std::vector<Vec3> all = cell->around({2, 2, 2});
   const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
-  if (same) all.resize(all.size() / 2);  // those after the middle are those before it turned about
+  if (same) all.resize(all.size() / 2);  // the second half is the first one with opposite signs
   for (Vec3& image : all) image -= apart;
   return all;
 }
 
-/// All particles, and the pairs of them that can be as near as `reach` and as the nearest, those first that can be nearest.
+/// Pairs of particles that may be closer than `reach` and may have the smallest gap, sorted by the lower bound of their gap.
 class Pairs {
  public:
   Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell,
@@ -66,7 +67,7 @@ class Pairs {
 
   const std::vector<Pair>& all() const { return all_; }
 
-  /// Of one pair, if it is nearer than `reach`.
+  /// Returns the closest points of one pair if its gap is smaller than `reach`.
   surface::ClosestPoints closest(const Pair& pair, double reach) const {
     const auto& [bound, p, q, beyond] = pair;
     std::unique_ptr<Placed> moved;
@@ -93,10 +94,10 @@ class Pairs {
   const std::vector<Net>& x_;
   std::vector<std::unique_ptr<Placed>> placed_;
   std::vector<Pair> all_;
-  double radius_ = 0;  // the largest
+  double radius_ = 0;  // largest R_C
 };
 
-/// The nearest of all pairs of which `mine` is true.
+/// Returns the pair with the smallest gap among the pairs k for which mine(k) is true.
 template <class Mine>
 Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell, const Mine& mine) {
   const Pairs pairs(members, x, cell);
@@ -117,7 +118,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   return own;
 }
 
-/// Widths of films of which a plane wall is the other side, where they are smaller.
+/// Reduces widths to the distance from the plane wall where that is smaller.
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {
@@ -126,7 +127,7 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns the net q, if it is not the net p itself, and its images in a lattice whose boxes are not farther than `reach` from that of p.
+/// Returns the net q and its lattice images whose bounding boxes are within `reach` of the box of the net p. p itself is left out.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;
   if (!cell) {
@@ -144,7 +145,7 @@ std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach,
   return found;
 }
 
-/// Whether a point that is not on a surface is inside: its solid angle there is 4 pi, outside 0.
+/// Returns true if a point that is not on the surface is inside. The solid angle of the surface is 4 pi there, and 0 outside.
 bool encloses(const surface::Patches& patches, const Vec3& point) {
   constexpr int n = 8;
   double angle = 0;
@@ -157,7 +158,7 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws where one particle is inside of another, which their gap does not tell.
+/// Throws UserError if one particle is inside another. Their gap does not show that.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
@@ -224,7 +225,7 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell) {
-  constexpr int n = 7;  // whether they are closer, and the sites
+  constexpr int n = 7;  // numbers per pair: 1 if closer than `reach`, and the two sites
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
@@ -251,7 +252,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
-  double longest = 0;  // the diagonal of the largest element
+  double longest = 0;  // length of the longest element diagonal
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;

@@ -11,7 +11,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double tolerance = 1e-6;  // of gaps at contacts, over the limit
+constexpr double tolerance = 1e-6;  // error of gaps at contacts, divided by the limit
 constexpr int most_rounds = 40;
 constexpr double slack = ContactOptions::slack;
 
@@ -54,7 +54,7 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
   return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
-/// Contacts at x: gaps of those that are known, and others below the limit beside them. Whether all are above half of it.
+/// Updates the gaps of known contacts at x and adds contacts for other gaps below the limit. Returns false if a gap is below half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
@@ -70,7 +70,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// The contact of the same pair that is less than half an element away, if there is one.
+/// Returns the contact of the same pair less than half an element away, or null.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
@@ -81,21 +81,22 @@ Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   return found == held_.end() ? nullptr : &*found;
 }
 
-/// What the gap is to be: the limit, or, where the pair has a contact elsewhere and it is a little less, on the way there.
+/// Returns the required gap of a contact: the limit. If the pair has another contact and this gap is slightly below the limit, returns a value
+/// between the gap and the limit.
 double Limiter::target(const Approach& found) const {
   const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });
   if (first || found.gap > limit_) return limit_;
   return std::max((1 - slack) * limit_, found.gap + std::min(1., rate_ * step_) * (limit_ - found.gap));
 }
 
-/// Of gaps, over the limit.
+/// Returns the largest error of the gaps, divided by the limit.
 double Limiter::error() const {
   double most = 0;
   for (const Held& one : held_) most = std::max(most, (one.force > 0 ? std::abs(one.gap - one.target) : one.target - one.gap) / limit_);
   return most;
 }
 
-/// What a unit of force does in the step, of contacts of which it is not known yet. Whether that can be had.
+/// Computes the displacement that a unit force causes in the step, for contacts without one. Returns false if the evaluation fails.
 bool Limiter::respond(const motion::State& state) {
   const Net& start = state.x;
   const bool stiff = state.frozen.size() > 0;
@@ -115,7 +116,7 @@ bool Limiter::respond(const motion::State& state) {
   return true;
 }
 
-/// Finds the forces, and where they take the particles.
+/// Computes the forces of the contacts. Returns the shape that they move the particles to.
 Net Limiter::moved(const Net& start) {
   const auto n = static_cast<Eigen::Index>(held_.size());
   Eigen::MatrixXd a(n, n);
@@ -136,7 +137,7 @@ Net Limiter::moved(const Net& start) {
   return x;
 }
 
-/// Those that hold at x, at their nearest places there.
+/// Returns the contacts with a positive force, at their nearest points in the shape x.
 coupling::Contacts Limiter::with_forces(const Net& x, double impulse) const {
   coupling::Contacts contacts{{}, impulse};
   for (const Held& one : held_) {

@@ -1,5 +1,5 @@
 #pragma once
-// The limiter of gaps between particles: `Contact/limiter`.
+// Limiter of the gaps between particles: `Contact/limiter`.
 
 #include <memory>
 #include <vector>
@@ -13,27 +13,29 @@
 
 namespace tanktread {
 
-/// After a step, moves the particles so that no gap of two is below `limit`, by non-negative forces along the normals at their nearest places, which
-/// act for the time of the step: the complementarity problem (4.23) of the linearised gaps, repeated until the true ones hold. A pair that is below
-/// the limit in other places too has contacts there, which, less than 1 % below it, go back at the rate of the motion. The forces of the step
-/// before, which acted in this one, are changed by what it takes, and left to act in the next one: then contacts that last cost a step the square of
-/// its length. Mobilities are those of the system, of what deforms after an implicit step with its stiffness.
+/// Moves the particles after a step so that no gap between two of them is below `limit`. The forces are non-negative and act along the normals at the
+/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, which is repeated until the
+/// true gaps satisfy it. If a pair with a contact is also below the limit at other positions, contacts are added there; gaps less than 1 % below the
+/// limit return to it at the rate of the motion. The forces of the previous step have acted during this one. They are corrected, and the corrected
+/// forces act during the next step. The error per step by lasting contacts is then of the order of the squared step size. Mobilities are those of the
+/// system; after an implicit step they include the stiffness of deforming particles.
 class Limiter {
  public:
-  /// `limit`: a length. `unit`: a force of the order of those in the fluid. `rate`: of the motion. What is given by reference outlives this.
+  /// `limit`: a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. Arguments passed by reference must
+  /// outlive this.
   Limiter(const std::vector<Member>& members, coupling::Capsule& capsule, const coupling::Ranks& ranks, double limit, double unit,
           double rate)
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate) {}
 
-  /// At the end of a step. Where gaps are below half of the limit, or cannot be held, nothing is changed but the system's memory, and the step is to
-  /// be shorter. Collective.
+  /// Moves the particles at the end of a step. Returns false if gaps are below half of the limit or cannot be held; then only cached data of the
+  /// system change, and the step must be repeated with a smaller size. Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
-  /// A contact, its force in units, and what a unit of force does in the step.
+  /// Contact, its force in multiples of `unit`, and the displacement that one unit causes in the step.
   struct Held {
     coupling::Contact contact;
-    double gap, target;  // it is to be this
+    double gap, target;  // gap, and its required value
     double before, force;
     Net work, response;
   };
@@ -53,8 +55,8 @@ class Limiter {
   double limit_, unit_, rate_;
   double step_ = 0;
   std::vector<Held> held_;
-  Net load_;                                  // the contacts' so far
-  std::shared_ptr<coupling::Evaluation> base_;  // with it
+  Net load_;                                  // load of the contacts of the previous step
+  std::shared_ptr<coupling::Evaluation> base_;  // evaluation with this load
 };
 
 }  // namespace tanktread

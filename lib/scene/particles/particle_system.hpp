@@ -1,5 +1,5 @@
 #pragma once
-// What the time loop moves: a deforming capsule, or a free rigid body.
+// Interface of the time loop to the particles: a coupled system of particles, or a free rigid body.
 
 #include <functional>
 #include <memory>
@@ -20,51 +20,52 @@
 
 namespace tanktread {
 
-/// A run to go on with.
+/// Run that is resumed.
 struct Resumed {
   motion::State state;
   RunTotals totals;
-  output::Checkpoint checkpoint;  ///< that holds it, and what `store` has put there
+  output::Checkpoint checkpoint;  ///< checkpoint with the state, the totals and the data that `store` wrote
 };
 
-/// The particle at one moment, as a picture shows it.
+/// Particles at one time, for a snapshot.
 struct SurfacePicture {
-  Net surface;  ///< control net
+  Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
-/// A particle as the time loop sees it. Every call is collective, except where a picture's fields are sampled.
+/// Particles as the time loop sees them. Every call is collective, except where the fields of a snapshot are sampled.
 class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
-  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< of what deforms
-  virtual coupling::CoupledMotion* fields() { return nullptr; }                   ///< the motion with the fields on surfaces, if there are any
+  virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
+  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion with the fields on surfaces; null without fields
   virtual const Body& body() const = 0;
-  virtual Net start() const = 0;                                                 ///< State::x at time zero
-  virtual bool resume(Resumed& resumed) = 0;                                     ///< goes on; whether body() has another mesh now
-  virtual void store(output::Checkpoint& checkpoint) const = 0;                  ///< adds what `resume` takes beside state and totals
-  /// Discards the products that preconditioners `recycled` keep from earlier solves. No checkpoint holds them; after each one a run does without.
+  virtual Net start() const = 0;                                                 ///< returns State::x at time zero
+  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
+  virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
+  /// Discards the data of earlier solves that preconditioners `recycled` keep. Checkpoints do not hold these data; so a run discards them after each
+  /// checkpoint.
   virtual void forget_recycled() {}
-  /// After a step of this size: moves what it left too close apart, if the deck asks for that; whether that could be done.
+  /// Moves particles that a step of this size left too close, if the deck asks for it. Returns false if that fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
-  virtual coupling::Contacts contacts() const { return {}; }                      ///< that hold now
-  virtual void hold_by(const coupling::Contacts&) {}                              ///< from now on, on the present mesh
-  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;              ///< after a step; whether body() has another mesh now
-  virtual void undo_adapt(const Net&) {}                                         ///< goes back to the mesh before, in this shape, for a last picture
-  virtual std::vector<Warning> remarks() { return {}; }                          ///< for the user, who is to hear of each kind once
+  virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
+  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of these contacts, on the current mesh, from now on
+  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has another mesh now
+  virtual void undo_adapt(const Net&) {}                                         ///< returns to the previous mesh, in this shape, for a last snapshot
+  virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
-  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< of each particle, as of the latest row
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< `progress`: time and work are set here
-  virtual const surface::BezierMap& bezier() const = 0;                          ///< the extraction of body()
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< returns a row; time and work of `progress` are set here
+  virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };
 
-/// What `Particle/motion` asks for.
+/// Builds the kind of system that the scene needs.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// The kinds.
+/// Build the two kinds of systems.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 

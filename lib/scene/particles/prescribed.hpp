@@ -1,5 +1,5 @@
 #pragma once
-// The steady problem of a rigid body that moves as the deck says.
+// Steady problem of a rigid body with prescribed motion.
 
 #include <limits>
 
@@ -11,20 +11,20 @@
 
 namespace tanktread {
 
-/// Force and torque on the body, the traction that they are the integrals of, and errors; not a number where no exact solution is known.
+/// Force and torque on the body, the traction from which they are computed, and errors. Errors are NaN if no exact solution is known.
 struct RigidSolution {
   Net density;         ///< force per area on the fluid, control values; the traction on the body is its negative
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the body, about its centre
-  Vec3 integral;       ///< force as the integral of the traction alone
-  int iterations = 0;  ///< of the solver, for this traction
-  double pressure_drop = unknown;  ///< that the body adds in a tube (2.7)
-  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque on the body, about its centre
+  Vec3 integral;       ///< force computed only as the integral of the traction
+  int iterations = 0;  ///< iterations of the solver for this traction
+  double pressure_drop = unknown;  ///< additional pressure drop caused by the body in a tube (2.7)
+  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of force, `integral` and torque
   SurfaceErrors surface{unknown, unknown, 0};
 
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Data of a prescribed body for its row, without those of walls.
+/// Data of a prescribed body for its row, except those of walls.
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
@@ -34,10 +34,10 @@ struct PrescribedRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// The resistance problem of the scene's body. `tube`: the one around it, or nothing.
+/// Returns the resistance problem of the scene's body. `tube`: the tube around it, or null.
 coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube);
 
-/// The body of `Particle/motion: prescribed` in the flow of the deck; `tube`: the one around it, or nothing. Collective.
+/// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. `tube`: the tube around it, or null. Collective.
 RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
                              const coupling::Tube* tube = nullptr);
 

@@ -12,26 +12,26 @@ namespace tanktread {
 
 namespace {
 
-constexpr double grown = 5;         // e-folds of waves since the start: they show soon
-constexpr int limited_steps = 10;   // in a row: fewer are the start
-constexpr double folding = 0.05;    // jacobian_ratio; even elements have 0.5 and more, those at a plain pole 0.1
-constexpr double slenderness = 10;  // aspect_ratio
+constexpr double grown = 5;         // growth of waves, in e-folds, at which they soon become visible
+constexpr int limited_steps = 10;   // consecutive steps at the limit; fewer can occur at the start
+constexpr double folding = 0.05;    // threshold of jacobian_ratio; even elements have 0.5 and more, elements at a plain pole 0.1
+constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
-constexpr double stiff_area = 3e4;  // of the whole membrane, over what else resists: steps become many
+constexpr double stiff_area = 3e4;  // global area stiffness, relative to the other stiffnesses, from which on the number of steps becomes large
 
 
-/// Shortest wave that elements of size h carry.
+/// Returns the wave number of the shortest wave that elements of size h represent.
 double wave_number(double h) { return std::numbers::pi / h; }
 
-/// Mean viscosity of what is on either side.
+/// Returns the mean of the viscosities on both sides.
 double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
 
-/// What to do about elements that are too coarse.
+/// Returns the advice for elements that are too coarse.
 std::string finer_mesh(const Scene& scene) {
   return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
 }
 
-/// Over all ranks.
+/// Returns the worst quality over all ranks.
 surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
   const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
                                   mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
@@ -96,14 +96,15 @@ std::string Warnings::choice() const {
   return {};
 }
 
-/// A flat membrane under the tension -T with bending modulus B: waves of number k grow at (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B).
-/// Six tenths of that are what a capsule shows, and the flow carries waves out of the compressed part at its own rate.
+/// Returns a warning when waves by compression have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave number k
+/// grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). Capsules show six tenths of that rate, and the flow carries waves out of the
+/// compressed part at its own rate.
 std::string Warnings::compression(const StepFindings& signs) {
   if (!scene_.elastic()) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
   const double bending = scene_.bending_modulus();
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
-  const bool resolved = fastest < mesh / 2;  // a wave that the mesh carries is no failure of the method
+  const bool resolved = fastest < mesh / 2;  // a wave that the mesh resolves is no failure of the method
   const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
   memory_.waves = std::max(0.0, memory_.waves + (growth - scene_.rate()) * signs.step);
   if (memory_.waves < grown) return {};

@@ -1,5 +1,5 @@
 #pragma once
-// A run that goes near an edge where its method stops working says so, once an edge, with what to change in the deck. The edges are those of
+// Warnings when a run comes close to a limit of its method. Each limit gives one warning, with the key of the deck to change. The limits are those of
 // tests/stability/README.md.
 
 #include <optional>
@@ -14,41 +14,41 @@
 
 namespace tanktread {
 
-/// What a finished step is judged by. Lengths and times in the deck's units.
+/// Data of a finished step from which warnings are derived. Lengths and times are in the deck's units.
 struct StepFindings {
   double time = 0, step = 0;
-  double smallest_tension = 0, compressed_area = 0;  ///< as in the series
+  double smallest_tension = 0, compressed_area = 0;  ///< values of the series with these names
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
-  double element = 1;                           ///< mean size, the square root of the area over the elements
-  std::optional<double> gap;                    ///< to a wall
+  double element = 1;                           ///< mean element size: the square root of the area divided by the number of elements
+  std::optional<double> gap;                    ///< gap to a wall
 
   StepFindings() = default;
 
-  /// Takes them from a row. `first`: the scene of the first particle that deforms.
+  /// Reads the data from a row. `first`: scene of the first deforming particle.
   StepFindings(const Scene& scene, const Scene& first, const Columns& row, const surface::Quality& quality, int n_elements);
 };
 
-/// A sentence for the user, and what it is about: one of a kind is enough.
+/// Warning for the user, and its kind. Each kind is shown only once.
 struct Warning {
   std::string kind, sentence;
 };
 
 class Warnings {
  public:
-  /// What a resumed run goes on with.
+  /// Data with which a resumed run continues.
   struct Memory {
-    double waves = 0;            ///< e-folds by which the shortest waves can have grown
-    int limited = 0;             ///< of the latest steps, how many were as long as stability allows
-    std::vector<Warning> said;  ///< so far
+    double waves = 0;            ///< number of e-folds by which the shortest waves can have grown
+    int limited = 0;             ///< number of latest consecutive steps as long as stability allows
+    std::vector<Warning> said;  ///< warnings shown so far
   };
 
   explicit Warnings(const Scene& scene) : scene_(scene) {}
 
-  /// Whether there was none of this kind before; it counts as said from now on.
+  /// Returns true if no warning of this kind was shown before, and records it as shown.
   bool fresh(const Warning& warning);
 
-  /// Sentences that this step adds.
+  /// Returns the warnings that this step adds.
   std::vector<std::string> sentences(const StepFindings& signs);
 
   const Memory& memory() const { return memory_; }
@@ -67,10 +67,11 @@ class Warnings {
   Memory memory_;
 };
 
-/// Stiffness rho of an elastic membrane on elements of size h, 1/time: (4.5) with the mean of the viscosities, or that of waves that are bent.
+/// Returns the stiffness rho of an elastic membrane on elements of size h, 1/time: the larger of (4.5), with the mean of both viscosities, and the
+/// rate of the shortest bending waves.
 double stiffness(const Scene& scene, double h);
 
-/// The quality of a shape. Throws RunFailure where an element is folded or a control point is no number. Ranks share the elements; all throw.
+/// Computes the quality of a shape. Throws RunFailure on all ranks if an element is folded or a control point is NaN. Ranks share the elements.
 /// Collective.
 surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Measurements on a particle, and its columns in the record.
+// Measurements on a particle, and its columns in the results.
 
 #include <span>
 
@@ -25,12 +25,12 @@ struct ParticleRow {
   double energy = 0, intrinsic_viscosity = 0, phase = 0;
 
   virtual ~ParticleRow() = default;
-  /// Adds the columns of this particle, whose scene is `one`.
+  /// Adds the columns of this particle. `one`: its scene.
   virtual void add_columns(const Scene& one, Columns& to) const = 0;
 
  protected:
-  void add_moving(const Scene& one, Columns& to) const;   ///< of every moving particle
-  void add_turning(const Scene& one, Columns& to) const;  ///< semi-axes, tank-treading and migration
+  void add_moving(const Scene& one, Columns& to) const;   ///< adds the columns that every moving particle has
+  void add_turning(const Scene& one, Columns& to) const;  ///< adds semi-axes, tank-treading and migration
 };
 
 struct DeformingRow : ParticleRow {
@@ -41,12 +41,12 @@ struct DeformingRow : ParticleRow {
 
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
-  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< the scalar part first
-  double shape_velocity = 0;                             ///< where Time/steady tolerance asks for it
+  Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation, the scalar part first
+  double shape_velocity = 0;                             ///< shape velocity, computed only if Time/steady tolerance is given
   void add_columns(const Scene& one, Columns& to) const override;
 };
 
-/// Sums over all particles; their mean velocity.
+/// Sums over all particles, and their mean velocity.
 struct Together {
   int n_points = 0;
   double energy = 0;
@@ -55,7 +55,7 @@ struct Together {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Columns that several kinds of rows have.
+/// Add columns that several kinds of rows have.
 void add_points(int n_points, Columns& to);
 void add_size(const surface::Measures& measures, Columns& to);
 void add_stresslet(const Mat3& stresslet, Columns& to);
@@ -65,36 +65,36 @@ void add_gap(double to_wall, Columns& to);
 /// Returns components 11, 22, 33, 12, 13, 23 of a symmetric tensor.
 Eigen::Vector<double, 6> components(const Mat3& tensor);
 
-/// Returns true if the unbounded flow has one rate of strain, which is not zero, so that `intrinsic_viscosity` is defined.
+/// Returns true if the flow is unbounded and affine with a nonzero rate of strain, so that `intrinsic_viscosity` is defined.
 bool strains(const Scene& scene);
 
-/// Returns what the shape x and the slope of a capsule or drop determine. Collective.
+/// Computes the data that follow from the shape x and the velocity `slope` of a capsule or drop. Collective.
 DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
                            const Net& slope, const coupling::Ranks& ranks);
 
-/// Sets the velocity of the centroid, and tank-treading, of a surface x whose material moves by v.
+/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves by v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
 /// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane is that of the longest and the shortest
-/// semi-axis; if one of these is not distinct from the middle one, the inclination is NaN. Ranks share the elements. Collective.
+/// semi-axis of inertia. If one of these does not differ from the middle one, the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
-/// S:E/(2 mu V E:E) of the row's stresslet S, E the symmetric part of the flow's gradient; 0 of a flow that is not affine.
+/// Returns S:E/(2 mu V E:E), where S is the stresslet of the row and E the symmetric part of the flow's gradient; 0 if the flow is not affine.
 double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now);
 
-/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`, but for drag and torque. Collective.
+/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. Drag and torque are not set. Collective.
 RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
                    const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
 
-/// Angle of y in the plane, in degrees from its first direction in the sense of tank-treading, in (-180, 180].
+/// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);
 
-/// The site of the surface that is seen from `from` in the first direction of the plane.
+/// Returns the site of the surface that is seen from the point `from` in the first direction of the plane.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Largest |v.n| over these collocation sites, over rate x R_C: zero when the shape is steady. In a tube of the velocity relative to the centroid's
-/// along the tube, over the mean velocity.
+/// Returns the largest |v.n| at these collocation sites, divided by rate x R_C: zero if the shape is steady. In a tube, v is relative to the axial
+/// velocity of the centroid, and the divisor is the mean velocity.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

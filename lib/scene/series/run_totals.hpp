@@ -1,5 +1,5 @@
 #pragma once
-// Where a run stands beside its state, and how a checkpoint keeps it.
+// Counts, times and other data of a run in addition to its state, and their storage in checkpoints.
 
 #include <optional>
 #include <vector>
@@ -13,29 +13,29 @@
 
 namespace tanktread {
 
-/// The phase of a material point: its angle, counted on past whole turns, and the angular velocity that the surface was left with.
+/// Phase of a material point: its angle, which is counted on past whole turns, and the mean angular velocity of the surface at the last step.
 struct PhaseAngle {
   double degrees = 0, rate = 0;
 
-  /// A step on, in which the mean angular velocity of the surface became `now`: to the `angle` at which the point is, whole turns counted on, or
-  /// where no point is followed by the mean.
+  /// Advances by a step at whose end the mean angular velocity of the surface is `now`. The phase becomes the angle of the point, `angle`, plus whole
+  /// turns. If no point is followed, it is integrated from the mean angular velocity.
   void advance(double step, double now, std::optional<double> angle);
 };
 
-/// What a run has done since its beginning, earlier parts of a resumed one included.
+/// Totals of a run since its beginning, including earlier parts of a resumed run.
 struct RunTotals {
   int step = 0;  ///< steps so far; `run.h5` holds step + 1 rows
   double wall_seconds = 0;
   coupling::Work work;
   int refinements = 0, coarsenings = 0;
-  stokes::Evaluations kernel;       ///< of all ranks
+  stokes::Evaluations kernel;       ///< kernel evaluations of all ranks
   Warnings::Memory warnings;
-  std::vector<PhaseAngle> phase_angle;     ///< of each particle
-  coupling::Contacts contacts;             ///< that hold particles apart
-  output::Entries<double> seconds;  ///< of the first rank, by phase
+  std::vector<PhaseAngle> phase_angle;     ///< phase of each particle
+  coupling::Contacts contacts;             ///< contacts that hold particles apart
+  output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
 };
 
-/// Calls act(name, whose, what it is, count) for every count, which checkpoints and the summary hold by these names.
+/// Calls act(name, kinds of particles, description, count) for every count. Checkpoints and the summary use these names.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";
@@ -55,13 +55,13 @@ void each_count(Some& totals, const Act& act) {
   act("kernel_evaluations_self", all, "on the element of the target", totals.kernel.self);
 }
 
-/// Every count by its name, for the summary.
+/// Returns every count by its name, for the summary.
 output::Entries<long> counts(const RunTotals& totals);
 
 /// Adds all of `totals` to the checkpoint.
 void store(const RunTotals& totals, output::Checkpoint& checkpoint);
 
-/// The same. Throws std::out_of_range where the checkpoint lacks a part of it.
+/// Returns the totals stored in the checkpoint. Throws std::out_of_range if a part of them is missing.
 RunTotals stored_totals(const output::Checkpoint& checkpoint);
 
 }  // namespace tanktread

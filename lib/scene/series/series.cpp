@@ -16,7 +16,7 @@ namespace tanktread {
 
 namespace {
 
-/// The order of columns in a row and in the manual, those with components by what precedes these.
+/// Order of columns in a row and in the manual. Columns with components are listed by the part of their name before the component.
 constexpr const char* order =
     "time time_step taylor_inertia taylor_surface inclination volume volume_error refit_error area energy membrane_dissipation smallest_tension "
     "compressed_area local_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ normal_velocity shape_velocity "
@@ -41,7 +41,7 @@ std::size_t rank(const std::string& name) {
   return at == ranks.end() ? ranks.size() : at->second;
 }
 
-/// Adds the columns of registered series of one kind, with their values, or without arguments for their names.
+/// Adds the columns of registered series of one kind with their values; without the arguments `of`, only their names.
 template <class Series, class... Of>
 void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
   for (const SeriesParts::Chosen& part : scene.series) {

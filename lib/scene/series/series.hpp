@@ -1,5 +1,5 @@
 #pragma once
-// The series of a run: columns of its progress, and which columns its rows have in which order.
+// Series of a run: the columns of its progress, and the order of all columns in a row.
 
 #include <optional>
 #include <span>
@@ -17,9 +17,9 @@ namespace tanktread {
 
 /// Data of the progress of a run for one row.
 struct ProgressRow {
-  motion::StepReport step = {};  ///< that ended here
+  motion::StepReport step = {};  ///< report of the step that ended here
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< velocity evaluations of all systems of a branch; if not given, those of `work`
+  std::optional<long> evaluations = {};  ///< velocity evaluations of all systems of a branch; if not given, the count in `work` is used
   double time = 0;
   coupling::Work work = {};
   void add_columns(const Scene& scene, Columns& to) const;
@@ -33,26 +33,26 @@ struct SteadyRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the columns of all rows of a run in their order, without values: of one of several particles `<particle>/<name>`.
+/// Returns the columns of all rows of a run in their order, without values. The columns of one of several particles are named `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
-/// Returns the run's own part of them; with `every` for the manual (Columns).
+/// Returns the columns of the run as a whole; if `every`, all possible ones, for the manual (Columns).
 Columns run_columns(const Scene& scene, bool every = false);
 
-/// Returns the part of one particle of a system, without its name.
+/// Returns the columns of one particle of a system, without its name.
 Columns particle_columns(const Scene& one, bool every = false);
 
-/// Adds the columns of registered series: of a particle, or of the run.
+/// Add the columns of registered series: per particle, or of the run.
 void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to);
 void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
 
-/// Puts columns of the program into the order of the manual; columns of parts from outside follow as they were added.
+/// Sorts the columns of the program in the order of the manual. Columns of added parts follow in the order in which they were added.
 void put_in_order(Columns& columns);
 
-/// Puts the columns of a row into this order. Throws RunFailure as Columns::check.
+/// Sorts the columns of a row in this order and checks them. Throws RunFailure like Columns::check.
 void finish(Columns& row);
 
-/// Markdown: series and fields of the results, entries of the summary and numbers of a scene, each with its unit.
+/// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the numbers of a scene, each with its unit.
 std::string series_manual(const Registry& registry);
 
 }  // namespace tanktread

@@ -56,7 +56,7 @@ bool AmbientFlow::at(double time, double start) {
 
 double AmbientFlow::next_kink(double time) const { return history_ ? history_->next_kink(time) : std::numeric_limits<double>::infinity(); }
 
-/// Seven angles tell all: the field is a polynomial of degree three in the turn's sine and cosine.
+/// Seven angles suffice, because the field is a polynomial of degree three in the sine and cosine of the angle.
 std::vector<AmbientFlow> AmbientFlow::directions() const {
   if (!history_ || !history_->angles) return {*this};
   std::vector<AmbientFlow> all;
@@ -64,7 +64,7 @@ std::vector<AmbientFlow> AmbientFlow::directions() const {
   return all;
 }
 
-/// Turned by Q about the origin, with an amplitude a.
+/// Returns the flow rotated by Q about the origin and multiplied by the amplitude a.
 AmbientFlow AmbientFlow::turned(const Mat3& q, double a) const {
   AmbientFlow flow = *this;
   flow.moment_ = {a, q};

@@ -10,7 +10,7 @@
 
 namespace tanktread::stokes {
 
-/// The flow that would be there without the particle: that of a duct (P-33), or in unbounded space
+/// The flow in the absence of the particle: the flow of a duct (P-33), or in unbounded space
 ///
 ///   v(x) = v_0 + L x + (x.H x) d,   tr L = 0,  H d = 0                                                                   (2.20)
 ///
@@ -21,43 +21,43 @@ namespace tanktread::stokes {
 ///   linear               L as given;   uniform   v_0 as given;   quiescent   0
 ///   parabolic            maximum velocity (1 - (x2^2 + x3^2)/half width^2, 0, 0), or without x2
 ///
-/// or a registered one (UserFlow), or any of them with an amplitude, and but for the duct a direction, that change in time (FlowHistory).
+/// or a registered flow (UserFlow). Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
 class AmbientFlow {
  public:
   AmbientFlow() = default;  ///< quiescent
 
-  /// `duct`: the flow of the type `duct`, and only of this one.
+  /// `duct`: required for the type `duct`, and not permitted for other types.
   explicit AmbientFlow(const FlowOptions& options, std::shared_ptr<const DuctFlow> duct = nullptr);
 
-  /// The time of all that follows, in a step that began at `start` (FlowHistory::at); whether the flow is another one now. Before the first call
-  /// it is the one of amplitude 1, not turned.
+  /// Sets the time for all later calls, within a step that began at `start` (FlowHistory::at). Returns whether the flow has changed. Before the first
+  /// call the flow has the amplitude 1 and is not rotated.
   bool at(double time, double start);
-  double next_kink(double time) const;  ///< the first time after this one at which the flow is not smooth, or infinity
+  double next_kink(double time) const;  ///< returns the first time after `time` at which the flow is not smooth in time, or infinity
 
-  /// This flow; where its direction changes in time, also others, which have no symmetry in common but that of all directions.
+  /// Returns this flow or, if its direction changes in time, enough rotated flows that a symmetry common to them is a symmetry for all directions.
   std::vector<AmbientFlow> directions() const;
 
-  /// Velocity at a point, units length/time. Many points at once are much faster in a duct.
+  /// Returns the velocity at a point, units length/time. In a duct, evaluating many points at once is much faster.
   Vec3 velocity(const Vec3& x) const;
   Net velocities(const Net& x) const;
 
-  /// L_ij = dv_i/dx_j at a point, units 1/time.
+  /// Returns L_ij = dv_i/dx_j at a point, units 1/time.
   Mat3 gradient(const Vec3& x) const;
   std::vector<Mat3> gradients(const Net& x) const;
 
-  /// Whether the gradient is the same everywhere.
+  /// Returns whether the gradient is uniform.
   bool affine() const { return user_ ? user_->affine() : !duct_ && steady_.direction.isZero(0); }
 
-  /// The quadratic part of (2.20): d and H, both 0 of an affine flow, and of a registered one, which need not be quadratic.
+  /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
-  /// The rate of Ca, units 1/time: that of the options; in a duct the mean velocity over R_T.
+  /// Returns the rate in Ca, units 1/time: the rate of the options, or in a duct the mean velocity over R_T.
   double rate() const { return duct_ ? duct_->mean_velocity() / duct_->radius() : rate_; }
 
-  double amplitude() const { return moment_.amplitude; }  ///< at the time told last
+  double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// The duct, or nothing.
+  /// Returns the duct flow; null if there is none.
   const std::shared_ptr<const DuctFlow>& duct() const { return duct_; }
 
  private:
@@ -71,9 +71,9 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // in place of the field
+  std::shared_ptr<const UserFlow> user_;  // set for a registered flow; replaces the field
   std::optional<FlowHistory> history_;
-  Field steady_, field_;  // at amplitude 1, and now
+  Field steady_, field_;  // field at amplitude 1; field at the current time
   FlowHistory::Moment moment_;
   double rate_ = 0;
 };

@@ -16,7 +16,7 @@ using surface::Vec2;
 
 constexpr int close_order = 16;
 
-/// Points closer to the cap's plane than this many half pieces get rules of their own.
+/// Points closer to the plane of the cap than this, in half lengths of the longest piece, get adaptive rules.
 constexpr double close_by = 4;
 
 std::vector<double> breaks(const surface::Outline& outline, int side) {
@@ -24,10 +24,10 @@ std::vector<double> breaks(const surface::Outline& outline, int side) {
   return outline.knots(side, 32);
 }
 
-/// Outward normal times dl/du.
+/// Returns the outward normal times dl/du.
 Vec2 weighted_normal(const surface::PlaneJet& at) { return {at.d[1], -at.d[0]}; }
 
-/// The two integrands: rho.nu / r, and nu / r.
+/// Returns the two integrands rho.nu / r and nu / r.
 Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   const Vec2 rho = at.x - p, nu = weighted_normal(at);
   const double r = std::sqrt(rho.squaredNorm() + h * h);
@@ -35,13 +35,13 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// The integrand of own_flow(): r nu.
+/// Returns the integrand r nu of own_flow().
 Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
   return {0, nu[0], nu[1]};
 }
 
-/// The integral of f over a stretch of one side, halved until it is no longer than it is far away.
+/// Returns the integral of f over a part of one side, which is bisected until each piece is no longer than its distance from the point.
 template <class Integrand>
 Vec3 stretch(const Integrand& f, const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h,
              double smallest) {
@@ -123,9 +123,9 @@ Net Cap::integral(const Net& x) const {
   return c;
 }
 
-/// 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS, s = x - y, which by the divergence theorem in the plane is
+/// 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS, s = x - y, which by the divergence theorem in the plane equals
 ///   M_1a = -h^2/3 oint nu_a / s^3,   M_ab = -h/3 oint rho_a nu_b / s^3 + delta_ab W/3,   M_11 = W - M_22 - M_33,
-/// W the solid angle of the cap, sign(h) oint rho.nu / (s (s + |h|)).
+/// where W is the solid angle of the cap, sign(h) oint rho.nu / (s (s + |h|)).
 Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   const double h = place_ - y[0];
   const Nodes& nodes = nodes_for(std::abs(h));
@@ -144,7 +144,7 @@ Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   return 6 * over_8_pi * (m * n);
 }
 
-/// int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'
+/// Uses int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'.
 double Cap::own_flow() const {
   const Nodes n = nodes(6);
   double sum = 0;

@@ -12,42 +12,42 @@ namespace tanktread::stokes {
 ///
 ///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
 ///
-/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, nu the outline's outward normal there,
-/// h = place - x0_1 and r^2 = rho^2 + h^2,
+/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, the outward normal nu of the outline in the
+/// plane, h = place - x0_1 and r^2 = rho^2 + h^2,
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
 ///
-/// By reciprocity c_j(y) is also the flow rate along x1 through the cap of a point force e_j at y, times mu.
+/// By reciprocity c_j(y) times mu is also the flow rate along x1 through the cap due to a point force e_j at y.
 class Cap {
  public:
-  /// `tolerance`: of the integrals, relative to their largest value.
+  /// `tolerance`: error of the integrals relative to their largest value.
   Cap(const surface::Outline& outline, double place, double tolerance);
 
   double place() const { return place_; }
 
-  /// c at any point, on the rim included. Units length.
+  /// Returns c at any point, including points on the rim. Units length.
   Vec3 integral(const Vec3& x0) const;
 
-  /// c at the rows of x; fast for points off the plane of the cap.
+  /// Returns c at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Flow rate along x1 through the cap of the double layer of one point, for each component j of its strength: int (1 / 8 pi) T_ijk(y, x) n_k dS(x)
-  /// with T's index i along x1. Of points off the plane of the cap.
+  /// Returns the flow rate along x1 through the cap due to the double layer of one point, for each component j of its strength: int (1 / 8 pi)
+  /// T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
-  /// Flow rate through the cap of c itself: int c_1 dS.
+  /// Returns the flow rate through the cap due to c itself: int c_1 dS.
   double own_flow() const;
 
  private:
   struct Nodes {
-    std::vector<double> y, z, ny, nz;  ///< places and normals times weights dl
+    std::vector<double> y, z, ny, nz;  ///< positions, and normals times weights dl
   };
   Nodes nodes(int order) const;
   const Nodes& nodes_for(double distance) const;
 
   surface::Outline outline_;
-  double place_, reach_ = 0;                     ///< reach: half of the longest piece
-  std::vector<std::pair<double, Nodes>> rules_;  ///< least distance, nodes
+  double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest piece
+  std::vector<std::pair<double, Nodes>> rules_;  ///< smallest distance from the plane for which the nodes are used; nodes
 };
 
 }  // namespace tanktread::stokes

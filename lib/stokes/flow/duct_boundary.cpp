@@ -21,7 +21,8 @@ using Crowding = OutlineSpace::Crowding;
 
 constexpr double right_angle = std::numbers::pi / 2;
 
-/// A corner of angle a makes the density behave like s^(pi/a - 1), and s log s at a right angle.
+/// Returns the exponent p or r of a side at a corner. At a corner of angle a the density behaves like s^(pi/a - 1), and like s log s at a right
+/// angle.
 double exponent(double angle) { return angle < 1.05 * right_angle ? 2 : 3; }
 
 double crowded(const Crowding& c, double t) {
@@ -34,14 +35,14 @@ double crowded_slope(const Crowding& c, double t) {
   return std::pow(t, c.first - 1) * std::pow(1 - t, c.last - 1) * (c.first * (1 - t) + c.last * t) / ((a + b) * (a + b));
 }
 
-/// By bisection: w rises.
+/// Inverts w by bisection; w is increasing.
 double uncrowded(const Crowding& c, double w) {
   double low = 0, high = 1;
   for (int k = 0; k < 60; ++k) (crowded(c, (low + high) / 2) < w ? low : high) = (low + high) / 2;
   return (low + high) / 2;
 }
 
-/// Knots of the outline's own curve, in t.
+/// Returns the knots of the outline's spline, as values of t.
 std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) {
   const auto [first, last] = surface::range(side);
   const bool open = !surface::closed(side);
@@ -55,7 +56,8 @@ std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) 
   return out;
 }
 
-/// Elements of each side, two or more, by the square root of its length: what is short is near a corner everywhere.
+/// Returns the number of elements of each side, at least two, proportional to the square root of its length, because all of a short side is near a
+/// corner.
 std::vector<int> shares(const Outline& outline, int elements) {
   if (outline.smooth()) return {elements};
   double total = 0;
@@ -66,7 +68,7 @@ std::vector<int> shares(const Outline& outline, int elements) {
   return out;
 }
 
-/// Every interval cut evenly into pieces of about (last - first)/elements, no longer than 1.25 times as much.
+/// Returns the knots with every interval divided evenly into pieces of about (last - first)/elements, at most 1.25 times as long.
 std::vector<double> divided(const std::vector<double>& knots, int elements) {
   const double most = 1.25 * (knots.back() - knots.front()) / elements;
   std::vector<double> out;
@@ -89,7 +91,7 @@ OutlineSpace::OutlineSpace(const Outline& outline, int elements) : outline_(outl
   }
 }
 
-/// `knots`: the eight around the element, the element between the fourth and the fifth.
+/// `knots`: the eight knots around the element, which lies between the fourth and the fifth.
 void OutlineSpace::add_element(int side, double begin, double end, const std::array<int, 4>& functions,
                                const std::array<double, 8>& knots) {
   OutlineElement element{side, begin, end, functions, {}};
@@ -147,7 +149,7 @@ surface::PlaneJet OutlineSpace::at(int side, double t) const {
 namespace {
 
 constexpr int points = 8, points_far = 10,
-              points_log = 16;  // Gauss points: nodes of (2.17) an element; of (2.15) far away; with a logarithm
+              points_log = 16;  // Gauss points: per element for (2.17); for (2.15) at a distance; for (2.15) with a logarithm
 constexpr int sweeps = 2;
 using std::numbers::pi;
 using surface::PlaneJet;
@@ -155,14 +157,14 @@ using surface::Vec2;
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// The four functions of an element.
+/// Returns the values of the four basis functions of an element.
 Eigen::Vector4d functions(const OutlineElement& e, double t) {
   Eigen::Vector4d b;
   spline::bernstein(3, (t - e.begin) / (e.end - e.begin), b.data());
   return e.bernstein * b;
 }
 
-/// One row of (2.15): what a target takes from the elements.
+/// One row of (2.15): the coefficients of a target and its right-hand side, integrated over the elements.
 class Row {
  public:
   Row(const OutlineSpace& space, const Vec2& origin, const OutlineSite& site)
@@ -171,7 +173,7 @@ class Row {
   void element(const OutlineElement& e) {
     e_ = &e;
     weight_.setZero();
-    double t = site_.t;  // on a closed side the last knot is the first
+    double t = site_.t;  // on a closed side the last knot coincides with the first
     if (site_.side == e.side && t < e.begin && surface::closed(space_.outline().side(e.side))) {
       const auto [first, last] = surface::range(space_.outline().side(e.side));
       t += last - first;
@@ -197,7 +199,7 @@ class Row {
     right_ -= weight * ((j.x - origin_).squaredNorm() / 4 - value_) * cross(r, j.d) / (2 * pi * square);
   }
 
-  /// From the target's own place to one end: t = t0 + (end - t0) s^4.
+  /// Integrates from the parameter of the target to one end of the element with t = t0 + (end - t0) s^4.
   void logarithmic(double t0, double end) {
     const auto& rule = quadrature::gauss(points_log);
     for (int q = 0; q < rule.size(); ++q) {
@@ -206,7 +208,7 @@ class Row {
     }
   }
 
-  /// Halved until the target is at least a length away.
+  /// Bisects the interval until the target is at least an interval length away.
   void panel(double a, double b, int depth) {
     const double middle = (a + b) / 2;
     const Vec2 xa = space_.at(e_->side, a).x, xm = space_.at(e_->side, middle).x, xb = space_.at(e_->side, b).x;
@@ -258,11 +260,11 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
   return matrix.partialPivLu().solve(right).head(n);
 }
 
-/// Returns q dl at the nodes.
+/// Adds the nodes of (2.17), and returns q dl at the nodes.
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // up to the element
+  double psi = 0;  // value at the start of the element
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;
@@ -286,9 +288,10 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
   return flux;
 }
 
-/// psi between the collocation points, from Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0 by the sum over the nodes, with v_c as it is:
+/// Improves psi between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0, evaluated by the sum over the nodes,
+/// with v_c unchanged:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
-/// What multiplies psi there is smooth, so that the error of the spline, which alternates from knot to knot, is averaged out.
+/// The coefficients of psi in this sum are smooth, so that the error of the spline, which alternates in sign from knot to knot, averages out.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {
   using Complex = std::complex<double>;
   const std::size_t n = x_.size();

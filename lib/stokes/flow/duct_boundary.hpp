@@ -1,5 +1,5 @@
 #pragma once
-// The profile of a duct of any section, by boundary elements.
+// The velocity profile of a duct of any section, by boundary elements.
 
 #include <array>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace tanktread::stokes {
 
-/// One element: side, range of the running parameter t, and the four functions on it,
+/// One element of the outline: side, range of the parameter t, and its four basis functions,
 ///   N_a(t) = sum_i bernstein(a, i) B_i((t - begin)/(end - begin)).
 struct OutlineElement {
   int side;
@@ -19,35 +19,38 @@ struct OutlineElement {
   Eigen::Matrix4d bernstein;
 };
 
-/// A collocation point: side, parameter t, and the element that holds it (the one that begins there, for a knot).
+/// A collocation point: side, parameter t, and the element that contains it (for a knot the element that starts there).
 struct OutlineSite {
   int side;
   double t;
   int element;
 };
 
-/// Splines in a running parameter t. On a closed side t is the curve's own parameter and splines are periodic. A side between corners has t from
-/// 0 to 1 with its points crowding towards both ends,
+/// Splines in a parameter t. On a closed side t is the parameter of the curve and the splines are periodic. On a side between corners t runs from 0
+/// to 1, graded towards both ends,
 ///   u = u_first + (u_last - u_first) w(t),   w = t^p/(t^p + (1 - t)^r),
-/// p = 2 at the first corner where its angle is at most a right one, 3 where it is more, r likewise at the last, and splines with fourfold end
-/// knots, nothing shared at the corner. Elements end at the knots of the outline's own spline, so that everything is smooth on an element.
+/// where p = 2 if the angle of the first corner is at most a right angle and 3 otherwise, and r likewise for the last corner. These splines have
+/// fourfold end knots, and share no function at the corner. Elements end at the knots of the outline's spline, so that all functions are smooth on an
+/// element.
 class OutlineSpace {
  public:
-  /// p and r of a side.
+  /// Grading exponents p and r of a side.
   struct Crowding {
     double first, last;
   };
 
-  /// About `elements` elements, shared out by the square root of the sides' lengths, on a side even in t but for what its own knots ask for.
+  /// Constructs about `elements` elements, distributed over the sides by the square root of their lengths, and uniform in t on a side except for the
+  /// side's own knots.
   OutlineSpace(const surface::Outline& outline, int elements);
 
-  int size() const { return static_cast<int>(sites_.size()); }  ///< functions, and collocation points
+  int size() const { return static_cast<int>(sites_.size()); }  ///< number of functions, equal to the number of collocation points
   const std::vector<OutlineElement>& elements() const { return elements_; }
 
-  /// Of a closed side the knots, of an open one the Greville abscissae with the end ones moved inwards by half the first spacing.
+  /// Returns the sites: on a closed side the knots, on an open side the Greville abscissae with the end points moved inwards by half the first
+  /// spacing.
   const std::vector<OutlineSite>& sites() const { return sites_; }
 
-  /// Place and derivative by t. The second derivative is not made.
+  /// Returns the position and its derivative with respect to t. The second derivative is not set.
   surface::PlaneJet at(int side, double t) const;
 
   const surface::Outline& outline() const { return outline_; }
@@ -58,16 +61,16 @@ class OutlineSpace {
   void add_element(int side, double begin, double end, const std::array<int, 4>& functions, const std::array<double, 8>& knots);
 
   surface::Outline outline_;
-  std::vector<Crowding> crowding_;  // a side each
+  std::vector<Crowding> crowding_;  // one per side
   std::vector<OutlineElement> elements_;
   std::vector<OutlineSite> sites_;
 };
 
-/// u = v_c - r^2/4, r the distance from the section's centroid, v_c harmonic with v_c = r^2/4 on the outline                   (P-34, P-35)
-/// Its flux q = dv_c/dn is the unknown: sigma = q dl/dt, a cubic spline in the running parameter of OutlineSpace, is collocated,
+/// u = v_c - r^2/4, where r is the distance from the centroid of the section and v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
+/// The unknown is its flux q = dv_c/dn: sigma = q dl/dt, a cubic spline in the parameter of OutlineSpace, is collocated,
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
-/// Without kappa and the mean the matrix would be singular where the outline has logarithmic capacity 1, such as the circle of radius 1.
-/// Inside, v_c is the real part of the analytic function F that is v_c + i psi on the outline, psi = int q dl (2.17).
+/// Without kappa and the zero-mean condition the matrix would be singular if the outline has logarithmic capacity 1, such as the circle of radius 1.
+/// Inside, v_c is the real part of the analytic function F with the boundary values v_c + i psi, psi = int q dl (2.17).
 ///   int u dA = int r^2 x.n/16 dl + int psi x/2.dx                                                                              (2.16)
 class BoundaryProfile : public DuctProfile {
  public:
@@ -86,7 +89,7 @@ class BoundaryProfile : public DuctProfile {
   surface::Vec2 centroid_;
   double radius_, flow_rate_;
   int n_elements_;
-  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // nodes of (2.17), about the centroid
+  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // nodes of (2.17), relative to the centroid
 };
 
 }  // namespace tanktread::stokes

@@ -29,7 +29,7 @@ class EllipseProfile : public DuctProfile {
 
 /// With half sides A, B and k_n = (2n + 1) pi/(2 B):
 ///   u = (B^2 - z^2)/2 - sum_n (-1)^n 2/(B k_n^3) cos(k_n z) cosh(k_n y)/cosh(k_n A)
-/// The terms decay like exp(-k_n (A - |y|)), so y is taken along the direction in which the wall is farther away, in units of the side across.
+/// The terms decay like exp(-k_n (A - |y|)), so that y is taken along the direction in which the wall is farther away, in units of the other side.
 class RectangleProfile : public DuctProfile {
  public:
   explicit RectangleProfile(const surface::Vec2& sides) : half_(sides / 2) {}
@@ -54,7 +54,7 @@ class RectangleProfile : public DuctProfile {
  private:
   static constexpr int most_terms = 20000;  // only within 1e-3 of a corner
 
-  /// u, u_,y, u_,z; powers by recurrence.
+  /// Returns u, u_,y and u_,z. Powers are computed by recurrence.
   static std::array<double, 3> series(double a, double b, double y, double z) {
     const double k = pi / (2 * b), near = std::max(0.0, a - std::abs(y)), far = a + std::abs(y), step = 2 * k;
     const int terms = static_cast<int>(std::min<double>(most_terms, 2 + 38 / std::max(step * near, 1e-6)));

@@ -1,5 +1,5 @@
 #pragma once
-// The open ends of a channel, where its flow is that of a straight duct.
+// The open ends of a channel, where its flow equals the flow of a straight duct.
 
 #include <vector>
 
@@ -9,22 +9,23 @@
 
 namespace tanktread::stokes {
 
-/// What a plane end across a channel, through which a duct's flow u(y2, y3) goes along `along`, does to the fluid inside, but for its pressure:
+/// Velocity in the fluid due to a plane end of a channel, through which the duct flow u(y2, y3) passes in the direction `along`, except for the
+/// contribution of its pressure:
 ///
 ///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
 ///
-/// n into the fluid, e_a the axes of the section. Velocity and traction of the duct are exact; the plane is summed over Gauss points of rays from the
-/// centroid, by halves where a point is close.
+/// where n points into the fluid and e_a are the axes of the section. Velocity and traction of the duct flow are exact. The plane is integrated by
+/// Gauss points on rays from the centroid, with cells that are halved near a close target.
 class DuctEnd {
  public:
-  /// `flow`: of the straight duct whose section this is; `inward`: 1 where along points into the fluid, at the inlet, -1 at the outlet. Throws
-  /// UserError where a ray meets the outline twice.
+  /// `flow`: flow of the straight duct with this section. `inward`: 1 if `along` points into the fluid (inlet), -1 otherwise (outlet). Throws
+  /// UserError if a ray meets the outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
-  /// P at the rows of x, in the fluid or on the wall, units length/time.
+  /// Returns P at the rows of x, in the fluid or on the wall, units length/time.
   Net velocities(const Net& x) const;
 
-  /// Gauss points of the section: places, and areas.
+  /// Gauss points of the section: positions and areas.
   struct Points {
     Net x;
     Eigen::VectorXd area;
@@ -34,7 +35,7 @@ class DuctEnd {
   const DuctFlow& flow() const { return flow_; }
 
  private:
-  /// Part of the section: rays to side k, u = t[0] .. t[1], over r[0] .. r[1] of their length.
+  /// Part of the section: rays to side k for u = t[0] .. t[1], over the fractions r[0] .. r[1] of their length.
   struct Cell {
     int side;
     double t[2], r[2];
@@ -58,7 +59,7 @@ class DuctEnd {
   double inward_;
   Sources far_;
   std::vector<Cell> cells_;
-  std::vector<Sources> close_;  // of each cell, for points that are near the plane but not near it
+  std::vector<Sources> close_;  // sources of each cell, for targets close to the plane but not to the cell
 };
 
 }  // namespace tanktread::stokes

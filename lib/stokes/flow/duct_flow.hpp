@@ -8,27 +8,28 @@
 
 namespace tanktread::stokes {
 
-/// The shape of a duct's velocity: u with u_,22 + u_,33 = -1 in the section and u = 0 on its outline. Units: u length^2, coordinates x2, x3.
+/// Velocity profile of a duct: u with u_,22 + u_,33 = -1 in the section and u = 0 on its outline. Units: u length^2, coordinates x2, x3.
 class DuctProfile {
  public:
   virtual ~DuctProfile() = default;
 
-  /// u and, unless `u2` is null, its derivatives by x2 and x3 at n points; arrays of n numbers. Points must not lie outside of the section.
+  /// Evaluates u and, unless `u2` is null, its derivatives with respect to x2 and x3 at n points; arrays of length n. Points must not lie outside the
+  /// section.
   virtual void evaluate(int n, const double* x2, const double* x3, double* u, double* u2, double* u3) const = 0;
 
   virtual double flow_rate() const = 0;  ///< int u dA, units length^4
 };
 
-/// Closed forms: of an ellipse or circle, and of a rectangle (a series, to round-off), both about the origin.
+/// Return profiles in closed form: for an ellipse or circle, and for a rectangle (a series, to round-off), both about the origin.
 std::unique_ptr<DuctProfile> ellipse_profile(const surface::Vec2& semi_axes);
 std::unique_ptr<DuctProfile> rectangle_profile(const surface::Vec2& sides);
 
-/// What remains of an exact section: the profile that TubeOptions ask for.
+/// Returns the profile selected by TubeOptions: a closed form or the boundary-element profile.
 std::unique_ptr<DuctProfile> duct_profile(const surface::TubeOptions& options, const surface::Outline& outline);
 
 /// Unidirectional flow v = (v_1(x2, x3), 0, 0) with  mu (v_1,22 + v_1,33) = p_,1 = -G  and v_1 = 0 on the wall                  (P-33)
-/// whose mean over the section is given. All queries are independent of x1 but for the pressure p = -G x1. Where a channel's section changes, what
-/// derives from this has another velocity; the rest is that of its inlet.
+/// with given mean over the section. All results are independent of x1, except for the pressure p = -G x1. In channels with varying section a derived
+/// class overrides the velocities; all other members then refer to the inlet.
 class DuctFlow {
  public:
   DuctFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity);
@@ -39,8 +40,9 @@ class DuctFlow {
 
   Vec3 velocity(const Vec3& x) const;
   Mat3 gradient(const Vec3& x) const;                 ///< L_ij = dv_i/dx_j; only L_12 and L_13 are not zero
-  virtual Net velocities(const Net& x) const;         ///< a row each; much faster than one by one
-  Net tractions(const Net& x, const Net& n) const;    ///< f_inf = (-p 1 + 2 mu E) n, p = -G x1: full, of the outer viscosity
+  virtual Net velocities(const Net& x) const;         ///< one row per point; much faster than single points
+  Net tractions(const Net& x, const Net& n) const;  ///< f_inf = (-p 1 + 2 mu E) n with p = -G x1: the full traction, with the viscosity of the outer
+                                                    ///< fluid
   virtual std::vector<Mat3> gradients(const Net& x) const;
 
   const surface::Outline& outline() const { return outline_; }
@@ -55,7 +57,7 @@ class DuctFlow {
     surface::Vec2 place;
     double velocity;
   };
-  Maximum maximum() const;  ///< the largest velocity and where it is
+  Maximum maximum() const;  ///< largest velocity and its position
 
  private:
   struct Samples {

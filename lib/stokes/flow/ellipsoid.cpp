@@ -12,7 +12,7 @@ using std::numbers::pi;
 
 Ellipsoid::Ellipsoid(const Vec3& axes) : semi_axes(axes) {
   const Vec3 s = axes.cwiseAbs2();
-  chi = 2 * boost::math::ellint_rf(s[0], s[1], s[2]);  // Carlson's forms: R_F = 1/2 int dl/Delta, R_D = 3/2 int dl/((z + l) Delta)
+  chi = 2 * boost::math::ellint_rf(s[0], s[1], s[2]);  // Carlson's elliptic integrals: R_F = 1/2 int dl/Delta, R_D = 3/2 int dl/((z + l) Delta)
   for (int i = 0; i < 3; ++i) alpha[i] = 2. / 3 * boost::math::ellint_rd(s[(i + 1) % 3], s[(i + 2) % 3], s[i]);
 }
 
@@ -20,7 +20,7 @@ Vec3 Ellipsoid::force(double viscosity, const Vec3& velocity) const {
   return 16 * pi * viscosity * velocity.array() / (chi + alpha.array() * semi_axes.array().square());
 }
 
-/// K omega
+/// Returns K omega.
 Vec3 Ellipsoid::rotlet(double viscosity, const Vec3& angular_velocity) const {
   const Vec3 s = semi_axes.cwiseAbs2();
   Vec3 k;

@@ -95,7 +95,7 @@ void FlowHistory::check() const {
 
 FlowHistory::Moment FlowHistory::at(double time, double start) const {
   if (type == "sine") return {*mean + *amplitude * std::sin(2 * std::numbers::pi * *frequency * time + *phase * degree), Mat3::Identity()};
-  // The piece in which the step began; times of steps are those of the table to round-off.
+  // Selects the piece in which the step began. Times of steps equal those of the table up to round-off.
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(*times, start * (1 + 1e-12)) - times->begin());
   const std::size_t j = std::min(after, times->size() - 1), i = after == 0 ? 0 : after - 1;
   const double t = i == j ? 0 : std::clamp((time - (*times)[i]) / ((*times)[j] - (*times)[i]), 0.0, 1.0);

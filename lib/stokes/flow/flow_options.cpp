@@ -46,7 +46,7 @@ void FlowOptions::declare(deck::Section& section) {
   }
 }
 
-/// Reads the section of a registered type, and refuses sections of other ones.
+/// Reads the section of a registered type, and rejects sections of other registered types.
 void FlowOptions::declare_registered(deck::Section& section) {
   user.reset();
   for (const std::string& name : registered->names()) {

@@ -6,7 +6,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// g[block (6 k + c) + l]
+// Computes the entries c of the kernel for node k and target l: g[block (6 k + c) + l].
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
@@ -42,7 +42,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Four functions and six kernel entries at a time: 24 packs of sums in registers, where there are as many.
+// Four functions and six kernel entries at a time: 24 packs of sums in registers, if there are as many registers.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
   using Several = typename RegisterOf<Real>::Type;

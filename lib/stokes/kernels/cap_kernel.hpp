@@ -3,7 +3,7 @@
 
 namespace tanktread::stokes {
 
-/// sum rho.nu/r and sum nu/r over n nodes at (y, z) with normals times weights; rho from (y0, z0), r^2 = rho^2 + h^2, h not 0.
+/// Sums of rho.nu/r and nu/r over n nodes at (y, z) with normals times weights; rho is relative to (y0, z0), r^2 = rho^2 + h^2, and h is not 0.
 struct CapSums {
   double flux, normal_y, normal_z;
 };

@@ -11,7 +11,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-/// Nodes of one direction, and 1 / prod_{b != a} (x_a - x_b).
+/// Nodes of one direction, and the barycentric weights 1 / prod_{b != a} (x_a - x_b).
 struct Nodes {
   double x[most_chebyshev], scale[most_chebyshev];
 };
@@ -35,7 +35,7 @@ const Nodes& nodes(int n) {
   return all[n];
 }
 
-/// Lagrange polynomials at x, without a division.
+/// Evaluates the Lagrange polynomials at x without division.
 void lagrange(int n, const Register& x, Register* value) {
   const Nodes& at = nodes(n);
   Register product = Register{} + 1;
@@ -75,7 +75,7 @@ void spread_components(const ChebyshevBox& box, const Charges& points, Register*
   std::fill_n(scratch, N * box.n_nodes(), Register{});
   Basis basis;
   for (int k = 0; k < points.n; k += lanes) {
-    const int n = points.n - k;  // lanes beyond the last point carry nothing
+    const int n = points.n - k;  // lanes beyond the last point have zero strength
     basis.place(box, load_some(points.x + k, n), load_some(points.y + k, n), load_some(points.z + k, n));
     Register q[N];
     for (int d = 0; d < N; ++d) q[d] = load_some(points.q[d] + k, n);

@@ -10,16 +10,16 @@ namespace {
 
 constexpr int packs = far_block / lanes;
 
-/// Packs of targets that are summed for side by side.
+/// Number of packs of targets that are summed at the same time.
 constexpr int tile = packs < 4 ? packs : 4;
 
-/// The square of the distance at which a node coincides with the target x0, but for the rounding of their coordinates.
+/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
 template <class Number>
 Number coincident(const Number& x0, const Number& y0, const Number& z0) {
   return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
 }
 
-/// The targets of one tile.
+/// Computes the sums of the targets of one tile.
 void tile_sum(const PointForces& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
   for (int p = 0; p < tile; ++p) {
@@ -47,7 +47,7 @@ void tile_sum(const PointForces& forces, const double* target, double* u) {
   }
 }
 
-/// For each pack of targets, which have `in` coordinates, the sums over the nodes k of term(k, r, target, 1/|r|, sums).
+/// Computes, for each pack of targets with `in` coordinates, the sums over the nodes k of term(k, r, target, 1/|r|, sums).
 template <int in, int out, class Nodes, class Term>
 void sums_of_packs(const Nodes& nodes, const double* target, double* value, const Term& term) {
   for (int p = 0; p < packs; ++p) {

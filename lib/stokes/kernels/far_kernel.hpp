@@ -1,5 +1,5 @@
 #pragma once
-// The bare sums: every target against every node, on plain arrays.
+// Direct sums of every node for every target, on plain arrays.
 
 #include <array>
 #include <span>
@@ -27,36 +27,38 @@ struct Stresslets {
   }
 };
 
-/// Of the terms of a far sum; what they are summed up to is double.
+/// Precision of the terms of a far sum. The sums are accumulated in double precision.
 enum class Precision { single, full };
 
-/// Targets that share one pass over the nodes.
+/// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
-/// u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
-/// target[2 far_block + l]; u alike. Each target's sum runs over the nodes in their order. A node at the target,
-/// to rounding (2^-40 of the target's distance from the origin), counts as nothing.
+/// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
+/// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
+/// (2^-40 of the target's distance from the origin), is skipped.
 void far_sum(const PointForces& forces, const double* target, double* u);
 
-/// u[3 k + c] of it for any number of targets.
+/// Computes this sum for any number of targets; result u[3 k + c].
 void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
 
-/// The same for one target x0[3], u[3]: what a pair with a better rule takes back.
+/// Computes this sum for one target x0[3], u[3]. It is subtracted when a better rule replaces these nodes.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
-/// u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 the place, 3, 4, 5 the velocity v0 there.
+/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 for the position, 3, 4, 5 for the velocity v0
+/// there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
-/// The same sums in single precision: differences of places are good to 1e-7 of themselves, however close the places are, for what single precision
-/// leaves of a place counts as well; terms of `single_run` nodes are added up before they go to the sum in double. Off by 3e-8 of the sum of
-/// the terms' magnitudes (root mean square; at most 3e-7). What one target gets does not depend on the others.
+/// Compute these sums in single precision. Position differences have a relative error of 1e-7 even for close points, because the part of a position
+/// that single precision drops is stored separately. The terms of `single_run` nodes are summed before they are added to the double-precision sum.
+/// The error is 3e-8 of the sum of the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the
+/// other targets.
 constexpr int single_run = 64;
 void far_sum_in_single(const PointForces& forces, const double* target, double* u);
 void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
 
-/// Points that carry up to six numbers each.
+/// Points with up to six source strengths each.
 struct Charges {
   int n = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr;
@@ -69,8 +71,8 @@ struct Charges {
   }
 };
 
-/// Kernels that TreeSum interpolates: numbers a point carries, numbers a target gets, and the sum for far_block targets, which are given as
-/// to far_sum(); value[far_block c + l].
+/// Kernels for TreeSum: `in` components per source, `out` components per target, and the sum for far_block targets with the layout of far_sum();
+/// value[far_block c + l].
 void stokeslet_sum(const Charges& points, const double* target, double* value);
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
@@ -78,23 +80,23 @@ void stokeslet_sum_in_single(const Charges& points, const double* target, double
 void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
 using KernelSum = void (*)(const Charges& points, const double* target, double* value);
 
-/// u[3 k + c] of one of these with three numbers a target, for any number of targets.
+/// Computes one of these sums with three components per target for any number of targets; result u[3 k + c].
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
 
-struct StokesletKernel {  ///< forces -> G f
+struct StokesletKernel {  ///< maps forces f to G f
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
-/// The order in which the six numbers of a symmetric stress are carried: 11, 22, 33, 12, 13, 23.
+/// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-struct StressletKernel {  ///< S_jk + S_kj over 2 in that order -> T_ijk S_jk
+struct StressletKernel {  ///< maps (S_jk + S_kj)/2, in this order, to T_ijk S_jk
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
-struct NormalStressKernel {  ///< n_k -> T_ijk n_k, ij in that order
+struct NormalStressKernel {  ///< maps n_k to T_ijk n_k, ij in this order
   static constexpr int in = 3, out = 6;
-  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // once a shape
+  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // evaluated only once per shape
 };
 
 }  // namespace tanktread::stokes

@@ -6,10 +6,11 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Nodes that all targets meet before the next ones are loaded: 48 or 72 bytes each.
+/// Number of nodes that are summed for all targets before the next nodes are loaded into the cache: 48 or 72 bytes each.
 constexpr int nodes_in_cache = 4096;
 
-/// u[3 k + c] of target k, which has the coordinates given[0][k], and what else goes with it in given[1][k], by sum(nodes, block, sums).
+/// Computes u[3 k + c] of target k by sum(nodes, block, sums). The target has the coordinates given[0][k] and, if Vectors is 2, the additional vector
+/// given[1][k].
 template <std::size_t Vectors, class Nodes, class Sum>
 void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, Vectors>& given, double* u, const Sum& sum) {
   const int n = static_cast<int>(given[0].size());
@@ -18,7 +19,7 @@ void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, 
   for (int node = 0; node < nodes.n; node += nodes_in_cache) {
     const Nodes part = nodes.part(node, std::min(nodes_in_cache, nodes.n - node));
     for (int first = 0; first < n; first += far_block) {
-      for (int l = 0; l < far_block; ++l)  // idle lanes repeat the last target
+      for (int l = 0; l < far_block; ++l)  // unused lanes repeat the last target
         for (std::size_t v = 0; v < Vectors; ++v)
           for (std::size_t c = 0; c < 3; ++c) block[far_block * (3 * v + c) + l] = given[v][std::min(first + l, n - 1)][c];
       sum(part, block, sums);
@@ -28,7 +29,7 @@ void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, 
   }
 }
 
-/// The sum of nodes of a kind, of the precision asked.
+/// Returns the function that sums nodes of this type in this precision.
 template <class Nodes>
 auto of(Precision precision) {
   void (*const full)(const Nodes&, const double*, double*) = far_sum;

@@ -6,7 +6,7 @@
 
 namespace tanktread::stokes {
 
-/// What integrals of both kernels are taken over.
+/// Factor of the integrals of both kernels.
 constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 
 /// Free-space Stokeslet: velocity at x0 due to a unit point force at x, times 8 pi mu.
@@ -19,7 +19,7 @@ Mat3 stokeslet(const Vec3& r);
 /// Stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Units 1/length^2.
 Mat3 stresslet(const Vec3& r, const Vec3& n);
 
-/// Kernel evaluations done so far, by the kind of rule.
+/// Number of kernel evaluations so far, by the kind of rule: far-field, near-singular and singular.
 struct Evaluations {
   long long far = 0, near = 0, self = 0;
   long long total() const { return far + near + self; }

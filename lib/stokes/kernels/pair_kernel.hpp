@@ -1,26 +1,27 @@
 #pragma once
-// One target and one panel under a rule of their own. Bezier points of a panel: component c of point b at n_b c + b.
+// Kernels for one target and one panel with a panel-specific rule. Bezier points of a panel: component c of point b at n_b c + b.
 
 #include "stokes/kernels/point_table.hpp"
 
 namespace tanktread::stokes {
 
-/// weight[k] = rule weight times |x_,s x x_,t| for every pack of points.
+/// Computes weight[k] = rule weight times |x_,s x x_,t| for every pack of points.
 void area_weights(const PointTable& table, const double* bezier, Pack* weight);
 
-/// u[3] = sum_q G(x_q, x0) f_q weight_q (2.1).
+/// Computes u[3] = sum_q G(x_q, x0) f_q weight_q (2.1).
 void single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u);
 
-/// moment[6 b + c] = sum_q G_c(x_q, x0) B_b(q) weight_q with G_c = G_11, G_12, G_13, G_22, G_23, G_33. `scratch`: 6 packs a pack of points.
+/// Computes moment[6 b + c] = sum_q G_c(x_q, x0) B_b(q) weight_q with G_c = G_11, G_12, G_13, G_22, G_23, G_33. `scratch`: 6 packs per pack of
+/// points.
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment);
 
-/// u[3] = sum_q G(x_q, x0) n_q weight_q: the single layer of the normal.
+/// Computes u[3] = sum_q G(x_q, x0) n_q weight_q: the single layer of the normal.
 void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u);
 
-/// u[3] = sum_q (v_q - v0)_j T_ijk(x_q, x0) n_q weight_q (2.2), where n_q weight_q is the rule's weight times x_,s x x_,t.
+/// Computes u[3] = sum_q (v_q - v0)_j T_ijk(x_q, x0) n_q weight_q (2.2), where n_q weight_q is the weight of the rule times x_,s x x_,t.
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u);
 
-/// moment[6 b + c] = sum_q (T_ijk n_k)_c B_b(q) weight_q with the same entries c = ij as the single layer's.
+/// Computes moment[6 b + c] = sum_q (T_ijk n_k)_c B_b(q) weight_q with the entries c = ij in the order of `single_moments`.
 void double_moments(const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment);
 
 }  // namespace tanktread::stokes

@@ -8,7 +8,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// n_b is a template argument where it is usual, 0 where it is known at run time only.
+// n_b is a template argument for common degrees, and 0 if it is known at run time only.
 template <int Bernstein>
 void extract_all(int n_bernstein, int functions, const int* points, const double* extraction, const double* net,
                  double* __restrict bezier) {

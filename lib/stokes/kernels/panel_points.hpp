@@ -1,5 +1,5 @@
 #pragma once
-// A panel at a register of points of a table: for kernels only.
+// Evaluation of a panel at a register of points of a table; only for use in kernels.
 
 #include "base/register.hpp"
 #include "stokes/kernels/point_table.hpp"
@@ -7,7 +7,7 @@
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 
-/// One pack of points of a table. The degree is a template argument where it is usual, 0 where it is known at run time only.
+/// One pack of points of a table. The degree is a template argument for common degrees, and 0 if it is known at run time only.
 template <int Degree>
 struct Points {
   const int n;
@@ -37,7 +37,7 @@ struct Points {
     }
   }
 
-  /// r = x - x0, n = x_,s x x_,t, and r.n
+  /// Computes r = x - x0 and n = x_,s x x_,t, and returns r.n.
   Register height(const double* x, int n_b, const double* x0, Register (&r)[3], Register (&normal)[3]) const {
     Register a[3], b[3];
     for (int c = 0; c < 3; ++c) {
@@ -49,7 +49,7 @@ struct Points {
   }
 };
 
-/// moment[n_c b + c] = sum over the points of g[n_c k + c] B_b, for all Bernstein polynomials of a table.
+/// Computes moment[n_c b + c] = sum over the points of g[n_c k + c] B_b, for all Bernstein polynomials of a table.
 template <int Degree, int n_c>
 void project(const PointTable& table, const Register* g, double* moment) {
   const int n = Degree ? Degree + 1 : table.degree + 1;
@@ -65,7 +65,7 @@ void project(const PointTable& table, const Register* g, double* moment) {
     }
 }
 
-/// Calls `use` with the sums of a usual degree, or with those of any.
+/// Calls `use` with the sums for a common degree, or with those for a degree known at run time.
 template <template <int> class Sums, class Use>
 void with_degree(int degree, const Use& use) {
   if (degree == 3) return use(Sums<3>());

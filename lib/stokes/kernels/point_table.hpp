@@ -1,5 +1,5 @@
 #pragma once
-// Bernstein polynomials at the points of any rule, a register of points side by side: what a target with its own rule evaluates.
+// Bernstein polynomials at the points of a quadrature rule, in registers of points, for targets with a panel-specific rule.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace tanktread::stokes {
 
-/// For pack k of points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is filled up with weights 0.
+/// For pack k of points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is padded with points of weight 0.
 struct PointTable {
   int degree = 3, points = 0;
   std::vector<Pack> bernstein, weights;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int wide = RegisterOf<float>::lanes;
 
-/// n places as single precision sees them from an origin, over a power of two, and what it leaves of them.
+/// Coordinates of n points relative to an origin, scaled by a power of two: the part in single precision, and the remainder.
 template <int size>
 struct Split {
   alignas(register_bytes) float place[3][size], rest[3][size];
@@ -24,12 +24,12 @@ struct Split {
   }
 };
 
-/// A run of nodes and a block of targets as the first node of the run sees them. Scaled to the farthest target, so that powers of distances stay
-/// within single precision in any units.
+/// A run of nodes and a block of targets relative to the first node of the run. Scaled by the distance of the farthest target, so that powers of
+/// distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;
-  alignas(register_bytes) float least[far_block];  // square of the distance at which a node coincides with a target, but for rounding
+  alignas(register_bytes) float least[far_block];  // squared distance below which a node coincides with a target up to rounding
   double scale;
 
   Sight(int n, const double* const (&x)[3], const double* target) {
@@ -48,7 +48,7 @@ struct Sight {
     }
   }
 
-  /// r from the targets of one register to node k.
+  /// Computes r from the targets of one register to node k.
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));
@@ -57,14 +57,14 @@ struct Sight {
   }
 };
 
-/// n numbers in single precision, less their `origin`.
+/// Computes n values minus `origin` in single precision.
 template <int size>
 void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
 }
 
 /// Adds to u, times a factor, the sums over n nodes of term(first, k, r, inverse, sum), which adds the term of node k for the targets of the register
-/// that begins with `first`; inverse: 1/|r|.
+/// that starts with target `first`; `inverse` is 1/|r|.
 template <class Term>
 inline void add_terms(const Sight& sight, int n, double factor, double* u, const Term& term) {
   for (int first = 0; first < far_block; first += wide) {
@@ -95,7 +95,7 @@ void add_run(const Stresslets& nodes, const double* target, double* u) {
   const Sight sight(nodes.n, {nodes.x, nodes.y, nodes.z}, target);
   float v[3][single_run], n[3][single_run], v0[3][far_block];
   const double *const velocity[3] = {nodes.vx, nodes.vy, nodes.vz}, *const normal[3] = {nodes.nx, nodes.ny, nodes.nz};
-  for (int c = 0; c < 3; ++c) {  // velocities that are near one another differ by little from the first
+  for (int c = 0; c < 3; ++c) {  // close velocities differ little from the first, so that the difference loses no accuracy
     narrow(nodes.n, velocity[c], velocity[c][0], v[c]);
     narrow(far_block, target + far_block * (3 + c), velocity[c][0], v0[c]);
     narrow(nodes.n, normal[c], 0, n[c]);

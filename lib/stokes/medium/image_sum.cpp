@@ -49,7 +49,7 @@ bool ImageSum::want(std::vector<Vec3> targets, std::vector<int> wanted) {
   return true;
 }
 
-/// What nodes carry in the wall's axes.
+/// Rotates the source strengths into the wall's axes.
 void ImageSum::turn(const Charges& carried, std::vector<double> (&own)[6]) const {
   const Mat3& axes = wall_.axes();
   const int in = kind_ == Kind::forces ? 3 : 6;

@@ -1,5 +1,5 @@
 #pragma once
-// Far sums of the images of nodes in a plane wall.
+// Far-field sums of the images of nodes in a plane wall.
 
 #include <optional>
 #include <span>
@@ -12,33 +12,35 @@
 
 namespace tanktread::stokes {
 
-/// sum_k G^I f_k or sum_k T^I S_k (stokes/kernels/image_kernel.hpp) of all nodes, every node for every target or by clusters: nodes where they
-/// are, targets where they are mirrored, all in the wall's axes.
+/// Evaluates sum_k G^I f_k or sum_k T^I S_k (stokes/kernels/image_kernel.hpp) over all nodes, directly or by clusters. Sources are the nodes at their
+/// own positions, and targets are mirrored, all in the wall's axes.
 class ImageSum {
  public:
   enum class Kind { forces, stresslets };
 
-  /// `tolerance`: of clusters, as TreeSum has it; none: no clusters.
+  /// `tolerance`: tolerance of clusters as in TreeSum; if not set, the sum is direct.
   ImageSum(Kind kind, const PlaneWall& wall, std::optional<double> tolerance);
 
   const PlaneWall& wall() const { return wall_; }
 
-  /// Shares the sums by clusters, as TreeSum does.
+  /// Shares the sums by clusters among ranks, as TreeSum does.
   void share(int part, int parts);
 
-  /// Takes places of the nodes.
+  /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Takes all targets, and which of them are wanted; whether they are other ones than before, or nodes are.
+  /// Sets all targets, and the indices of those to compute. Returns whether these or the nodes have changed.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
-  /// Rows for the targets wanted, in their order, of nodes that carry 3 numbers of forces, or 6 of S in the order 11, 22, 33, 12, 13, 23.
+  /// Returns one row for each selected target, in their order. Source strengths of the nodes have 3 components (forces) or the 6 components of S in
+  /// the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
-  /// The same of few nodes from `first` on at one target: what a better rule takes back. `carried`: from those nodes on.
+  /// Returns the sum over a few nodes, starting with node `first`, at one target. It is subtracted when a better rule replaces these nodes.
+  /// `carried`: strengths of these nodes.
   Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
 
-  long long interactions() const { return interactions_; }  ///< of the last sum
+  long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
 
  private:
   void turn(const Charges& carried, std::vector<double> (&own)[6]) const;
@@ -51,9 +53,9 @@ class ImageSum {
   PlaneWall wall_;
   std::optional<TreeSum> tree_;
   std::vector<double> node_[3];  // in the wall's axes
-  std::vector<Vec3> targets_;    // in space
+  std::vector<Vec3> targets_;    // in the laboratory frame
   std::vector<int> wanted_;
-  bool placed_ = false;          // the targets, since the nodes were
+  bool placed_ = false;          // true if the targets were set since the nodes were
   long long interactions_ = 0;
 };
 

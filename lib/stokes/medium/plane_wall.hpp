@@ -1,5 +1,5 @@
 #pragma once
-// A plane wall that the fluid sticks to.
+// A plane no-slip wall.
 
 #include <Eigen/Geometry>
 
@@ -7,7 +7,7 @@
 
 namespace tanktread::stokes {
 
-/// Through `point`, with `normal` into the fluid; it may move along itself at one velocity.
+/// Wall through `point` with `normal` pointing into the fluid. It may move tangentially at a constant velocity.
 class PlaneWall {
  public:
   PlaneWall(const Vec3& point, const Vec3& normal) : point_(point), normal_(normal.normalized()) {
@@ -16,11 +16,11 @@ class PlaneWall {
   }
 
   const Vec3& point() const { return point_; }
-  const Vec3& normal() const { return normal_; }    ///< of length 1
-  const Mat3& axes() const { return axes_; }        ///< rows: two along the wall, the normal
-  double height(const Vec3& x) const { return normal_.dot(x - point_); }  ///< over the wall, below 0 behind it
+  const Vec3& normal() const { return normal_; }    ///< unit normal
+  const Mat3& axes() const { return axes_; }        ///< rows: two tangential axes, then the normal
+  double height(const Vec3& x) const { return normal_.dot(x - point_); }  ///< height above the wall, negative behind it
   Vec3 mirrored(const Vec3& x) const { return x - 2 * height(x) * normal_; }
-  Vec3 in_axes(const Vec3& x) const { return axes_ * (x - point_); }  ///< seen from the point, in the wall's axes
+  Vec3 in_axes(const Vec3& x) const { return axes_ * (x - point_); }  ///< position relative to `point` in the wall's axes
 
  private:
   Vec3 point_, normal_;

@@ -9,10 +9,11 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Variance across over variance along below which a cluster counts as flat.
+/// Ratio of the smallest to the second largest variance of a cluster below which it counts as flat.
 constexpr double flat = 0.1;
 
-/// Nodes along the longest axis. More let clusters serve closer by, and cost more; measured on deformed spheres at 1e-3 to 1e-8.
+/// Returns the number of nodes along the longest axis. More nodes make clusters usable at smaller distances, and cost more. Measured on deformed
+/// spheres at tolerances of 1e-3 to 1e-8.
 int longest_order(double tolerance) {
   return std::clamp(static_cast<int>(std::lround(2.8 - 0.72 * std::log10(tolerance))), 3, most_chebyshev);
 }
@@ -21,7 +22,7 @@ int chebyshev_order(double tolerance, double z) {
   return static_cast<int>(std::ceil(-std::log(tolerance) / std::log(z + std::sqrt(z * z - 1)) - 1e-9));
 }
 
-/// Axes turned as little as possible so that one of them is the normal.
+/// Returns the axes rotated as little as possible so that one of them is the normal.
 Mat3 turned(const Mat3& axes, const Vec3& normal) {
   int across;
   (axes * normal).cwiseAbs().maxCoeff(&across);
@@ -70,7 +71,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   for (auto cluster = clusters_.rbegin(); cluster != clusters_.rend(); ++cluster) enclose(*cluster);
 }
 
-/// The cluster of groups first .. last - 1 and all below it; axes are those of its parent.
+/// Builds the cluster of groups first .. last - 1 and its descendants, and returns its index. `axes`: axes of its parent.
 int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts) {
   Vec3 mean = Vec3::Zero();
   Mat3 covariance = Mat3::Zero();
@@ -112,7 +113,8 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
   return number;
 }
 
-/// The box around the points of a leaf, or around the nodes of both children or the points of those that are bare, and its own nodes.
+/// Computes the box of a cluster and its nodes. The box encloses the points of a leaf, or else the nodes of both children (the points of bare
+/// children).
 void Clusters::enclose(Cluster& cluster) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const auto take = [&](const std::vector<double>(&at)[3], int first, int n) {

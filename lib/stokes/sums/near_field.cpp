@@ -12,8 +12,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// What one panel may err by, relative to the whole: several of them err at a time, and the estimate rho^(-2 n) leaves out factors that
-/// grow with the order. Measured on deformed surfaces (tests/verify/layers.cpp).
+/// Returns the error permitted for one panel relative to the whole integral. Errors of several panels add up, and the estimate rho^(-2 n) omits
+/// factors that grow with the order. Measured on deformed surfaces (tests/verify/layers.cpp).
 double share(double tolerance) { return 0.3 * std::pow(tolerance, 1.125); }
 
 Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
@@ -24,9 +24,9 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
   return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
 }
 
-/// Numbers the surfaces that panels make up by the control points that they share; how many there are.
+/// Numbers the connected surfaces, whose panels share control points, and returns how many there are.
 int connected(const Panels& panels, std::vector<int>& surface) {
-  std::vector<int> first;  // of each control point: a panel that has it, or -1
+  std::vector<int> first;  // for each control point a panel that contains it, or -1
   std::vector<int> root(static_cast<std::size_t>(panels.size()));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int e) {
@@ -51,7 +51,8 @@ int connected(const Panels& panels, std::vector<int>& surface) {
   return n;
 }
 
-/// Distance from the panel beyond which `order` points a direction are enough, wherever the target is: about, and not too short.
+/// Returns an estimate of the distance from the panel beyond which `order` points per direction suffice for any target; rather too long than too
+/// short.
 double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
   double d = longest;
   for (int k = 0; k < 2; ++k) {
@@ -86,8 +87,8 @@ void NearField::view(int e) {
   for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
-  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // the same at all corners
-  for (int j = 1; j < t.degree; ++j)  // of all inner points, so that it does not depend on where s and t start
+  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // equal at all corners
+  for (int j = 1; j < t.degree; ++j)  // over all inner points, so that the result does not depend on the orientation of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }
@@ -130,8 +131,8 @@ bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
   return !own.empty() && surface_[own.front().panel] == surface_[e];
 }
 
-/// A target off the surface faces panels that bulge towards it, and sees the flat picture nearer by the bulge: one to three Gauss points a direction
-/// (tests/verify/layer_shapes.cpp). Panels of its own surface bulge away from each other's corners.
+/// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation is therefore reduced by the bulge,
+/// which costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs no such reduction.
 quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
   if (!across) return quadrature::sight(view.flat, target);
   const double height = (target - view.flat.centre).dot(view.normal);

@@ -1,5 +1,5 @@
 #pragma once
-// Which panels a target is too close to for their far rule, and what rule they need.
+// Selects the panels on which a target needs a near-singular quadrature rule, and their rules.
 
 #include <map>
 #include <span>
@@ -15,36 +15,38 @@
 
 namespace tanktread::stokes {
 
-/// Near rules by tolerance. A pure function of the present shape: no memory of earlier ones.
+/// Near-singular quadrature rules by tolerance. They depend on the current shape only, not on earlier ones.
 class NearField {
  public:
-  /// `tolerance`: accuracy relative to int dG / r over the closed surface that a panel belongs to, about sqrt(4 pi area), however many others there
-  /// are. `steep`: the integrand grows like 1 / r^2 rather than 1 / r at targets that are not on the closed surface of the panel; on it the density
-  /// less its value at the target takes one order away (double layer). `off_surface`: there are targets on no surface.
+  /// `tolerance`: accuracy relative to int dG / r over the closed surface that contains the panel, about sqrt(4 pi area), regardless of other
+  /// surfaces. `steep`: the integrand grows like 1 / r^2 instead of 1 / r at targets off the closed surface of the panel (double layer). On the
+  /// surface, subtracting the value of the density at the target lowers the singularity by one order. `off_surface`: there are targets on no surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
-  /// Takes the shape from the Bezier points of panels that are no images. They must outlive the calls below, which ask for those of `panel`, too.
+  /// Sets the shape from the Bezier points of panels that are not images. The points must outlive the calls below. `rule` also needs the points of
+  /// its panel if it is an image.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// States that targets see images of the panels too, as if they were on other surfaces. Before update().
+  /// Lets targets also see images of the panels, which are treated like other surfaces. Must be called before update().
   void repeat() { across_gaps_ = true; }
 
-  /// Which of the surfaces a panel belongs to, and how many there are.
+  /// Returns the index of the surface that a panel belongs to; below, the number of surfaces.
   int surface(int panel) const { return surface_[static_cast<std::size_t>(panel)]; }
   int n_surfaces() const { return n_surfaces_; }
 
-  /// Panels whose far rule misses the tolerance at the target, ascending, but for those of `own`, which the target lies on.
+  /// Lists the panels whose far rule does not reach the tolerance at the target, in ascending order, except the panels of `own`, which contain the
+  /// target.
   void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
 
-  /// The rule for one of them, with the same `own`, as a table that stays valid until the next call.
+  /// Returns the rule for one of these panels, with equal `own`. The table is valid until the next call.
   const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> own);
 
  private:
   struct View {
     quadrature::Patch flat;
-    Vec3 normal;  ///< of the flat picture
+    Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand, across;  ///< of targets on the surface of the panel, and of those off it
+    quadrature::Demand demand, across;  ///< demands for targets on the surface of the panel, and for targets off it
   };
   void view(int e);
   bool on_same_surface(int e, std::span<const SelfPair> own) const;
@@ -52,14 +54,14 @@ class NearField {
   bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;  ///< but for what goes with the area
-  std::vector<int> surface_;   ///< of each panel: which of the surfaces it belongs to
+  quadrature::Demand demand_;  ///< demand without the parts that depend on the area
+  std::vector<int> surface_;   ///< index of the surface of each panel
   int n_surfaces_ = 1;
   bool steep_, across_gaps_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
-  std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule is enough
+  std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< (degree, order) -> tensor Gauss on the whole panel

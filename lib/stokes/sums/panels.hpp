@@ -1,5 +1,5 @@
 #pragma once
-// The elements as the layer operators see them: panels with Bezier points and far nodes in plain arrays.
+// The elements in the form used by layer operators: panels with Bezier points and far nodes in plain arrays.
 
 #include <deque>
 #include <vector>
@@ -19,14 +19,14 @@ struct NodeTable {
 /// One Bezier element. Its Bezier points lie at first_bezier + n_bernstein c + b, component c of point b = (p + 1) j + i.
 struct Panel {
   const NodeTable* table = nullptr;
-  int functions = 0;                 ///< m
-  std::size_t first_point = 0;       ///< of its m control-point ids
-  std::size_t first_extraction = 0;  ///< of its extraction matrix, (m, n_bernstein) row by row
-  std::size_t first_bezier = 0;      ///< of its 3 n_bernstein numbers
-  int first_node = 0;                ///< of its far nodes
+  int functions = 0;                 ///< number m of basis functions
+  std::size_t first_point = 0;       ///< index of the first of its m control-point indices
+  std::size_t first_extraction = 0;  ///< index of the first entry of its extraction matrix, (m, n_bernstein) row by row
+  std::size_t first_bezier = 0;      ///< index of the first of its 3 n_bernstein Bezier coordinates
+  int first_node = 0;                ///< index of the first of its far nodes
 };
 
-/// All panels of a space; `orders[e]` Gauss points a direction make the far rule of element e.
+/// All panels of a space. The far rule of element e has `orders[e]` Gauss points per direction.
 class Panels {
  public:
   Panels(const spline::Space& space, const std::vector<int>& orders);
@@ -40,7 +40,7 @@ class Panels {
   const int* points(int e) const { return &points_[panels_[e].first_point]; }
   const double* extraction(int e) const { return &extraction_[panels_[e].first_extraction]; }
 
-  /// Bezier points of all panels from a control net of any field; or of one of them, in an array for all.
+  /// Computes the Bezier points of all panels, or of one panel within the array for all panels, from the control net of any field.
   void bezier(const Net& net, std::vector<double>& points) const;
   void bezier(int e, const Net& net, std::vector<double>& points) const;
 
@@ -53,7 +53,7 @@ class Panels {
   std::size_t bezier_size_ = 0;
 };
 
-/// Which panels are images of others in a symmetric shape: panel e that of source[e] in reflection image[e], or its own source, image[e] = -1.
+/// Panels that are symmetry images of others: panel e is the image of source[e] in reflection image[e], or its own source if image[e] = -1.
 struct PanelImages {
   std::vector<int> source, image;
   std::vector<surface::Reflection> reflections;
@@ -61,14 +61,15 @@ struct PanelImages {
   bool own(int e) const { return image[e] < 0; }
 };
 
-/// Values of a field at all far nodes, one array a component, from its Bezier points; or at those of one panel, in arrays for all.
+/// Computes the values of a field from its Bezier points, one array per component, at all far nodes, or at the nodes of one panel within these
+/// arrays.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
-/// Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that a node stands for.
+/// Computes Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that the node represents.
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);
 
-/// Gauss weight times |x_,s x x_,t| at all far nodes; or at those of one panel, in an array for all.
+/// Computes Gauss weight times |x_,s x x_,t| at all far nodes, or at the nodes of one panel within the array for all panels.
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight);
 void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight);
 

@@ -12,14 +12,17 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Radial points for a tolerance. The integrand is smooth along a ray; measured on the cube mesh, n = 3 and up (tests/verify/layers.cpp).
+/// Returns the number of radial points for a tolerance. The integrand is smooth along a ray. Measured on the cube mesh, n = 3 and up
+/// (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
-/// By how much of its distance a corner may be off where the tangents say before orders are raised: the more digits, the less. Measured on spheroids
-/// 10 : 1 (tests/verify/layer_shapes.cpp), whose tips are as sharp as their elements.
+/// Returns the permitted distance of a corner from the position predicted by the tangents, relative to the distance of the corner from the target. If
+/// it is exceeded, orders are raised. It decreases with the tolerance. Measured on spheroids of aspect ratio 10 (tests/verify/layer_shapes.cpp),
+/// whose tip radius is as small as their elements.
 double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
 
-/// Rules kept at a time, and their points, of 136 bytes: metrics come and go in a long run, and a wild shape asks for rules of 25,000 points.
+/// Maximum number of cached rules, and of their points (136 bytes each). The limit is needed because metrics change in a long run, and a strongly
+/// deformed shape may need rules of 25,000 points.
 constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
 
 quadrature::Rule whole_square(int order) {
@@ -27,7 +30,7 @@ quadrature::Rule whole_square(int order) {
   return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
 }
 
-/// sum B_i(s) B_j(t) p_ij. At corners and on sides of a panel most of the polynomials vanish.
+/// Returns sum B_i(s) B_j(t) p_ij. At corners and on sides of a panel most of the polynomials vanish.
 Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   Vec3 sum = Vec3::Zero();
   for (int j = 0; j < n; ++j) {
@@ -40,7 +43,8 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   return sum;
 }
 
-/// The polynomials at the site, made when first asked for: but for the first pair of a site that is on the rank whose target it is.
+/// Evaluates the Bernstein polynomials at the site at first use. The first pair of a site is evaluated at construction; the other pairs are needed
+/// only on the rank that owns the target.
 void fill(SelfPair& pair, int degree) {
   if (!pair.bernstein.empty()) return;
   const int n = degree + 1;
@@ -78,7 +82,7 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
     shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
     const double squares[2] = {a1.squaredNorm(), a2.squaredNorm()};
     if (std::min(squares[0], squares[1]) < 1e-20 * std::max(squares[0], squares[1]))
-      orders.radial = 2 * radial_;  // a side that is one point: the area vanishes with r, so nothing is singular
+      orders.radial = 2 * radial_;  // side collapsed to a point: the area element vanishes like r, and the integrand is not singular
     else
       orders = raised_orders(pair, degree, points, shear, a1, a2);
   }
@@ -90,7 +94,7 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
   return *pair.table;
 }
 
-/// None where the corners are about where the tangents a1, a2 at the collocation point say.
+/// Returns raised orders, or none if the corners are close to the positions predicted by the tangents a1, a2 at the collocation point.
 quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
                                                  const Vec3& a1, const Vec3& a2) const {
   const int n = degree + 1, n_b = n * n;

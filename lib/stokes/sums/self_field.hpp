@@ -1,5 +1,5 @@
 #pragma once
-// The rules of the panels that a target lies on.
+// Singular quadrature rules for the panels that contain the target.
 
 #include <map>
 #include <memory>
@@ -15,39 +15,40 @@
 
 namespace tanktread::stokes {
 
-/// Points of spline surfaces, each with every element whose closure holds it; the first is the one to evaluate on.
+/// Points of spline surfaces, each given on every element whose closure contains it. Values are evaluated on the first element.
 using Sites = std::vector<std::vector<spline::Site>>;
 
-/// A site on one of its panels.
+/// A site on one of the panels that contain it.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;         ///< the bin that its rule is made for
-  quadrature::PolarOrders orders;  ///< and its orders, where the element is distorted; otherwise 0. Only radial: no polar rule
+  quadrature::Shear shear;         ///< bin of the metric for which the rule was constructed
+  quadrature::PolarOrders orders;  ///< orders of the rule if the element is distorted, otherwise 0; if only the radial order is set, no polar rule is
+                                   ///< used
   const PointTable* table = nullptr;
-  std::vector<Pack> weights;      ///< rule weights times the area of the unstressed surface
+  std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site
   double s = 0, t = 0;
 };
 
-/// All such pairs of some sites, and the polar rules they share: one for each place on a panel, degree and bin of the metric.
+/// All such pairs of a set of sites, and the polar rules that they share: one rule per position on a panel, degree and bin of the metric.
 class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);
 
-  /// The pairs of site i.
+  /// Returns the pairs of site i.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// The rule for the pair's panel in its present metric. Weights kept for another rule are thrown away.
+  /// Returns the rule on the pair's panel for its current metric. Stored weights of an earlier rule are discarded.
   const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
-  /// Throws away all weights kept.
+  /// Discards all stored weights.
   void forget_weights();
 
-  /// Value at site i of the field with these Bezier points, and its derivatives by s and t, from its first panel.
+  /// Returns the value at site i of the field with these Bezier points, and its derivatives with respect to s and t, on its first panel.
   Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
   std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
 
-  /// The functions that live on the first panel of site i: panel and N_A there.
+  /// Returns the first panel of site i, and the values N_A there of the basis functions supported on it.
   std::pair<int, Eigen::VectorXd> basis(int i, const Panels& panels) const;
 
  private:

@@ -6,16 +6,17 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Most points of a leaf. Measured on deformed spheres; twice or half as many cost 10 % more.
+/// Maximum number of points of a leaf. Measured on deformed spheres; half or twice as many cost 10 % more.
 constexpr int source_leaf = 256, target_leaf = 2 * far_block;
 
-/// Loads on a membrane are in equilibrium: velocities are an order smaller than the sums of |f| / r that clusters err in proportion to.
-/// Measured on capsules in shear: with this share the largest error is a third of the tolerance.
+/// Factor on the tolerance. The error of clusters is proportional to the sum of |f| / r. Loads on a membrane are in equilibrium, so that velocities
+/// are an order of magnitude smaller than this sum. Measured on capsules in shear flow: with this factor the largest error is a third of the
+/// tolerance.
 constexpr double allowance = 0.3;
 
 int blocks_of(int n) { return (n + far_block - 1) / far_block; }
 
-/// Copies n places into blocks; idle lanes repeat the last one.
+/// Copies n positions into blocks; unused lanes repeat the last position.
 void fill_blocks(int n, const double* x, const double* y, const double* z, double* block) {
   for (int k = 0; k < far_block * blocks_of(n); ++k) {
     double* to = block + 3 * far_block * (k / far_block) + k % far_block;
@@ -24,7 +25,7 @@ void fill_blocks(int n, const double* x, const double* y, const double* z, doubl
   }
 }
 
-/// Images of places in blocks, after all that `blocks` holds.
+/// Appends the images of positions in blocks to `blocks`.
 void append_images(const double* block, std::size_t size, const surface::Reflection& image, std::vector<double>& blocks) {
   for (std::size_t k = 0; k < size; ++k) {
     const std::size_t c = k / far_block % 3;
@@ -85,7 +86,7 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
   }
 }
 
-/// That of place k in the order of the trees, which begin at a block each.
+/// Returns the row of the position with index k in the order of the trees; each tree starts at a new block.
 int TreeSum::row(std::size_t k) const {
   const std::size_t n = target_tree_.order().size(), size = static_cast<std::size_t>(far_block) * blocks_of(static_cast<int>(n));
   return target_tree_.order()[k % size] + static_cast<int>(n * (k / size));
@@ -100,8 +101,8 @@ void TreeSum::want(std::span<const int> rows) {
   ask();
 }
 
-/// Keeps the pairs of this part: as many as make up its share of the work, of source clusters that are next to each other, so that what nodes carry
-/// is collected by few parts.
+/// Keeps the pairs of this part. Each part has an equal share of the work and contains adjacent source clusters, so that source strengths are
+/// collected for each cluster by few parts only.
 void TreeSum::take_part() {
   std::ranges::stable_sort(pairs_, {}, &Pair::source);
   long long before = 0, all = 0;
@@ -113,7 +114,7 @@ void TreeSum::take_part() {
   });
 }
 
-/// Which Chebyshev nodes, and which nodes, the pairs need.
+/// Determines which source clusters need strengths at Chebyshev nodes, and which source nodes the pairs need.
 void TreeSum::ask() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);
@@ -164,7 +165,7 @@ Charges TreeSum::nodes() const {
           {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
 }
 
-/// What is carried, in the order of the tree, and at the Chebyshev nodes of all clusters in use, from the points up.
+/// Copies the source strengths into the order of the tree, and collects them at the Chebyshev nodes of all clusters in use, from the leaves upwards.
 void TreeSum::collect(const std::array<const double*, 6>& carried) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
@@ -189,7 +190,7 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
   }
 }
 
-/// Which target clusters hold rows that are wanted.
+/// Determines which target clusters contain rows that are needed.
 void TreeSum::mark(std::span<const int> wanted) {
   row_.assign(n_trees_ * target_tree_.order().size(), 0);
   for (const int i : wanted) row_[i] = 1;
@@ -202,7 +203,7 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// What the nodes of `source` do to the targets of `target` from one of their images.
+/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced to one of their images, act on the targets in `target`.
 void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];
@@ -249,7 +250,7 @@ void TreeSum::add(const Pair& pair) {
   interactions_ += static_cast<long long>(n) * from.n;
 }
 
-/// Values at Chebyshev nodes handed to those of the children, and by leaves and to bare children to their targets.
+/// Interpolates the values at Chebyshev nodes to the nodes of the children, and in leaves and bare children to their targets.
 void TreeSum::hand_down() {
   const std::vector<Cluster>& all = targets_;
   for (std::size_t t = 0; t < all.size(); ++t) {

@@ -1,5 +1,5 @@
 #pragma once
-// The far sum in a time proportional to the number of nodes.
+// The far-field sum in a time proportional to the number of nodes (treecode).
 
 #include <array>
 #include <span>
@@ -13,49 +13,49 @@
 
 namespace tanktread::stokes {
 
-/// sum_k K(x_k, x0_i) q_k for a kernel K over clusters of nodes and of targets, by Chebyshev interpolation on whichever side it saves work,
-/// and one by one where clusters are close. Every sum is the kernel's own on other places: at nodes or Chebyshev nodes, for targets or
-/// Chebyshev nodes. After Wang, Krasny & Vaughn, *A kernel-independent treecode based on barycentric Lagrange interpolation*, Commun. Comput.
-/// Phys. 28, 2020, in its form with cluster-cluster interactions; boxes that turn with the surface are ours.
+/// Evaluates sum_k K(x_k, x0_i) q_k for a kernel K. Clusters of nodes and of targets are replaced by Chebyshev interpolation on whichever side saves
+/// work; close clusters are summed directly. Every partial sum evaluates the kernel itself, at nodes or Chebyshev nodes as sources, and at targets or
+/// Chebyshev nodes as targets. After Wang, Krasny & Vaughn, *A kernel-independent treecode based on barycentric Lagrange interpolation*, Commun.
+/// Comput. Phys. 28, 2020, in its form with cluster-cluster interactions; boxes aligned with the surface are our addition.
 class TreeSum {
  public:
-  /// `tolerance`: of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
+  /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Takes places: nodes x, y, z in groups starts[g] .. starts[g + 1] - 1 that stay together, and all n targets. Row i + n k of the sums is that of
-  /// the image of target i in reflections[k - 1]; the clusters of images are the images of clusters.
+  /// Sets the positions of the nodes x, y, z, in groups starts[g] .. starts[g + 1] - 1 that are not split, and of all n targets. Row i + n k of the
+  /// sums belongs to the image of target i in reflections[k - 1]. The clusters of image targets are the images of clusters.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
-  /// States that the nodes act from their own places and from these vectors beyond, 0 among them if their own are meant: a lattice's. Before place(),
-  /// and without reflections.
+  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(), and without
+  /// reflections.
   void repeat(std::vector<Vec3> images) { images_ = std::move(images); }
 
-  /// States which rows are wanted of the sums to come. A row does not depend on which others are wanted.
+  /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.
   void want(std::span<const int> rows);
 
-  /// Whether these sums ask what node k carries: not all do where they are shared.
+  /// Returns whether later sums use the source strength of node k. If sums are shared among ranks, each uses only some nodes.
   bool asks(int k) const { return asked_[k]; }
 
-  /// Rows wanted of the sum for what the nodes carry; values[Kernel::out i + c].
+  /// Computes the selected rows of the sum for these source strengths of the nodes; values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& carried, double* values) {
     in_ = Kernel::in, out_ = Kernel::out, kernel_ = precision_ == Precision::single ? Kernel::single : Kernel::sum;
     sum(carried, values);
   }
 
-  /// Both at once.
+  /// Selects rows and computes the sum.
   template <class Kernel>
   void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
     want(wanted);
     sum<Kernel>(carried, values);
   }
 
-  /// The sums to come are of one part of the interactions; those of parts 0 .. parts - 1, of the same places, charges and wanted rows, add up to the
-  /// whole. Parts are of equal work, each of few clusters of nodes. Before want().
+  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, charges and rows add up to the
+  /// complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
-  long long interactions() const { return interactions_; }  ///< of the last sum
+  long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
   std::size_t bytes() const;
 
  private:
@@ -65,7 +65,7 @@ class TreeSum {
   int row(std::size_t k) const;
   void take_part();
   void ask();
-  /// Clusters that meet, each as its Chebyshev nodes or as its points.
+  /// Interacting clusters; each acts through its Chebyshev nodes or through its points.
   struct Pair {
     int target, source, image;
     bool target_nodes, source_nodes;
@@ -80,18 +80,19 @@ class TreeSum {
 
   Precision precision_;
   int part_ = 0, parts_ = 1;
-  int in_ = 3, out_ = 3;  // of the kernel
+  int in_ = 3, out_ = 3;  // numbers of components of the kernel
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
-  Clusters sources_, target_tree_;              // of the targets without their images
-  std::vector<Vec3> images_{Vec3::Zero()};      // that the sources act from
-  int n_trees_ = 1;                             // of targets: one, and its images
-  std::vector<Cluster> targets_;                // of all trees, one after the other
-  std::vector<double> q_[6], node_q_[6];        // what the sources and their Chebyshev nodes carry
+  Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
+  std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
+  int n_trees_ = 1;                             // number of target trees: one, and one per reflection
+  std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
+  std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of their Chebyshev nodes
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
-  std::vector<double> target_u_, node_u_;       // values there
-  std::vector<char> row_, wanted_, has_nodes_;  // targets wanted; of target clusters: any of them wanted; values at Chebyshev nodes
-  std::vector<Pair> pairs_;                     // of this part
-  std::vector<char> asked_, in_use_;            // nodes that carry something to a target; source clusters whose Chebyshev nodes do
+  std::vector<double> target_u_, node_u_;       // values at targets and at their Chebyshev nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // targets needed; target clusters with any needed target; target clusters with values at Chebyshev
+                                                // nodes
+  std::vector<Pair> pairs_;                     // interactions of this part
+  std::vector<char> asked_, in_use_;            // source nodes whose strength is used; source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Balls that are looked at one by one: so few that a box costs as much.
+/// Maximum number of balls in a leaf, which are tested one by one. With fewer balls a box would cost as much as its balls.
 constexpr int leaf = 64;
 
 }  // namespace
@@ -27,7 +27,7 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
   holds_.resize(leaf);
 }
 
-/// A box and all below it, one after the other; before place() ends, centres are in their first order.
+/// Appends a box and its descendants. During place() the centres are in the original order.
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which of many balls hold a point.
+// Finds the balls that contain a point.
 
 #include <vector>
 
@@ -7,20 +7,20 @@
 
 namespace tanktread::stokes {
 
-/// Balls of different sizes in a binary tree of boxes: to ask for those that hold a point takes a time that grows with the logarithm of
-/// their number.
+/// Balls of different sizes in a binary tree of boxes. Finding the balls that contain a point takes a time that grows with the logarithm of the
+/// number of balls.
 class Vicinity {
  public:
-  /// Takes n balls: centres and squared radii.
+  /// Sets n balls by centres and squared radii.
   void place(int n, const double* x, const double* y, const double* z, const double* square);
 
-  /// Numbers of the balls that hold the point, in no order of use.
+  /// Lists the indices of the balls that contain the point, in no particular order.
   void list(const double* point, std::vector<int>& holding);
 
  private:
   struct Box {
-    double low[3], high[3], square;  ///< of the centres inside; largest squared radius
-    int first, last, after;          ///< its balls; the box to go on with when none of them holds the point
+    double low[3], high[3], square;  ///< bounds of the centres inside; largest squared radius
+    int first, last, after;          ///< range of its balls; index of the next box if no ball contains the point
     bool leaf;
   };
   void split(int first, int last);

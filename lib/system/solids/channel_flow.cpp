@@ -8,8 +8,8 @@
 namespace tanktread::coupling {
 
 namespace {
-constexpr Eigen::Index few = 64;    // points that each rank does by itself
-constexpr double sharpness = 1e-2;  // tolerance over that of other layers
+constexpr Eigen::Index few = 64;    // number of points up to which each rank evaluates all points itself
+constexpr double sharpness = 1e-2;  // tolerance relative to other layers
 }
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
@@ -24,7 +24,7 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
   ends_.push_back(section(channel_->end(), -1));
 }
 
-/// The plane at s, with the flow of the straight duct of that section and of this flow rate.
+/// Returns the plane at s with the flow of a straight duct that has this section and flow rate.
 stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
   const surface::Channel::Section at = channel_->section(s);
   const double area = channel_->outline().area() * at.factor.prod();
@@ -79,7 +79,7 @@ quadrature::Options ChannelFlow::sharper() const {
   return options;
 }
 
-/// What wall and pressure drop do to the fluid, and the ends where they count; many points are shared among the ranks.
+/// Returns the velocity due to wall and pressure drop, and due to the ends if `with_ends`. If there are many points, ranks share them.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, bool with_ends) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {

@@ -1,5 +1,5 @@
 #pragma once
-// The flow of an empty channel.
+// The flow in an empty channel.
 
 #include <memory>
 #include <string>
@@ -16,38 +16,40 @@
 
 namespace tanktread::coupling {
 
-/// A flow with the flow rate Q through a channel, straight ducts' at its ends, by the wall's own first-kind operator:
+/// Flow with the flow rate Q through a channel, with the flow of a straight duct at each end, by the first-kind operator of the wall:
 ///
 ///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
 ///
-/// f the traction on the wall, dp the pressure drop between the ends, c (1/mu) of the inlet's integral (2.13), P those of (2.29). The wall is made
-/// when a velocity is first asked for, by every rank; Tube uses the same factors. What DuctFlow says beside velocities is said of the inlet.
+/// f is the traction on the wall, dp the pressure drop between the ends, c (1/mu) times the inlet integral (2.13), and P the terms of (2.29). The
+/// wall operator is constructed by all ranks when a velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities
+/// refer to the inlet.
 class ChannelFlow : public stokes::DuctFlow {
  public:
-  /// `wall_solver`: as of Wall.
+  /// `wall_solver`: as for Wall.
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
               const std::string& wall_solver = "factored");
 
-  /// Accurate up to the wall; of places that are not inside it means nothing. Those asked for last are kept. Collective.
+  /// Accurate up to the wall; undefined at points outside. The values at the latest points are cached. Collective.
   Net velocities(const Net& x) const override;
 
-  /// By one-sided differences over a hundredth of the channel's narrowest half width: for Jacobians.
+  /// By one-sided differences with a step of a hundredth of the channel's smallest half width. Accurate enough for Jacobians only.
   std::vector<Mat3> gradients(const Net& x) const override;
 
-  double pressure_drop() const;        ///< between the ends
-  double extra_pressure_drop() const;  ///< over that of a straight duct of the inlet's section, as long as the centre line
-  const Net& wall_traction() const;    ///< f, control values
+  double pressure_drop() const;        ///< pressure drop between the ends
+  double extra_pressure_drop() const;  ///< excess over the pressure drop of a straight duct with the inlet's section and the length of the centre
+                                       ///< line
+  const Net& wall_traction() const;    ///< control values of f
 
-  /// Flow rates through the sections at s, by sums of velocities, which are evaluated together.
+  /// Returns the flow rates through the sections at s, from velocities that are evaluated together.
   std::vector<double> flow_rates_at(const std::vector<double>& s) const;
 
   const surface::Channel& channel() const { return *channel_; }
   const std::shared_ptr<const surface::TubeWall>& surface() const { return surface_; }
 
-  /// The wall's operator, made when it is first asked for; its exchanges count among `phases`, if there are any. Collective.
+  /// Returns the wall operator, which is constructed at the first call. Its exchanges are timed in `phases` if given. Collective.
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
-  /// The same, of fields that have the symmetries of a particle inside; from now on every field that is asked for has them, or none.
+  /// Returns the wall operator for fields with the symmetries of a particle inside. All later fields must have these symmetries.
   std::shared_ptr<Wall> wall(Phases& phases, const surface::Symmetry& particle) const;
 
  private:
@@ -68,7 +70,8 @@ class ChannelFlow : public stokes::DuctFlow {
   quadrature::Options quadrature_;
   std::string wall_solver_;
   std::vector<stokes::DuctEnd> ends_;
-  mutable std::shared_ptr<stokes::Layer> layer_;  // of the wall, sharper than Wall's: pressures at the ends are large beside the velocity
+  mutable std::shared_ptr<stokes::Layer> layer_;  // layer of the wall, with a smaller tolerance than in Wall, because pressures at the ends are large
+                                                  // compared with the velocity
   mutable std::shared_ptr<Wall> wall_;
   mutable std::shared_ptr<const Solved> solved_;
   mutable Net latest_at_, latest_;

@@ -17,7 +17,7 @@ FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radi
       tolerance_(solvers.tolerance),
       unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
 
-/// Everything in the body's axes.
+/// Returns the solution at this position. The systems are solved in body-fixed axes.
 const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Mat3 turn = rotation_of(place);
@@ -73,7 +73,7 @@ RigidMotion FreeBodyInTube::motion_of_unknowns() const {
   return {motion.head<3>(), motion.tail<3>() / radius_};
 }
 
-/// Unknowns: f R_C/mu, U and Omega R_C; force and torque count over 6 pi mu R_C and 6 pi mu R_C^2.
+/// Unknowns are f R_C/mu, U and Omega R_C. Force and torque are divided by 6 pi mu R_C and 6 pi mu R_C^2.
 void FreeBodyInTube::solve_in_tube(const Net& place) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
@@ -93,8 +93,8 @@ void FreeBodyInTube::solve_in_tube(const Net& place) const {
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 }
 
-/// f of the body at rest and of six unit motions; their sum has the force and torque given, but for what collocation lacks of them, which one more
-/// change of the motion makes up for.
+/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have the given values. A second change
+/// of the motion corrects the collocation error of force and torque.
 void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(place);

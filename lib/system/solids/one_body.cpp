@@ -22,7 +22,7 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   }
 }
 
-/// R B = R (v -> <v>) - H, or with (1/mu) A (v -> (mu/R_C) <v>).
+/// Returns the inverse of R B = R (v -> <v>) - H. For a prescribed motion (1/mu) A (v -> (mu/R_C) <v>) replaces R (v -> <v>).
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
@@ -34,7 +34,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
   double_layer.place(own);
-  double_layer.assemble(all, matrix);  // -H of the factor -1
+  double_layer.assemble(all, matrix);  // assembles -H, because the viscosity contrast is -1
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature);
   layer.place(own);
   const Vec3 centre = bodies.rest_centre(p);
@@ -80,10 +80,10 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// A film ends where it is this wide, over the smaller radius: from there on waves as long as that are damped across it by a third and more.
+/// Largest width of a film, divided by the smaller radius. Across wider films, modes of that wavelength are damped by a third or more.
 constexpr double widest = 0.5;
 
-/// A body, its sites, and a ball about their mean that holds them.
+/// A body, its sites, and a ball about their mean that contains them.
 struct Side {
   std::size_t particle;
   spline::Block block;
@@ -96,7 +96,7 @@ struct Side {
       : particle(p), block(of.block), radius(of.radius), sites(block.rows(all_sites)), middle(sites.colwise().mean()),
         extent((sites.rowwise() - middle).rowwise().norm().maxCoeff()) {}
 
-  /// Its sites that are closer than `reach` to one of the other's, from 0 on.
+  /// Returns the indices (from 0) of the sites that are closer than `reach` to a site of the other body.
   std::vector<int> close_to(const Side& other, double reach) const {
     std::vector<int> close;
     for (int i = 0; i < block.n_points; ++i)
@@ -105,7 +105,7 @@ struct Side {
   }
 };
 
-/// C of what `by` does to sites of another body: -H M^-1, from the other's rows of H and the sites of `by`.
+/// Returns C, the effect of `by` on the sites of another body: -H M^-1, from the rows of H of that body and the columns of M^-1 for sites of `by`.
 Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
                          const RigidParticles& placed) {
   return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);

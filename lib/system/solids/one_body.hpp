@@ -1,5 +1,5 @@
 #pragma once
-// What a rigid body would do alone, as a preconditioner of the system of all.
+// Preconditioner of the system of all particles: inverses for each rigid body alone, and for films between pairs of bodies.
 
 #include <functional>
 #include <memory>
@@ -17,26 +17,27 @@
 
 namespace tanktread::coupling {
 
-/// Inverses of (2.23) for each rigid body alone, in its own axes: they serve wherever it goes, and equal bodies have them in common. A body of
-/// more than `most_points` control points goes without. Not in single precision, whose rounding GMRES takes for a residual that does not fall.
+/// Inverses of (2.23) for each isolated rigid body, in body-fixed axes, so that they remain valid when the body moves. Equal bodies share an inverse.
+/// A body of more than `most_points` control points has none. Stored in double precision, because GMRES mistakes the rounding of single precision
+/// for a residual that does not decrease.
 class OneBodyInverses {
  public:
   static constexpr int most_points = 2000;
 
-  /// `rest`: net of all particles, where `bodies` were at rest.
+  /// `rest`: net of all particles with `bodies` at rest.
   OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest, const quadrature::Options& quadrature);
 
   bool empty() const { return factors_.empty(); }
 
   bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
 
-  /// Rows of bodies become the values at their sites of what they are control values of.
+  /// Replaces the rows of bodies, control values, by values at the collocation sites.
   void take_to_sites(Net& y) const;
 
-  /// Rows of bodies, right-hand sides at sites, become what each alone would have for them. `placed`: where the bodies are.
+  /// Replaces the rows of bodies, right-hand sides at sites, by the solution for each isolated body. `placed`: current positions of the bodies.
   void solve(const RigidParticles& placed, Net& y) const;
 
-  /// Columns of the inverse of particle p, those of a right-hand side at `sites`; shape (3 points, 3 sites).
+  /// Returns the columns of the inverse of particle p for right-hand sides at `sites`; shape (3 points, 3 sites).
   Eigen::MatrixXd columns(const RigidParticles& placed, std::size_t p, std::span<const int> sites) const;
 
  private:
@@ -57,27 +58,28 @@ class OneBodyInverses {
   std::vector<Use> factors_;
 };
 
-/// Waves of w with wave number k that are alike on both sides of a film of width h have eigenvalues of the order of k h, whatever each body alone has
-/// been inverted for. With M_p of body p alone, and C_pq = -H_pq M_q^-1 what q does to p, both taken at the sites of a film alone,
+/// Inverses for the films between pairs of bodies. Modes of w of wave number k that are equal on both sides of a film of width h have eigenvalues of
+/// the order of k h, even after preconditioning by the isolated bodies. With the operator M_p of the isolated body p, and C_pq = -H_pq M_q^-1, the
+/// effect of body q on body p, both restricted to the sites of a film,
 ///
 ///   1 + C on those sites
 ///
-/// is factored for each pair of bodies, and its inverse less 1 is added to what is done for the bodies alone (additive Schwarz; Smith, Bjørstad &
-/// Gropp 1996, chapter 1). Films of a body are taken to have no sites in common, which is right or costs iterations.
+/// is factored for each pair of bodies. Its inverse minus 1 is added to the preconditioner of the isolated bodies (additive Schwarz; Smith, Bjørstad
+/// & Gropp 1996, chapter 1). Films of one body are assumed to have no common sites. Common sites cost iterations but no accuracy.
 class FilmInverses {
  public:
-  /// Rows `targets` of H, three a target, in their order; shape (3 targets, 3 N).
+  /// Returns the rows `targets` of H, three per target, in their order; shape (3 targets, 3 N).
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
-  /// `x`: net of all particles; of the pairs of those that `alone` serves.
+  /// `x`: net of all particles. Films are set up for the pairs of bodies that have an inverse in `alone`.
   FilmInverses(std::span<const Particle> particles, const OneBodyInverses& alone, const RigidParticles& placed, const Net& x, const RowsOf& rows_of);
 
-  /// Adds ((1 + C)^-1 - 1) y to y at sites.
+  /// Adds ((1 + C)^-1 - 1) y to y, the values at the sites.
   void add(Net& y) const;
 
  private:
   struct Film {
-    std::vector<int> sites;         // of the one body, then of the other
+    std::vector<int> sites;         // sites of one body, then of the other
     DenseFactors one_and_coupling;  // 1 + C
   };
   std::vector<Film> films_;

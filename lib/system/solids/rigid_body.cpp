@@ -11,7 +11,7 @@ namespace {
 
 constexpr int affine_modes = 11, quadratic_modes = 18;
 
-/// The fields y_b y_c e_i, b <= c.
+/// Indices of the fields y_b y_c e_i, b <= c.
 struct UnitQuadratic {
   int i, b, c;
 };
@@ -20,7 +20,7 @@ UnitQuadratic unit_quadratic(int k) {
   return {k / 6, first[k % 6], second[k % 6]};
 }
 
-/// The components of a trace-free symmetric matrix in the unit strains.
+/// Returns the coefficients of a trace-free symmetric matrix with respect to the unit strains.
 Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   Eigen::Matrix<double, 5, 1> c;
   c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);
@@ -29,7 +29,7 @@ Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
 
 Eigen::Quaterniond quaternion(const Net& place) { return {place(2, 0), place(1, 0), place(1, 1), place(1, 2)}; }
 
-/// Half the curl of a flow with gradient L_ij = dv_i/dx_j.
+/// Returns half the curl of a flow with gradient L_ij = dv_i/dx_j.
 Vec3 angular_velocity(const Mat3& l) { return 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1)); }
 
 }  // namespace
@@ -97,7 +97,7 @@ FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const st
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
 
-/// Amplitudes of the modes in the body's axes: what the body moves by relative to the flow, and the strain that it resists.
+/// Returns the amplitudes of the modes in body-fixed axes: rigid motion relative to the flow, minus the strain and the quadratic part of the flow.
 Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
   Eigen::VectorXd a(modes_.response.cols());

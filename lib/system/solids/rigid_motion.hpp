@@ -1,23 +1,23 @@
 #pragma once
-// What a rigid body does.
+// Rigid-body motion.
 
 #include "base/types.hpp"
 
 namespace tanktread::coupling {
 
-/// v = U + Omega x (x - centre)
+/// Rigid motion v = U + Omega x (x - centre).
 struct RigidMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
 };
 
-/// The unit motion k: a translation along x1, x2, x3, a rotation about them.
+/// Returns the unit motion k: translations along x1, x2, x3, then rotations about them.
 inline RigidMotion unit_motion(int k) {
   RigidMotion unit;
   (k < 3 ? unit.velocity : unit.angular_velocity)[k % 3] = 1;
   return unit;
 }
 
-/// U + Omega x (x - centre) at points, a row each; also its control values from a control net, exactly, for the basis sums to one.
+/// Returns U + Omega x (x - centre) at points, one row each. For a control net it returns exact control values, because the basis sums to one.
 Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre);
 
 }  // namespace tanktread::coupling

@@ -26,7 +26,7 @@ std::vector<int> numbers(int first, int last) {
   return all;
 }
 
-/// A f at sites, of each f.
+/// Returns A f at sites for each f.
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
@@ -38,7 +38,7 @@ std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Spa
   return u;
 }
 
-/// S H of weights S, shape (N, sites), row 3 a + c for component c, from rows of H that are made some at a time.
+/// Returns S H for weights S, shape (N, sites), with row 3 a + c for component c. Rows of H are assembled in chunks.
 Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::SparseMatrix<double>& weights, const spline::Space& space,
                                       const Net& surface, const quadrature::Options& quadrature) {
   constexpr int at_a_time = 512;
@@ -87,7 +87,7 @@ OwnLacking::OwnLacking(const spline::Space& space, const Net& surface, const qua
 
 namespace {
 
-/// r x as a matrix.
+/// Returns r x as a matrix.
 Mat3 cross(const Vec3& r) {
   Mat3 matrix;
   matrix << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
@@ -263,7 +263,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
 }
 
-/// Of df = -(a + b x r).
+/// Uses df = -(a + b x r).
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.load();

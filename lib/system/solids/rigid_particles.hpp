@@ -16,76 +16,81 @@
 
 namespace tanktread::coupling {
 
-/// Projected less collocated, M^-1 int N_A u dG - R^-1 u, of the velocity u that a body's own layers give it, for a viscosity of 1. A spline surface
-/// of n elements a side is higher at its collocation sites than between them by some 1/n^4, and on either side of it a velocity is not the same:
-/// collocated, a sphere that is turned by a load turns too slowly by 0.035/n^4, and its stresslet in a strain errs as much.
+/// Collocation correction M^-1 int N_A u dG - R^-1 u, projected minus collocated, of the velocity u that the layers of a body induce on the body
+/// itself, for unit viscosity. A spline surface of n elements per side is higher at its collocation sites than between them by about 1/n^4, and the
+/// velocity differs on the two sides of the surface. By collocation a sphere rotated by a torque therefore rotates too slowly by a relative
+/// 0.035/n^4, and its stresslet in a strain has a similar error.
 struct OwnLacking {
-  std::array<Net, 6> loads;  ///< u = A f of the loads f = e_k and e_k x r, k = 0, 1, 2, r from the centre of the volume
-  Eigen::MatrixXd density;   ///< u = H w of any density w, shape (3 N, 3 N); empty for more than `most_points` control points
+  std::array<Net, 6> loads;  ///< corrections for u = A f with the loads f = e_k and e_k x r, k = 0, 1, 2, r from the centre of the volume
+  Eigen::MatrixXd density;   ///< correction for u = H w as a matrix acting on w, shape (3 N, 3 N); empty for more than `most_points` control points
 
-  /// 72 bytes for each pair of them. In single precision GMRES takes the rounding for a residual that does not fall.
+  /// Takes 72 bytes per pair of control points. Stored in double precision, because GMRES mistakes single-precision rounding for a residual that does
+  /// not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
 };
 
-/// The limit lambda -> infinity of (2.22). There v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
+/// The limit lambda -> infinity of (2.22). In this limit v = V + w/(lambda - 1) on the body, V = U + Omega x r, and
 ///
-///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + what the others' v and w do                            (2.23)
+///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
 ///
-/// w takes the place of v in the unknowns. A rigid motion in it does nothing, so the nearest one, <w>, is free to say the rest: of a body on which
-/// force and torque are given, V = <w> and df = -(a + b x r), which has that force and torque on the fluid; of one whose V is given,
-/// df = (mu/R_C) <w>, and its force follows. Completed double layer: Power & Miranda 1987; Kim & Karrila 1991, chapter 15.
+/// w replaces v in the unknowns. The integral does not change if a rigid motion is added to w, so that the rigid motion <w> nearest to w is free to
+/// represent other unknowns. If force and torque on a body are given, V = <w> and df = -(a + b x r) with this force and torque on the fluid. If V is
+/// given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power & Miranda 1987; Kim & Karrila 1991, chapter 15.
 ///
-/// Nets are those of all particles. A body's rows of a net x are read as the rigid image of it at rest that is nearest to them.
+/// Nets are stacked nets of all particles. A body's rows of a net x are interpreted as the nearest rigid image of the body at rest.
 class RigidParticles {
  public:
-  /// `rest`: net of all particles; of others than rigid ones nothing is kept. `viscosity`: mu of the outer fluid. `solved_here`: by (2.23), not by
-  /// their tractions.
+  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid. `solved_here`: true if the bodies are
+  /// solved for by (2.23), false if by their tractions.
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature, bool solved_here);
 
   bool empty() const { return bodies_.empty(); }
-  bool prescribed() const;  ///< whether any moves as prescribed
+  bool prescribed() const;  ///< true if the motion of any body is prescribed
 
-  /// Puts every body where its rows of x are nearest to it, and its rows there.
+  /// Moves every body to the position that fits its rows of x best, and sets its rows to this position.
   void place(Net& x);
 
-  /// Virtual work of forces on the bodies beside those that are given, a row a control point of all particles, on material points, whose directions
-  /// stay; of no rows: none.
+  /// Sets the virtual work of forces on the bodies in addition to the given ones, one row per control point of all particles, for forces on material
+  /// points with fixed directions. No rows: no such forces.
   void push(const Net& work);
 
-  void add_load(Net& load) const;            ///< the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< of -R^-1 A f/mu, f their load, on the bodies themselves (OwnLacking)
-  void subtract_prescribed(Net& v) const;          ///< V of the bodies that move as prescribed
-  void complete(const Net& w, Net& v) const; ///< rows of v: w out, <w> in where force and torque are given, and what R^-1 D w lacks
-  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> of the bodies that move as prescribed, 0 elsewhere
-  void move(Net& v);                         ///< w in the rows of v becomes V; w is kept
-  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< as another equation says; rows of v
-  /// On a lattice a velocity is that of images in the cell. `enter`: bodies are images from now on, from which particles p are `shifts[p]` away in a
-  /// flow of this gradient. `carry` moves the image of body p, if it is one, to the body's own centre, and makes its velocity the body's own.
+  void add_load(Net& load) const;            ///< adds the load of given forces and torques
+  void add_lacking(Net& v) const;            ///< adds the collocation correction of -R^-1 A f/mu on the bodies themselves, f their load (OwnLacking)
+  void subtract_prescribed(Net& v) const;          ///< subtracts V of the bodies with prescribed motion
+  void complete(const Net& w, Net& v) const;  ///< subtracts w, adds <w> if force and torque are given, and adds the collocation correction of
+                                              ///< R^-1 D w, in the rows of v
+  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> for bodies with prescribed motion, 0 in other rows
+  void move(Net& v);                         ///< replaces w in the rows of v by V; w is stored
+  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< sets the motion and force found by another
+                                                                                                       ///< equation; updates rows of v
+  /// On a lattice, velocities are those of images in the cell. `enter`: from now on bodies are replaced by images, from which the particles p differ
+  /// by `shifts[p]`, in a flow of this gradient. `carry`: moves the image of body p, if p is a body, back to the body's own centre, and changes its
+  /// velocity accordingly.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
-  void clear(Net& net) const;                ///< 0 in all rows of bodies
+  void clear(Net& net) const;                ///< sets all rows of bodies to 0
 
-  /// Whether particle p is one, and what it does and feels where velocities were asked for last.
+  /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.
   bool holds(std::size_t p) const { return of_particle_[p] >= 0; }
   const RigidMotion& motion(std::size_t p) const { return body(p).motion; }
-  const Net& density(std::size_t p) const { return body(p).density; }  ///< w, its own rows
-  Vec3 force(std::size_t p) const { return body(p).force; }            ///< on the fluid
-  Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< on the fluid, about the centre
-  const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< of its volume
+  const Net& density(std::size_t p) const { return body(p).density; }  ///< w, rows of this body
+  Vec3 force(std::size_t p) const { return body(p).force; }            ///< force on the fluid
+  Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< torque on the fluid, about the centre
+  const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
-  Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< from where it was at rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< what drives it, with what pushes it
+  Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< drive, including the forces set by `push`
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
-  /// Whether two bodies are equal where they were at rest, but for where that was.
+  /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// What collocation lacks of the velocity of a unit load on its own body, where it was at rest (OwnLacking).
+  /// Returns the collocation correction of the velocity of unit load k on its own body, in the axes at rest (OwnLacking).
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Component k of <w>, the velocity's and then the angular velocity's, as a linear functional of its rows of w, row after row, where it was at
+  /// Returns component k of <w> (velocity, then angular velocity) as a linear functional of the body's rows of w, row after row, in the position at
   /// rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
@@ -94,34 +99,34 @@ class RigidParticles {
   struct Body {
     spline::Block block;
     Rigid rigid;
-    Net pushed;  // of no rows: by nothing
+    Net pushed;  // virtual work set by `push`; no rows if none
     double radius = 0, viscosity = 0;
-    Net rest;             // about the centre
-    std::shared_ptr<const OwnLacking> lacking;  // equal bodies have it in common
+    Net rest;             // net at rest relative to the centre
+    std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // of the surface: int and int r x of the six rigid motions
+    Eigen::Matrix<double, 6, 6> inertia;  // of the surface: force and torque integrals of the six rigid motions
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
-    Vec3 faster = Vec3::Zero();  // velocity of the body less that of its image in the cell
+    Vec3 faster = Vec3::Zero();  // velocity of the body minus the velocity of its image in the cell
     Mat3 turn = Mat3::Identity();
     Net density;
     RigidMotion motion;
     Vec3 force, torque;
 
     Rigid given() const;
-    RigidMotion mean(const Net& w) const;      // <w>, w of all particles
+    RigidMotion mean(const Net& w) const;      // <w>, from w of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
-    Net field(const RigidMotion& of) const;                             // its rows of it
+    Net field(const RigidMotion& of) const;                             // rows of a rigid field
     RigidMotion load() const;                                           // a and b of the force on the fluid
-    Net lacking_of(const RigidMotion& load) const;                      // of R^-1 A f
-    Net lacking_of(const Net& w) const;                                 // of R^-1 H w
+    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f
+    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 
   std::vector<Body> bodies_;
-  std::vector<int> of_particle_;  // its number among the bodies, or -1
+  std::vector<int> of_particle_;  // index among the bodies, or -1
 };
 
 }  // namespace tanktread::coupling

@@ -17,7 +17,7 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
 
-/// The six unit motions of a body in its rows of six columns, at points or as control values.
+/// Sets the six columns of the unit motions of a body in its rows, at points or as control values.
 void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net own = block.rows(x);
   for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
@@ -25,13 +25,13 @@ void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& cent
 
 constexpr int strains = 5;
 
-/// The five unit strains of a body's sites.
+/// Sets the five columns of the unit strains at a body's sites.
 void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net from_centre = block.rows(at).rowwise() - centre.transpose();
   for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
-/// The motions, of those that are free, that take this much force and torque; 0 of the others.
+/// Returns the changes of the free motions that produce the missing forces and torques; 0 for the other motions.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
   if (free.empty()) return motion;
@@ -55,7 +55,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       sites_(collocation_matrix(space)),
-      mass_(space, 8),  // eight points: the area is no polynomial
+      mass_(space, 8),  // eight points, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
       bodies_(particles.size()) {
@@ -71,7 +71,8 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
-/// b and s (R c)/(b.c) of each body: any velocity with a flux makes the system regular; that away from the middle is one.
+/// Sets b and s (R c)/(b.c) of each body. Any velocity with nonzero flux makes the system regular; the radial field about the mean of the sites is
+/// used.
 void RigidTractions::make_regular(const Net& x, const Net& at) {
   flux_ = outward_ = Net::Zero(x.rows(), 3);
   for (const Particle& body : particles_) {
@@ -81,7 +82,7 @@ void RigidTractions::make_regular(const Net& x, const Net& at) {
   }
 }
 
-/// A of the bodies alone at the sites, made regular.
+/// Returns A of the bodies at the sites, without lattice or tube, made regular.
 Eigen::MatrixXd RigidTractions::system() {
   const Eigen::Index n = flux_.size();
   Eigen::MatrixXd all = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& own) {
@@ -96,7 +97,7 @@ Eigen::MatrixXd RigidTractions::system() {
   return all;
 }
 
-/// The same of all images of a lattice, times f.
+/// Returns the product of the regularised A of all lattice images with f.
 Net RigidTractions::images_of(const Net& f) {
   Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
   for (const Particle& body : particles_)
@@ -105,7 +106,7 @@ Net RigidTractions::images_of(const Net& f) {
 }
 
 void RigidTractions::factor() {
-  factors_.reset();  // before there is another matrix
+  factors_.reset();  // frees the old factors before the new matrix is allocated
   alone_ = system();
   if (tube_)
     factors_.emplace(alone_);
@@ -113,7 +114,7 @@ void RigidTractions::factor() {
     factors_.emplace(std::exchange(alone_, {}));
 }
 
-/// Of velocities at the sites, one a column, for the viscosity 1.
+/// Returns the densities for velocities at the sites, one per column, for the viscosity 1.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!repeats_ && !tube_) return factors_->solve(velocities);
@@ -140,7 +141,8 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   return all;
 }
 
-/// Amplitudes of unit motions: those that are given, and those with which force and torque are; `held`: forces and torques of bodies that stay.
+/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
+/// torques on bodies at rest.
 Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
@@ -154,7 +156,7 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// int N_A (v - v_inf - (1/mu) A f) dG, v that of these control values, v_inf at the places between the sites.
+/// Returns int N_A (v - v_inf - (1/mu) A f) dG for control values v, with v_inf given at the points between the sites.
 Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
   between_layer_.place(x);
   const Net at = between_.values * x;
@@ -183,7 +185,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
-  Eigen::MatrixXd work(n, m);  // of a density with each unit motion
+  Eigen::MatrixXd work(n, m);  // work of a density in each unit motion
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);

@@ -1,5 +1,5 @@
 #pragma once
-// Several rigid bodies and nothing else, by the tractions on all of them.
+// Several rigid bodies without other particles, solved by the tractions on all of them.
 
 #include <optional>
 #include <span>
@@ -25,46 +25,48 @@
 
 namespace tanktread::coupling {
 
-/// The first-kind equation of all surfaces, f the force density on the fluid:
+/// The first-kind equation on all surfaces, with the force density f on the fluid:
 ///
 ///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
 ///
-/// with one motion or force and torque given of each body. At every place it is assembled, made regular by a flux of each body as in (2.10), and
-/// factored: a film takes no iterations. f is a sum of the densities z_k of unit motions and of that of the flow. What collocation lacks of a force
-/// or torque is, by the reciprocal theorem (2.11), int z_k.(v - (1/mu) A f) dG over all bodies, and of a stresslet with the z of its body's unit
-/// strains, but in a tube: they err by the product of two errors of densities, where those of (2.23) err by one. Dense: some thousands of points.
+/// where either the motion or the force and torque of each body is given. The operator is assembled at every position, made regular by one flux
+/// condition per body as in (2.10), and factored, so that films cost no iterations. f is a sum of the densities z_k of unit motions and the density
+/// of the flow. By the reciprocal theorem (2.11) the collocation error of a force or torque is corrected by adding int z_k.(v - (1/mu) A f) dG over
+/// all bodies, and the error of a stresslet likewise with the z of its body's unit strains (except in a tube). The remaining errors are products of
+/// two density errors, whereas errors of (2.23) are linear in one. The matrix is dense: for up to some thousands of points.
 ///
-/// On a lattice A is that of all images, in a tube less mu times what wall and pressure drop answer: what they add is smooth, so a few iterations
-/// around the factors of the bodies alone solve for each density. The pressure drop
-/// of a duct's flow lacks as a force does, and what is left of v_inf where it is interpolated (2.41).
+/// On a lattice A includes all images; in a tube mu times the response of wall and pressure drop is subtracted. These additions are smooth, so that
+/// each density takes a few iterations, preconditioned by the factors of the bodies without them. The pressure drop of a duct flow is corrected in
+/// the same way as a force, including the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: of all bodies, that lie in it in their order. `rest`: their net. `tube`: around them, or none. What is referred to outlives this.
+  /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
+  /// object.
   RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
                  Ranks& ranks);
 
-  /// On a lattice, from now on.
+  /// Sets the lattice, from now on.
   void repeat(const stokes::PeriodicCell& cell);
 
   struct Body {
     RigidMotion motion;
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< on the fluid, about the centre
-    Mat3 moment = Mat3::Zero();                        ///< int f r dG, as it is
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) on the fluid
+    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, not corrected
   };
 
-  /// Of bodies with net x, where the tube has them placed, and these centres that are driven so; kept until the next call. Collective.
+  /// Solves for bodies with net x, for which the tube has been set, with these centres and drives. Results are kept until the next call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
 
-  /// int f r dG of a body of the latest call, with what its symmetric part lacks but for the trace, which takes five more systems; in a tube as it
-  /// is. Collective.
+  /// Returns int f r dG of a body for the latest solve. Its symmetric part, except for the trace, is corrected for the collocation error, which takes
+  /// five more solves. In a tube it is not corrected. Collective.
   Mat3 moment(std::size_t p);
 
   const Net& density() const { return density_; }  ///< control values of f
-  double lacking_pressure() const { return lacking_pressure_; }         ///< what (2.7) lacks, of all copies
-  const std::vector<SolveReport>& reports() const { return reports_; }  ///< of the systems of the latest call of either, if there were any
+  double lacking_pressure() const { return lacking_pressure_; }         ///< correction of (2.7), for all copies
+  const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
@@ -88,11 +90,11 @@ class RigidTractions {
   bool repeats_ = false;
   Krylov krylov_;
   double tolerance_;
-  std::vector<int> free_;  // numbers, six a body, of motions that are not given
-  Net flux_, outward_;     // b of each body, and a velocity with a flux over that flux
-  Eigen::MatrixXd alone_;  // the system without what a tube answers, kept in one
-  std::optional<DenseFactors> factors_;  // of that
-  Net at_;                               // the sites, and of the density there what it leaves over
+  std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
+  Net flux_, outward_;     // b of each body, and a velocity field with nonzero flux divided by this flux
+  Eigen::MatrixXd alone_;  // system without the response of the tube; kept only in a tube
+  std::optional<DenseFactors> factors_;  // LU factors of `alone_`
+  Net at_;                               // positions of the sites in the latest call of `solve`; left_: residual (2.11) of the density there
   Eigen::VectorXd left_;
   std::vector<Vec3> centres_;
   std::vector<Body> bodies_;

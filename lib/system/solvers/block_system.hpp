@@ -1,5 +1,5 @@
 #pragma once
-// Blocks of unknowns as vectors of Thyra, and functions on plain arrays as its operators.
+// Thyra vectors of blocks of unknowns, and Thyra operators from functions on plain arrays.
 
 #include <utility>
 
@@ -14,18 +14,19 @@ namespace tanktread::coupling {
 using Space = Thyra::VectorSpaceBase<double>;
 using ThyraVector = Thyra::VectorBase<double>;
 
-/// The product of a space a block; of a single block that alone. Every rank holds all rows of each: operators need them all, dot products need no
-/// message, and an iteration count cannot differ between ranks. So they are Thyra's own vectors: what Tpetra's have beyond them (maps, imports) would
-/// not be used, and costs a fifth of a run of a tenth of a second.
+/// Returns the product of one vector space per block, or the space itself if there is a single block. Every rank holds all rows of each block,
+/// because operators need all rows, dot products then need no communication, and iteration counts cannot differ between ranks. The vectors are
+/// therefore Thyra's own. Tpetra vectors would add maps and imports that are not used, at a fifth of the time of a run of a tenth of a second.
 Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 
-/// The blocks of a vector, one after another.
+/// Returns the entries of all blocks of a vector, one block after another.
 Eigen::VectorXd numbers_of(const ThyraVector& vector);
 
-/// A vector of that space with these numbers, which are the first rank's.
+/// Returns a vector of this space with the entries `numbers` of the first rank.
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers);
 
-/// A linear function on all blocks, one after another, as an operator. Zeros are known to give zeros. What it gives is the first rank's.
+/// Linear operator on all blocks, one after another, defined by a function. Zero is mapped to zero without a call. The result of the first rank is
+/// used on every rank.
 class FunctionOperator : public Thyra::LinearOpBase<double> {
  public:
   explicit FunctionOperator(Teuchos::RCP<const Space> space) : space_(std::move(space)) {}
@@ -43,7 +44,7 @@ class FunctionOperator : public Thyra::LinearOpBase<double> {
   Teuchos::RCP<const Space> space_;
 };
 
-/// A solver of Belos, made as Krylov is. The flexible GMRES needs a preconditioner, if only the identity.
+/// A factory of Belos solvers, set up as Krylov sets them up. Flexible GMRES always needs a preconditioner, at least the identity.
 struct BelosFactory {
   Teuchos::RCP<Thyra::LinearOpWithSolveFactoryBase<double>> factory;
   bool flexible = false;

@@ -1,5 +1,5 @@
 #pragma once
-// The preconditioner that a deck chooses for a linear system.
+// The preconditioner chosen by the deck for a linear system.
 
 #include <cstddef>
 #include <string>
@@ -11,16 +11,17 @@
 
 namespace tanktread::coupling {
 
-/// Products y = A z of the solves before, the latest first, y made orthonormal: as a preconditioner Y^T and then Z, and another for the rest   (2.24)
+/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y: maps the part in the span of y by Z Y^T and the rest
+/// by another preconditioner (2.24)
 class RecycledProducts {
  public:
-  /// A product of the present solve, which counts from the next one on.
+  /// Records a product of the current solve, which is used from the next solve on.
   void record(const Eigen::VectorXd& z, const Eigen::VectorXd& y) { present_.push_back({z, y}); }
 
-  /// Ends the present solve.
+  /// Ends the current solve.
   void refresh();
 
-  /// out = Z Y^T in + P (in - Y Y^T in)
+  /// Computes out = Z Y^T in + P (in - Y Y^T in), with `other` as P.
   void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const;
 
   double scale() const { return scale_; }
@@ -34,19 +35,19 @@ class RecycledProducts {
 
   static constexpr std::size_t most = 10;
   std::vector<Product> present_, kept_;
-  double scale_ = 1;  // s of the least |z - s y|: one over the size of the operator
+  double scale_ = 1;  // s that minimises |z - s y|: one over the size of the operator
 };
 
-/// `Solvers/<system>/preconditioner` of the deck, with what it remembers from solve to solve.
+/// Preconditioner `Solvers/<system>/preconditioner` of the deck, with its data from earlier solves.
 class ChosenPreconditioner {
  public:
   explicit ChosenPreconditioner(std::string kind = "own") : kind_(std::move(kind)) {}
 
-  /// The system with this preconditioner, which refers to both.
+  /// Returns the system with this preconditioner. The result refers to `system` and to this object.
   LinearSystem join(const LinearSystem& system);
 
   void refresh() { recycled_.refresh(); }  ///< ends a solve
-  void forget() { recycled_ = {}; }        ///< what was of another system
+  void forget() { recycled_ = {}; }        ///< discards data of an earlier system
 
  private:
   std::string kind_;

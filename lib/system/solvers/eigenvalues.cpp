@@ -19,7 +19,8 @@ namespace {
 
 const RunFailure not_found("the eigenvalues of the linearised motion cannot be had");
 
-/// Pairs from values and from columns that hold the real and the imaginary part of a vector and its conjugate side by side, as LAPACK has them.
+/// Returns eigenpairs from eigenvalues and LAPACK's storage of eigenvectors: the real and the imaginary part of a complex vector in adjacent columns,
+/// shared with its conjugate.
 std::vector<Eigenpair> unpacked(const Eigen::VectorXcd& values, const Eigen::MatrixXd& columns) {
   std::vector<Eigenpair> pairs;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
@@ -61,7 +62,7 @@ std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int nu
   const auto map = Teuchos::rcp(new FunctionOperator(space));
   map->function = a;
   Eigen::VectorXd start(n * block);
-  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // the same on every run
+  for (Eigen::Index i = 0; i < start.size(); ++i) start[i] = std::sin(1.0 + static_cast<double>(i * i % 7919));  // pseudo-random, equal on every run
   const Teuchos::RCP<Vectors> first = Thyra::createMembers<double>(space, block);
   for (int k = 0; k < block; ++k) Thyra::assign(first->col(k).ptr(), *vector_of(space, start.segment(k * n, n)));
   const auto problem = Teuchos::rcp(new Anasazi::BasicEigenproblem<double, Vectors, Operator>(map, first));

@@ -1,5 +1,5 @@
 #pragma once
-// Eigenvalues of real matrices that are not symmetric: all of one that is there, by LAPACK, or a few of one that is a function, by Anasazi.
+// Eigenvalues of non-symmetric real matrices: all eigenvalues of a dense matrix by LAPACK, or a few of a matrix-free operator by Anasazi.
 
 #include <complex>
 #include <vector>
@@ -10,17 +10,18 @@
 
 namespace tanktread::coupling {
 
-/// A v = value v, |v| = 1.
+/// Eigenvalue and eigenvector: A v = value v, |v| = 1.
 struct Eigenpair {
   std::complex<double> value;
   Eigen::VectorXcd vector;
 };
 
-/// All of A, in no order. Throws RunFailure where LAPACK does not find them.
+/// Returns all eigenpairs of A, in no order. Throws RunFailure if LAPACK fails.
 std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a);
 
-/// Those `number` of the linear map of n numbers whose values are largest in size, by block Krylov-Schur, until the residual |A v - value v| is below
-/// `tolerance` times the value; `block` is the multiplicity that is sure to be seen. Collective. Throws RunFailure where they are not found.
+/// Returns the `number` eigenpairs largest in magnitude of a linear map on n unknowns, by block Krylov-Schur, until the residual |A v - value v| is
+/// below `tolerance` times the value. `block` is the block size, up to which multiplicities are found reliably. Collective. Throws RunFailure if the
+/// iteration does not converge.
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance);
 
 }  // namespace tanktread::coupling

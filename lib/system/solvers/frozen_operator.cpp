@@ -9,7 +9,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Rounded to nearest.
+/// Returns the upper 16 bits of a float, rounded to nearest.
 std::uint16_t narrowed(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
   return static_cast<std::uint16_t>((bits + 0x7fff + (bits >> 16 & 1)) >> 16);
@@ -53,7 +53,7 @@ namespace {
 
 Net centred(const Net& x) { return x.rowwise() - x.colwise().mean(); }
 
-/// Returns the rotation Q for which |to - from Q^T| is least; both are centred, a row per point.
+/// Returns the rotation Q that minimises |to - from Q^T|; both nets are centred, one row per point.
 Mat3 best_rotation(const Net& from, const Net& to) {
   const Eigen::JacobiSVD<Mat3> svd(Mat3(to.transpose() * from), Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vec3 signs = Vec3::Ones();

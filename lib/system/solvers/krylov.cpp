@@ -24,9 +24,10 @@ namespace {
 
 constexpr const char* block_gmres = "Block GMRES";
 
-constexpr double least_recursive_residual = 1e-12;  // below, what a recursion says of the residual is rounding
+constexpr double least_recursive_residual = 1e-12;  // below this value the recursively computed residual is dominated by round-off
 
-/// What Stratimikos calls the solvers of Belos' factory. GMRES is the flexible one, which needs no product to see that it has converged.
+/// Returns the names that Stratimikos uses for the solvers of Belos' factory. "GMRES" is flexible GMRES, which needs no additional product to detect
+/// convergence.
 const std::map<std::string, std::string>& solver_types() {
   static const std::map<std::string, std::string> types = {{"GMRES", block_gmres},
                                                            {"FLEXIBLE GMRES", block_gmres},
@@ -44,7 +45,7 @@ const std::map<std::string, std::string>& solver_types() {
   return types;
 }
 
-/// Where MPI has not been started Trilinos' timers ask the system, at every operation on vectors: a third of the time of a small solve.
+/// Disables Trilinos' timers. Without MPI each vector operation would make a system call for them, a third of the time of a small solve.
 struct Timers : Teuchos::TimeMonitor {
   static void stop() {
     static std::size_t stopped = 0;
@@ -54,7 +55,7 @@ struct Timers : Teuchos::TimeMonitor {
   }
 };
 
-/// |b - A x| of each block over |b|.
+/// Returns |b - A x| of each block divided by |b|.
 std::vector<std::pair<std::string, double>> residuals_of(const LinearSystem& system, const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
   Eigen::VectorXd ax(x.size());
   system.product(x.data(), ax.data());
@@ -153,7 +154,7 @@ SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, 
     report.iterations = status.extraParameters->get<int>("Iteration Count");
     report.converged = status.solveStatus == Thyra::SOLVE_STATUS_CONVERGED;
     x = numbers_of(*unknowns);
-  } catch (const Thyra::CatastrophicSolveFailure&) {  // what Belos makes of numbers that are not finite, or of a basis that breaks down
+  } catch (const Thyra::CatastrophicSolveFailure&) {  // thrown by Belos if values are not finite or a Krylov basis breaks down
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   impl_->chosen.refresh();

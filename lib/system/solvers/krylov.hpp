@@ -12,7 +12,7 @@
 
 namespace tanktread::coupling {
 
-/// Unknowns that belong together, as a velocity, a traction or a pressure drop.
+/// A named block of unknowns, for example velocity, traction or pressure drop.
 struct UnknownBlock {
   std::string name;
   Eigen::Index size = 0;
@@ -20,44 +20,44 @@ struct UnknownBlock {
 };
 using Blocks = std::vector<UnknownBlock>;
 
-/// A linear map of all blocks, one after another, to all of them.
+/// A linear map on the unknowns of all blocks, stored one block after another.
 using Apply = std::function<void(const double* in, double* out)>;
 
-/// A linear system. Its operators may be distributed inside; they must return the same numbers on every rank, but for round-off.
+/// A linear system. Its operators may be distributed internally, but must return equal values on every rank, up to round-off.
 struct LinearSystem {
   Blocks blocks;
   Apply product;
-  Apply precondition;  ///< an approximate inverse of the product, from the right, so that residuals are those of the system; or none
+  Apply precondition;  ///< approximate inverse of the product, optional; applied from the right, so that residuals are those of the original system
 };
 
-/// What a linear solve did.
+/// Result of a linear solve.
 struct SolveReport {
   int iterations = 0;
   bool converged = false;
-  /// Of each block, over the norm of the right-hand side, where it did not converge.
+  /// Residual of each block divided by the norm of the right-hand side, if the solve did not converge.
   std::vector<std::pair<std::string, double>> residuals;
 };
 
-/// Throws RunFailure with the residuals when `report` is of a solve of `system` that did not reach `tolerance`.
+/// Throws RunFailure with the residuals if the solve of `system` reported by `report` did not reach `tolerance`.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
-/// One of Belos' solvers, with its list, through Thyra (block_system.hpp).
+/// A Belos solver with its parameter list, called through Thyra (block_system.hpp).
 class Krylov {
  public:
-  /// The names of solvers: those of Belos' factory.
+  /// Returns the names of the available solvers: the names of Belos' factory.
   static std::vector<std::string> names();
 
-  /// The solver is one of them ("GMRES", "BICGSTAB", …); its list goes to Belos as it is, after our defaults. Throws UserError for a name or a
-  /// parameter that Belos does not know.
+  /// Constructs one of these solvers ("GMRES", "BICGSTAB", …). Its parameter list is passed to Belos unchanged and overrides our defaults. Throws
+  /// UserError if Belos does not know the name or a parameter.
   explicit Krylov(const IterativeOptions& options);
   Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list) : Krylov(IterativeOptions{solver, list}) {}
   ~Krylov();
 
-  /// Solves the system for the right-hand side b to the relative residual `tolerance`, relative to |b|, starting from x. Collective. Does not throw
-  /// when it stops short, or breaks down, the solution then not a number; see the report.
+  /// Solves the system for the right-hand side b to the residual `tolerance` relative to |b|, with initial guess x. Collective. Does not throw if the
+  /// solver stops early or breaks down (x is then not a number); check the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
-  /// Discards the products that the preconditioner `recycled` keeps from earlier solves. No checkpoint holds them.
+  /// Discards the products that the preconditioner `recycled` keeps from earlier solves. Checkpoints do not contain them.
   void forget() const;
 
  private:

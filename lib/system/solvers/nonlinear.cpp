@@ -23,14 +23,15 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// NOX gets places and residuals in so small a unit: what differs by less than 1e-16, of many residuals near the solution, it takes for singular.
+/// Positions and residuals are passed to NOX in this small unit, because NOX treats residual differences below 1e-16, which occur near the solution,
+/// as singular.
 constexpr double unit = 0x1p-20;
 
 Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
 
 Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
 
-/// F(x) = g(x) - x, with products F' d by differences above the noise of adaptive quadrature.
+/// F(x) = g(x) - x, with products F' d by finite differences whose steps exceed the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
  public:
   using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
@@ -41,7 +42,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
     if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new FunctionOperator(space_));
   }
 
-  /// What Newton's systems are preconditioned with, from the right.
+  /// Returns the right preconditioner of Newton's linear systems.
   Teuchos::RCP<const Thyra::LinearOpBase<double>> preconditioner() const {
     if (preconditioner_.is_null()) return Thyra::identity<double>(space_);
     return preconditioner_;
@@ -93,12 +94,12 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   mutable ChosenPreconditioner chosen_;
   Teuchos::RCP<FunctionOperator> preconditioner_;
   mutable LinearSystem newton_;
-  mutable Net x_, f_;  // where it was evaluated last
+  mutable Net x_, f_;  // argument and value of the latest evaluation
 };
 
 Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
 
-/// Ends at the tolerance, in our norm, or after so many iterations.
+/// Convergence test: stops at the tolerance in the given norm, or after `most` iterations.
 class Test : public NOX::StatusTest::Generic {
  public:
   Test(const FixedPoint::Norm& norm, double tolerance, int most) : norm_(norm), tolerance_(tolerance), most_(most) {}
@@ -118,7 +119,7 @@ class Test : public NOX::StatusTest::Generic {
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
 
-/// A copy of which nothing is marked as looked at.
+/// Returns a copy of a list in which no parameter is marked as used.
 Teuchos::ParameterList unread_copy(const Teuchos::ParameterList& list) {
   Teuchos::ParameterList copy(list.name());
   for (const auto& item : list) {
@@ -132,7 +133,7 @@ Teuchos::ParameterList unread_copy(const Teuchos::ParameterList& list) {
   return copy;
 }
 
-/// The path in `list` of a parameter of `given` that nobody has looked at; empty: none.
+/// Returns the path in `list` of a parameter of `given` that has not been used; empty if all have been used.
 std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::ParameterList& list) {
   for (const auto& item : given) {
     if (!item.second.isList()) {
@@ -146,7 +147,8 @@ std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::Para
 
 Teuchos::ParameterList defaults(const std::string& method, int depth) {
   Teuchos::ParameterList list("NOX");
-  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // a step that fails is tried again, shorter
+  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // discards output: a failed step is repeated with a
+                                                                                           // shorter step
   list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");
@@ -165,7 +167,7 @@ Teuchos::ParameterList defaults(const std::string& method, int depth) {
 
 struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
-  Teuchos::RCP<Teuchos::ParameterList> last;  // as the last solve has left it
+  Teuchos::RCP<Teuchos::ParameterList> last;  // list after the last solve
   Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver;
   std::string preconditioner;
 };
@@ -205,7 +207,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
     x = net(solver->getSolutionGroup().getX());
     return {solver->getNumIterations(), converged};
-  } catch (const char*) {  // NOX's word for a function or a direction that cannot be had
+  } catch (const char*) {  // thrown by NOX if the function or a direction cannot be evaluated
     return {0, false};
   } catch (const Thyra::CatastrophicSolveFailure&) {
     return {0, false};

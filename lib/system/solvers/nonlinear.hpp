@@ -1,5 +1,5 @@
 #pragma once
-// Nonlinear systems by NOX, on short replicated vectors.
+// Nonlinear systems, solved by NOX on short replicated vectors.
 
 #include <algorithm>
 #include <functional>
@@ -12,34 +12,33 @@
 
 namespace tanktread::coupling {
 
-/// What a nonlinear solve did.
+/// Result of a nonlinear solve.
 struct NonlinearReport {
   int iterations = 0;
   bool converged = false;
 };
 
-/// A fixed point x = g(x) by NOX. Every rank does the same arithmetic on the whole short vector, so iteration counts cannot differ between
-/// ranks; g may be distributed inside and must return the same net on every rank.
+/// Solves a fixed-point problem x = g(x) by NOX. Every rank performs the same arithmetic on the complete short vector, so that iteration counts
+/// cannot differ between ranks. g may be distributed internally and must return the same net on every rank.
 class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
-  /// Iterates combined for a shape of so many numbers at rest: near a fold, and where waves go round, four do not converge, and on fine meshes not
-  /// twenty; on coarse ones forty are dependent.
+  /// Returns the number of iterates to combine for a steady shape with `size` unknowns. Near a fold and with travelling waves four iterates do not
+  /// converge, and on fine meshes twenty do not; on coarse meshes forty are linearly dependent.
   static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
-  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or `newton-krylov` without a matrix: products with dg/dx by differences of g, Belos'
-  /// solver `linear` with its preconditioner, own meaning none. `list` goes to NOX as it is, after our defaults; `depth`: of the iterates that
-  /// `anderson` combines, where the list does not say.
+  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`, with products with dg/dx by finite differences of g,
+  /// Belos' solver `linear` and its preconditioner ("own" means none). `list` is passed to NOX unchanged and overrides our defaults. `depth`: number
+  /// of iterates that `anderson` combines, if the list does not set it.
   FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"}, int depth = 4);
   ~FixedPoint();
 
-  /// From x on, until rest(g(x) - x) <= tolerance, rest being `norm` where it is not given, or `most` iterations are over. Collective. A value of g
-  /// that is not finite ends the iteration.
-  /// Throws UserError where NOX refuses the list.
+  /// Iterates from x until rest(g(x) - x) <= tolerance or until `most` iterations have been made. `rest` is `norm` if not given. A value of g that is
+  /// not finite ends the iteration. Throws UserError if NOX rejects the list. Collective.
   NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest = {}) const;
 
-  /// The path of a parameter of the given list that the last solve has not looked at; empty: none.
+  /// Returns the path of a parameter of the given list that the last solve did not use; empty if all were used.
   std::string unread() const;
 
  private:

@@ -8,65 +8,67 @@
 
 namespace tanktread::coupling {
 
-/// How the volume of the particle is kept: `Volume/*` of the deck.
+/// Options `Volume/*` of the deck: how the volume of the particle is conserved.
 struct VolumeOptions {
-  /// exact: no net flux in every evaluation and the volume restored after every step; flux: the former (2.8); none: neither.
+  /// exact: zero net flux in every evaluation, and the volume restored after every step; flux: zero net flux only (2.8); none: neither.
   std::string constraint = "exact";
 
   void declare(deck::Section& section);
 };
 
-/// How the control points of an interface move along it, which is free where there is no membrane: `Interface/*` of the deck.
+/// Options `Interface/*` of the deck: tangential motion of the control points along an interface, which is arbitrary if there is no membrane.
 struct InterfaceOptions {
-  /// material: with the fluid; normal: across the surface only; relaxed: across with the fluid, along so that elements keep their shape.
-  /// Empty: relaxed for a surface tension, material otherwise.
+  /// material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and tangentially so that elements
+  /// keep their shape. If not set: relaxed for a surface tension, material otherwise.
   std::optional<std::string> motion;
-  double relaxation = 1;  ///< speed of the relaxing motion: that of an elastic surface at capillary number 1 / relaxation
+  double relaxation = 1;  ///< speed of the mesh relaxation: the speed of an elastic surface at capillary number 1 / relaxation
 
   void declare(deck::Section& section);
 };
 
-/// The iterative solver of one kind of system: `Solvers/<system>` of the deck.
+/// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
-  std::optional<std::string> solver{};            ///< Belos' name; that of SolverOptions where it is not given
-  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< its list, as it is; that of SolverOptions where neither this nor the name is given
+  std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< its parameter list, passed unchanged; if neither this nor the name is set, the list of
+                                                    ///< SolverOptions
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
-  std::string path = "Solvers";                   ///< of its list in the deck
-  int restart = 100;                              ///< of GMRES, where the list does not say: all these vectors are allocated in each solve
+  std::string path = "Solvers";                   ///< path of these options in the deck
+  int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
 
   void declare(deck::Section& section);
 };
 
-/// The solvers of the linear systems: `Solvers/*` of the deck.
+/// Options `Solvers/*` of the deck: the solvers of the linear systems.
 struct SolverOptions {
-  std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver, of all systems that have none of their own
-  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its list, as it is
+  std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of all systems that do not set their own
+  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its parameter list, passed unchanged
   IterativeOptions velocity, traction;
-  IterativeOptions implicit_step{.restart = 30};  ///< three iterations are usual
+  IterativeOptions implicit_step{.restart = 30};  ///< three iterations are typical
   IterativeOptions spectrum{.restart = 30}, steady{.restart = 30};
-  std::shared_ptr<Teuchos::ParameterList> nox;    ///< list of the nonlinear solver of crank-nicolson, as it is
-  double tolerance = 1e-8;                        ///< relative residual of systems that a velocity or a traction comes from
-  std::string double_layer = "auto";              ///< assembled once a velocity, for all iterations; matrix-free: summed in each of them;
-                                                  ///< auto: the latter where far sums are taken by clusters
-  std::string tube = "schur";                     ///< what is solved for in a tube: v with the wall eliminated; all blocks (BlockForm)
-  std::string wall = "auto";                      ///< of a channel: factored, iterative, or auto: the latter where factors are large (Wall)
-  std::string rigid_bodies = "second kind";       ///< equation of those among others (RigidParticles), or first kind, of them alone (RigidTractions)
-  std::string projection = "collocation";         ///< of velocities onto the splines: collocation, least squares (VelocityProjection)
-  std::string frozen_operator = "nodal";          ///< the single layer of the Jacobian: a sum over nodes, or assembled
+  std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver of crank-nicolson, passed unchanged
+  double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
+  std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
+                                      ///< auto: matrix-free if far sums are taken by clusters
+  std::string tube = "schur";                     ///< unknowns in a tube: v with the wall eliminated, or all blocks (BlockForm)
+  std::string wall = "auto";                      ///< wall of a channel: factored, iterative, or auto: iterative if the factors are large (Wall)
+  std::string rigid_bodies = "second kind";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), or first kind,
+                                             ///< rigid bodies only (RigidTractions)
+  std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
+  std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: a sum over nodes, or assembled
   membrane::DirectSolverOptions direct;
 
-  /// What `double layer` means where far sums are taken by clusters, or not.
+  /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// The system's own solver, or that of all.
+  /// Returns the system's own options, completed by the solver and list for all systems.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);
 };
 
-/// Solves a system of some dozens of unknowns with each solver that the deck names or gives a list: Belos', Amesos2's, and NOX' with the method
-/// `nonlinear_solver` (Time/nonlinear solver). Throws UserError, naming the key, for a solver or a list that fails there, and for a parameter that
-/// NOX does not look at. Collective.
+/// Solves a system of some dozens of unknowns with each solver whose name or list the deck sets: Belos', Amesos2's, and NOX' with the method
+/// `nonlinear_solver` (Time/nonlinear solver). Throws UserError, naming the key, if a solver or a list fails, or if NOX does not use a parameter.
+/// Collective.
 void try_solvers(const SolverOptions& solvers, const std::string& nonlinear_solver);
 
 }  // namespace tanktread::coupling

@@ -6,7 +6,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double regularisation = 1e-2;  // of the normal equations of corrections of norm 1, which may be nearly parallel
+constexpr double regularisation = 1e-2;  // regularisation of the normal equations; corrections have norm 1 and may be nearly parallel
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the Jacobian leaves out, learnt from the iterations before.
+// Multisecant correction of the Jacobian from earlier iterations.
 
 #include <vector>
 
@@ -9,22 +9,22 @@
 
 namespace tanktread::coupling {
 
-/// The last few quasi-Newton corrections d_i and what the Jacobian (4.3) missed of each one's change of velocity, e_i = B (dv_i - J d_i):
+/// The last few quasi-Newton corrections d_i, and the error e_i = B (dv_i - J d_i) of the Jacobian (4.3) for the velocity change dv_i of each:
 ///
 ///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
 ///
-/// The part left out of (4.3) is bounded and changes with the shape, so pairs serve over some steps. A multisecant update: Fang & Saad,
-/// Numer. Linear Algebra Appl. 16 (2009).
+/// The part omitted from (4.3) is bounded and changes with the shape, so that pairs remain useful for a few steps. This is a multisecant update: Fang
+/// & Saad, Numer. Linear Algebra Appl. 16 (2009).
 class Secants {
  public:
-  /// `pairs`: d_1, e_1, d_2, e_2, ..., the oldest first.
+  /// `pairs`: d_1, e_1, d_2, e_2, ..., oldest first.
   explicit Secants(std::vector<Net> pairs);
   Secants() = default;
 
-  /// Joins a pair, of which `most` are kept.
+  /// Adds a pair. At most `most` pairs are kept.
   void add(const Net& correction, const Net& missed, int most);
 
-  /// E w.
+  /// Returns E w.
   Net operator()(const Net& w) const;
 
   const std::vector<Net>& pairs() const { return pairs_; }

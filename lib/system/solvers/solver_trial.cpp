@@ -19,20 +19,20 @@ namespace {
 using List = Teuchos::ParameterList;
 using Works = std::function<bool(const List&)>;
 
-constexpr Eigen::Index n = 60;           // unknowns, more than the products that Krylov remembers
-constexpr int most_products = 10 * n;  // of a method that converges here
+constexpr Eigen::Index n = 60;           // number of unknowns, larger than the number of products that Krylov stores
+constexpr int most_products = 10 * n;  // limit for a method that converges on this system
 
-/// False where a library throws, whatever it throws.
+/// Returns the result of a trial, or false if a library throws anything.
 bool runs(const std::function<bool()>& trial) {
   try {
     return trial();
   } catch (const std::exception&) {
-  } catch (const char*) {  // of NOX
+  } catch (const char*) {  // thrown by NOX
   }
   return false;
 }
 
-/// Symmetric, positive definite and diagonally dominant, so that every method converges.
+/// Returns a symmetric, positive definite and diagonally dominant matrix, for which every method converges.
 Eigen::SparseMatrix<double> system_matrix() {
   Eigen::SparseMatrix<double> a(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -63,8 +63,8 @@ bool solves(IterativeOptions options, const List& list) {
   });
 }
 
-/// The path of the first parameter of `given` with which, after those before it, a trial of `whole` fails; empty where none does. `grown`: the part
-/// of `whole` that stands at `path`.
+/// Returns the path of the first parameter of `given` that makes a trial of `whole` fail when added after the parameters before it; empty if none
+/// does. `grown`: the part of `whole` at `path`.
 std::string culprit(const List& given, const Works& works, const std::string& path, const List& whole, List& grown) {
   for (const auto& item : given) {
     const std::string here = path + "/" + item.first;

@@ -170,22 +170,27 @@ def draw(fits, axes=None):
             data.plot(line, along.predicted(prediction, places[start:start + datum.places]), color=color, linewidth=1)
             data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
         else:
-            data.errorbar(datum.name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=4)
-            data.plot(datum.name, datum.predicted(prediction, [])[0], "_", color=color, ms=12)
+            name = datum.name.removesuffix(": data")
+            data.errorbar(name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=7)
+            data.plot(name, datum.predicted(prediction, [])[0], "_", color=color, ms=14)
         start += datum.places
-        residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".", ms=2.5,
-                      color=color)
+        residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".",
+                      ms=2.5 if datum.count > 1 else 7, color=color)
         row += datum.length
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
-    curves = [datum for datum in best.data if not isinstance(datum, OutlineData) and numpy.size(datum.times) > 1]
-    if curves:
+    series = [datum for datum in best.data if not isinstance(datum, OutlineData)]
+    if any(numpy.size(datum.times) > 1 for datum in series):
         data.set_xlabel("time" + best.runs.unit("Time/final time"))
-        data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in curves)))
-    elif not all(isinstance(datum, OutlineData) for datum in best.data):
+    elif series:
         data.tick_params(axis="x", rotation=60, labelsize=7)
+    if series:
+        data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series)))
     data.set_title(f"data and {best.law}")
     residual.set_title("residuals over their errors")
+    residual.set_xlabel("number of the datum")
+    residual.axhline(0, color=style.FAINT, linewidth=0.8)
+    residual.xaxis.get_major_locator().set_params(integer=True)
     names = [one for one, yes in zip(best.unknowns, best.told) if yes]
     for axis, (i, j) in zip(axes[2:], pairs):
         angle = numpy.linspace(0, 2 * numpy.pi, 200)

@@ -205,7 +205,8 @@ def plot(directory, column, key, axes=None):
             continue
         order = numpy.argsort(x)
         few = len(set(labels)) <= 12
-        axis.plot(x[order], y[order], "o-" if few else "o", ms=3.5,
+        dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
+        axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5,
                   color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
     if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
         axis.set_xscale("log")

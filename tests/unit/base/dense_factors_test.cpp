@@ -6,7 +6,7 @@ namespace tanktread {
 namespace {
 
 TEST(DenseFactors, SolveSystemsThatNeedPivots) {
-  for (const int n : {1, 3, 40, 301}) {  // beyond the blocks of the factorisation, and no multiple of a register
+  for (const int n : {1, 3, 40, 301}) {  // 301: larger than a block of the factorisation, and not a multiple of the register width
     Eigen::MatrixXd a(n, n), x(n, 2);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) a(i, j) = std::cos(1.3 * i * i + 0.7 * j + 0.01 * i * j * j);

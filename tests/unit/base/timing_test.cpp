@@ -22,7 +22,7 @@ TEST(Phases, AnInnerScopePausesTheOuterOne) {
   const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   EXPECT_GE(phases.seconds("step"), 0.002);
   EXPECT_GE(phases.seconds("solve"), 0.020);
-  EXPECT_LE(phases.total(), elapsed);  // it would exceed it by 20 ms if the inner seconds were counted twice
+  EXPECT_LE(phases.total(), elapsed);  // the total would be 20 ms larger than the elapsed time if the inner phase were counted twice
 }
 
 TEST(Phases, CountsCallsAndKeepsTheOrderOfFirstEntry) {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A directory of decks that lives as long as the test.
+/// A temporary directory of decks that is deleted at the end of the test.
 struct Folder {
   fs::path path = fs::temp_directory_path() / ("tanktread_deck_" + std::to_string(::getpid()));
   Folder() { fs::create_directories(path); }

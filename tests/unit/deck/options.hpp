@@ -1,5 +1,5 @@
 #pragma once
-// A scene for the tests of the deck room: one key of every type.
+// Options with one key of every type, for the tests of the deck module.
 
 #include <memory>
 #include <optional>
@@ -59,7 +59,7 @@ struct Sample {
   }
 };
 
-/// The sample that the lines under `Kinds` describe.
+/// Returns the options from a deck with the given lines in its section `Kinds`.
 inline Kinds kinds(const std::string& lines) {
   Sample sample;
   Document document = read_text("Tanktread:\n  Kinds:\n" + lines);
@@ -67,7 +67,7 @@ inline Kinds kinds(const std::string& lines) {
   return sample.kinds;
 }
 
-/// The sentence with which a whole deck is refused; empty: it is not.
+/// Returns the error message for a whole deck, or an empty text if there is none.
 inline std::string refusal_of(const std::string& text) {
   try {
     Sample sample;
@@ -79,7 +79,7 @@ inline std::string refusal_of(const std::string& text) {
   return {};
 }
 
-/// The same for the lines under `Kinds`.
+/// Returns the error message for a deck with the given lines in its section `Kinds`.
 inline std::string refusal(const std::string& lines) { return refusal_of("Tanktread:\n  Kinds:\n" + lines); }
 
 }  // namespace tanktread::deck

@@ -1,4 +1,4 @@
-// What a membrane that nearly keeps its area takes out of displacements (4.25).
+// Tests of the projection P (4.25) for membranes that are nearly area-incompressible.
 
 #include "membrane/area_constraint.hpp"
 
@@ -13,14 +13,14 @@ const Law laws[] = {Skalak{1.3, 40}, EvansSkalak{1.3, 40}};
 
 Membrane with_points(const Sphere& s, const Law& law) { return Membrane(s.space, s.net, Materials{{{law, {}, {}, 1}}, {}}); }
 
-/// Of the area's part of the law alone.
+/// Returns the load of the area part of the law only.
 Net area_load(const Sphere& s, const Law& law, const Net& x) {
   return with_points(s, law).load(x) - with_points(s, split(law)->shear).load(x);
 }
 
 Eigen::VectorXd mobility(Eigen::Index n) { return Eigen::VectorXd::LinSpaced(n, 0.5, 2); }
 
-/// Where nothing is stretched all of the tangent is D'D.
+/// If nothing is stretched, the whole tangent of the area part is D'D.
 TEST(AreaConstraint, InvertsTheStiffPartOfTheTangent) {
   const Sphere& s = sphere(3);
   for (const Law& law : laws) {
@@ -29,7 +29,7 @@ TEST(AreaConstraint, InvertsTheStiffPartOfTheTangent) {
     constraint.factor(0.7);
     const Net r = random_net(s.net.rows(), 5), p = constraint.apply(r);
     const Net stiff = difference([&](const Net& y) { return area_load(s, law, y); }, s.net, p);
-    EXPECT_LT((p + 0.7 * mobility(s.net.rows()).asDiagonal() * stiff - r).norm(), 1e-7 * r.norm());  // what differences are good to
+    EXPECT_LT((p + 0.7 * mobility(s.net.rows()).asDiagonal() * stiff - r).norm(), 1e-7 * r.norm());  // accuracy of the differences
   }
 }
 

@@ -1,4 +1,4 @@
-// A law whose resistance to a change of area is integrated apart (3.13).
+// Tests of laws whose area elasticity is integrated with a separate quadrature (3.13).
 
 #include <cmath>
 
@@ -32,7 +32,7 @@ TEST(AreaPoints, AsManyAsForTheRestAreTheWholeLaw) {
     EXPECT_NEAR(parts.energy(x) / whole.energy(x), 1, 1e-13);
     EXPECT_LT((parts.load(x) - whole.load(x)).norm(), 1e-12 * whole.load(x).norm());
     EXPECT_NEAR(parts.tension_summary(x).smallest, whole.tension_summary(x).smallest, 1e-12);
-    EXPECT_GE(with_points(s, law, 1).tension_summary(x).area_change, whole.tension_summary(x).area_change);  // those between its points count too
+    EXPECT_GE(with_points(s, law, 1).tension_summary(x).area_change, whole.tension_summary(x).area_change);  // changes between its points count too
   }
 }
 
@@ -46,14 +46,14 @@ TEST(AreaPoints, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
   }
 }
 
-/// A sphere sheared without a change of area: a membrane that locks is stiffer by what its C is worth.
+/// A sphere sheared without area change. A membrane that locks is stiffer in proportion to its C.
 TEST(AreaPoints, OneAnElementLeavesAMeshFreeToShear) {
   const double c = 1e4;
   std::vector<double> whole, one;
   for (const int n : {4, 8}) {
     const Sphere& s = sphere(n);
     Net x = s.net;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {  // parallels turn about x3 by an angle that grows with x3: areas stay
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {  // parallels are rotated about x3 by an angle that grows with x3, so areas do not change
       const double angle = 0.3 * x(i, 2), cosine = std::cos(angle), sine = std::sin(angle), x1 = x(i, 0);
       x(i, 0) = cosine * x1 - sine * x(i, 1), x(i, 1) = sine * x1 + cosine * x(i, 1);
     }

@@ -10,10 +10,10 @@
 namespace tanktread::membrane {
 namespace {
 
-const Law soft = SurfaceTension{0};  // leaves the bending energy alone
+const Law soft = SurfaceTension{0};  // no elastic energy in addition to bending
 const Bending flat{1.5, false}, curved{1.5, true}, spontaneous{1.5, false, -0.7};
 
-/// Steps of a random net must stay small against the elements, since curvature takes two derivatives.
+/// Steps of a random net must be small compared with the elements, because curvature contains second derivatives.
 Net small_net(Eigen::Index n, unsigned seed) { return 0.1 * random_net(n, seed); }
 
 TEST(Bending, LoadIsTheGradientOfTheEnergyAndTangentThatOfTheLoad) {
@@ -65,7 +65,7 @@ TEST(Bending, IsRelaxedInTheUnstressedShape) {
   EXPECT_EQ(membrane.load(deformed(s.net)).norm(), 0);
 }
 
-/// E_b/2 int (2/R)^2 = 8 pi E_b, whatever the radius; relaxed at radius 1 and blown up to R: 8 pi E_b (1 - R)^2.
+/// The energy E_b/2 int (2/R)^2 is 8 pi E_b for any radius. If the sphere is relaxed at radius 1 and inflated to R, it is 8 pi E_b (1 - R)^2.
 TEST(Bending, EnergyOfASphereConvergesToTheExactOne) {
   double before = 0;
   for (int n : {3, 6, 12}) {
@@ -73,22 +73,22 @@ TEST(Bending, EnergyOfASphereConvergesToTheExactOne) {
     const double unit = 8 * M_PI * 1.5;
     const double error = std::abs(Membrane(s.space, s.net, soft, 5, flat).energy(1.7 * s.net) / unit - 1);
     const double other = std::abs(Membrane(s.space, s.net, soft, 5, curved).energy(1.7 * s.net) / (unit * 0.7 * 0.7) - 1);
-    EXPECT_NEAR(error, other, 1e-12);  // the stretch is the same everywhere
+    EXPECT_NEAR(error, other, 1e-12);  // the stretch is uniform
     if (before > 0) {
-      EXPECT_GT(std::log2(before / error), 2.5);  // 2.65 measured; extraordinary points decide
+      EXPECT_GT(std::log2(before / error), 2.5);  // 2.65 measured; extraordinary points determine the order
     }
     before = error;
   }
 }
 
-/// E_b/2 int (2/R - c0)^2 = 2 pi E_b (2 - c0 R)^2.
+/// The energy is E_b/2 int (2/R - c0)^2 = 2 pi E_b (2 - c0 R)^2.
 TEST(Bending, EnergyOfASphereOfSpontaneousCurvatureIsTheExactOne) {
   const Sphere& s = sphere(12);
   const double radius = 1.7, turned = 2 - spontaneous.spontaneous_curvature * radius;
   EXPECT_NEAR(Membrane(s.space, s.net, soft, 5, spontaneous).energy(radius * s.net) / (2 * M_PI * 1.5 * turned * turned), 1, 2e-5);
 }
 
-/// The biconcave disc z = 1/2 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4): Helfrich's energy by quadrature of its meridian.
+/// Returns Helfrich's energy of the biconcave disc z = 1/2 sqrt(1 - r^2) (0.21 + 2 r^2 - 1.12 r^4), by quadrature along its meridian.
 double energy_of_the_disc() {
   // r = sin a, z = cos a (0.21 + 2 sin^2 a - 1.12 sin^4 a)/2; principal curvatures of the meridian and of the parallel
   double sum = 0;

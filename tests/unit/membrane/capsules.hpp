@@ -1,5 +1,5 @@
 #pragma once
-// Spheres and smoothly deformed capsules, shared by the tests of this room.
+// Spheres and smoothly deformed capsules for the tests of the membrane module.
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@
 
 namespace tanktread::membrane {
 
-/// A unit sphere on the cube mesh of n x n elements a face; spheres are kept, since fits take time.
+/// A unit sphere on the cube mesh of n x n elements per face. Spheres are cached, because fits take time.
 struct Sphere {
   spline::Space space;
   Net net;
-  std::vector<int> elements;  ///< all of them
+  std::vector<int> elements;  ///< indices of all elements
 };
 
 inline const Sphere& sphere(int n) {
@@ -35,7 +35,7 @@ inline const Sphere& sphere(int n) {
   return made;
 }
 
-/// A smooth, strongly stretched, bent and sheared image of a net, without any symmetry.
+/// Returns a smooth, strongly stretched, bent and sheared image of a net, without any symmetry.
 inline Net deformed(const Net& net) {
   Net out = net;
   for (Eigen::Index i = 0; i < net.rows(); ++i) {
@@ -54,14 +54,15 @@ inline Net random_net(Eigen::Index n, unsigned seed) {
 
 inline double inner(const Net& a, const Net& b) { return a.cwiseProduct(b).sum(); }
 
-/// df/dx u by a central difference of fourth order: truncation and round-off near 1e-11.
+/// Returns df/dx u by a central difference of fourth order, with truncation and round-off errors near 1e-11.
 template <class F>
 std::invoke_result_t<F, Net> difference(const F& f, const Net& x, const Net& u) {
   const double h = 1e-4;
   return (8 * (f(x + h * u) - f(x - h * u)) - (f(x + 2 * h * u) - f(x - 2 * h * u))) / (12 * h);
 }
 
-/// By how much the response of a law at I1, I2 is not the central differences of its energy and of itself: 1e-10 of truncation, 1e-11 of round-off.
+/// Returns the difference between the response of a law at I1, I2 and central differences of its energy and of itself. Truncation error 1e-10,
+/// round-off 1e-11.
 template <class L>
 double response_error(const L& law, double i1, double i2) {
   const double h = 1e-5;
@@ -74,12 +75,12 @@ double response_error(const L& law, double i1, double i2) {
                    std::abs(r.psi22 - (at(0, 1).psi2 - at(0, -1).psi2) / (2 * h))});
 }
 
-/// By how much, relative, the load along u is not the gradient of the energy.
+/// Returns the relative difference between the load along u and the gradient of the energy.
 inline double gradient_error(const Membrane& membrane, const Net& x, const Net& u) {
   return std::abs(inner(membrane.load(x), u) / difference([&](const Net& y) { return membrane.energy(y); }, x, u) - 1);
 }
 
-/// By how much, relative, the tangent applied to u is not the gradient of the load.
+/// Returns the relative difference between the tangent applied to u and the gradient of the load.
 inline double tangent_error(const Membrane& membrane, const Sphere& s, const Net& x, const Net& u) {
   Tangent tangent(membrane);
   tangent.update(x, s.elements);

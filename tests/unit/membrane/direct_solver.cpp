@@ -11,7 +11,7 @@
 namespace tanktread::membrane {
 namespace {
 
-/// A banded matrix, symmetric positive definite for skew = 0.
+/// Returns a banded matrix, symmetric positive definite if skew = 0.
 Eigen::SparseMatrix<double> banded(int n, double diagonal, double skew) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < n; ++i)
@@ -51,7 +51,7 @@ TEST(DirectSolver, IterationGivesWhatFactorsGive) {
   }
 }
 
-/// Blocks on a diagonal.
+/// Returns a block-diagonal matrix.
 Eigen::SparseMatrix<double> stacked(const std::vector<Eigen::SparseMatrix<double>>& blocks) {
   std::vector<Eigen::Triplet<double>> entries;
   int first = 0;
@@ -66,8 +66,8 @@ Eigen::SparseMatrix<double> stacked(const std::vector<Eigen::SparseMatrix<double
   return all;
 }
 
-/// Of three kinds, of which two are alike in their pattern, and one is equal to the round-off of its entries; of a size that is inverted, and of one
-/// that is not.
+/// Blocks of three kinds. Two kinds have the same pattern, and one block equals others only up to round-off. The blocks have a size that is inverted
+/// (60) and one that is not (300).
 TEST(DirectSolver, OfEqualBlocksSolvesAsOfOneMatrix) {
   for (const int n : {60, 300})
     for (const double skew : {0., 0.3}) {
@@ -77,14 +77,14 @@ TEST(DirectSolver, OfEqualBlocksSolvesAsOfOneMatrix) {
       DirectSolver solver;
       solver.factor(a);
       EXPECT_LT((a * solver.solve(b) - b).norm(), 1e-13 * b.norm()) << n;  // round-off
-      const auto changed = stacked({one, 1.01 * one, 1.02 * one, one});    // half of them are not equal to any
+      const auto changed = stacked({one, 1.01 * one, 1.02 * one, one});    // half of the blocks are not equal to any other
       solver.factor(changed);
       const Net c = b.topRows(changed.rows());
       EXPECT_LT((changed * solver.solve(c) - c).norm(), 1e-13 * c.norm()) << n;
     }
 }
 
-/// The circle's shift: its incomplete factors are those of no use, its complete ones are exact.
+/// Cyclic shift of a vector: its incomplete factors are useless, its complete factors are exact.
 TEST(DirectSolver, AMatrixThatIterationDoesNotSolveIsFactored) {
   const int n = 400;
   Eigen::SparseMatrix<double> shift(n, n);

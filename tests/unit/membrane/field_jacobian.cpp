@@ -1,4 +1,4 @@
-// The derivatives of fields that implicit steps use are those of their load and rate.
+// Tests that the derivatives of fields used by implicit steps are those of their load and rate.
 
 #include <memory>
 
@@ -53,7 +53,7 @@ TEST_P(FieldJacobian, IsInvertedBySolve) {
   one->set_state(s.net, q);
   Eigen::VectorXd r(q.size());
   for (Eigen::Index k = 0; k < r.size(); ++k) r[k] = std::sin(2. * k);
-  const double shift = std::pow(1.25, -3);  // one for which the surfactant's factors are exact
+  const double shift = std::pow(1.25, -3);  // a shift for which the surfactant's factors are exact
   const Eigen::VectorXd dq = one->solve(shift, r);
   const Net none = Net::Zero(s.net.rows(), 3);
   EXPECT_LT((dq - shift * one->rate_change(none, one->value_change(none, dq), {}) - r).norm(), 1e-11 * r.norm());

@@ -41,8 +41,8 @@ TEST(Laws, PrincipalTensionsAreTheTextbookOnes) {
   EXPECT_NEAR(principal_tensions(skalak, l1, l2)[0], 1.3 * l1 / l2 * (l1 * l1 - 1 + 2.5 * l2 * l2 * (js * js - 1)), 1e-14);
 }
 
-/// T1 = G_s (m + (1 - m) l2^2) (l1^2 - 1/(l1 l2)^2)/(l1 l2) and T1 = G_s (l1^2 - l2^2)/(2 (l1 l2)^2) + K_s (l1 l2 - 1); the same, and
-/// Evans & Skalak 1980.
+/// T1 = G_s (m + (1 - m) l2^2) (l1^2 - 1/(l1 l2)^2)/(l1 l2) (Barthes-Biesel, Diaz & Dhenin 2002) and T1 = G_s (l1^2 - l2^2)/(2 (l1 l2)^2) + K_s (l1
+/// l2 - 1) (Evans & Skalak 1980).
 TEST(Laws, RubberThatHardensAndShearApartFromDilatationAreTheTextbookOnes) {
   const double l1 = 1.3, l2 = 0.9, js = l1 * l2;
   EXPECT_NEAR(principal_tensions(mooney, l1, l2)[0], 1.3 * (0.4 + 0.6 * l2 * l2) * (l1 * l1 - 1 / (js * js)) / js, 1e-14);  // round-off
@@ -70,12 +70,12 @@ TEST(Laws, NeoHookeanAndSkalakOfUnitCAgreeForSmallStretch) {
   EXPECT_NEAR(difference(2e-3) / difference(1e-3), 4, 0.1);  // 4 (1 + O(1e-3))
 }
 
-/// Surface Poisson ratio C/(1 + C): a strip pulled along 1 and free along 2.
+/// The surface Poisson ratio is C/(1 + C): a strip pulled along 1 and free along 2.
 TEST(Laws, SkalakHasTheSurfacePoissonRatioOfItsC) {
   for (double c : {0., 1., 10.}) {
     const double pull = 1e-6, thin = -pull * c / (1 + c);
     const auto t = principal_tensions(Skalak{1, c}, 1 + pull, 1 + thin);
-    EXPECT_LT(std::abs(t[1]), 1e-4 * t[0]);  // nonlinear remainder: c times pull, relative
+    EXPECT_LT(std::abs(t[1]), 1e-4 * t[0]);  // relative nonlinear remainder: c times pull
   }
 }
 

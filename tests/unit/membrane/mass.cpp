@@ -16,17 +16,17 @@ TEST(MassMatrix, SumsToTheAreaOfTheSurface) {
   const Net x = deformed(s.net);
   for (int order : {3, 4, 5}) {
     MassMatrix mass(s.space, order);
-    const double area = Membrane(s.space, s.net, SurfaceTension{1}, order).energy(x);  // by the same Gauss points
+    const double area = Membrane(s.space, s.net, SurfaceTension{1}, order).energy(x);  // with the same Gauss points
     EXPECT_NEAR(mass.update(x).sum(), area, 1e-13 * area);                             // round-off
   }
-  EXPECT_NEAR(MassMatrix(s.space, 8).update(x).sum(), surface::measures(s.space, x).area, 1e-5);  // quadrature of the latter
+  EXPECT_NEAR(MassMatrix(s.space, 8).update(x).sum(), surface::measures(s.space, x).area, 1e-5);  // quadrature error of the latter
 }
 
 TEST(MassMatrix, IntegratesProductsOfFields) {
   const Sphere& s = sphere(4);
   MassMatrix mass(s.space, 6);
   const Eigen::MatrixXd moments = s.net.transpose() * (mass.update(s.net) * s.net);  // int x x^T dGamma = 4 pi / 3 on the unit sphere
-  EXPECT_LT((moments - 4 * M_PI / 3 * Eigen::Matrix3d::Identity()).norm(), 1e-3);    // the fit of the sphere, about h^4
+  EXPECT_LT((moments - 4 * M_PI / 3 * Eigen::Matrix3d::Identity()).norm(), 1e-3);    // error of the fit of the sphere, about h^4
 }
 
 TEST(MassMatrix, IsSymmetricPositiveDefiniteAndRefillsInPlace) {
@@ -50,7 +50,7 @@ TEST(MassMatrix, HasItsRowSumsWithoutTheMatrixAndIsTheSameAfterItsRelease) {
   EXPECT_EQ((mass.update(x) - first).norm(), 0);
 }
 
-/// L2 error of the load per area, S f = d, over the closed form 2 T/R n, for a sphere inflated by 1.2.
+/// Returns the L2 error of the traction from S f = d, relative to the closed form 2 T/R n, for a sphere inflated by 1.2.
 double traction_error(int n, const Law& law) {
   const Sphere& s = sphere(n);
   const double stretch = 1.2, pressure = 2 * principal_tensions(law, stretch, stretch)[0] / stretch;
@@ -58,7 +58,7 @@ double traction_error(int n, const Law& law) {
   MassMatrix mass(s.space, 6);
   DirectSolver solver;
   solver.factor(mass.update(x));
-  const Net error = solver.solve(Membrane(s.space, s.net, law, 6).load(x)) - pressure * s.net;  // n = x/R is a spline up to the fit's error
+  const Net error = solver.solve(Membrane(s.space, s.net, law, 6).load(x)) - pressure * s.net;  // n = x/R is a spline up to the fit error
   return std::sqrt(inner(error, mass.update(x) * error) / (4 * M_PI * stretch * stretch)) / pressure;
 }
 
@@ -66,8 +66,8 @@ TEST(Load, OfAnInflatedSphereConvergesToTheClosedForm) {
   for (const Law& law : {Law(NeoHookean{1}), Law(Skalak{1, 2}), Law(SurfaceTension{1})}) {
     const double e3 = traction_error(3, law), e6 = traction_error(6, law), e12 = traction_error(12, law);
     EXPECT_LT(e12, 2e-4);                   // 9e-5 measured
-    EXPECT_GT(std::log2(e3 / e12) / 2, 2);  // over all three meshes ...
-    EXPECT_GT(std::log2(e6 / e12), 1);      // ... and less at last, from the extraordinary points
+    EXPECT_GT(std::log2(e3 / e12) / 2, 2);  // mean order over all three meshes
+    EXPECT_GT(std::log2(e6 / e12), 1);      // lower order on the finest mesh because of the extraordinary points
   }
 }
 

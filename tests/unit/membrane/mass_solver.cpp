@@ -19,7 +19,7 @@ TEST(MassSolver, SolvesOnADeformedSurfaceWithTheFactorsOfTheUnstressedOne) {
   const Eigen::SparseMatrix<double>& now = mass.update(deformed(s.net));
   EXPECT_LT((now * solver.solve(now, d) - d).norm(), 3e-13 * d.norm());  // the solver's tolerance
   EXPECT_GT(solver.iterations(), 0);
-  EXPECT_LT(solver.iterations(), 25);  // the strong variation of this stretch at n = 6: 13 to 17
+  EXPECT_LT(solver.iterations(), 25);  // 13 to 17 for this strongly varying stretch at n = 6
   EXPECT_EQ(solver.solve(now, d).col(1).norm(), 0);
 }
 

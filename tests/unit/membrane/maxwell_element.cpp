@@ -28,13 +28,13 @@ TEST(MaxwellElement, HasNoStressInTheShapeThatItStartsWith) {
   EXPECT_LT(springs.rate({}).norm(), 1e-12 * springs.start(x).norm());
 }
 
-/// F P F^T of the deformation F, with P = 1 - N N^T: its normal has the eigenvalue 0, the logarithm of which is left out.
+/// The strain is F P F^T with the deformation gradient F and P = 1 - N N^T. Its eigenvalue 0, along the normal, has no logarithm and is left out.
 TEST(MaxwellElement, GivesRefinementTheLogarithmOfItsStrainInSpace) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
   springs.set_state(stretched(s.net), springs.start(s.net));
   const auto values = springs.values_at();
-  const Eigen::VectorXd& nodes = quadrature::tensor_gauss(4).s;  // of the elements in the middle of faces; it is interpolated between them
+  const Eigen::VectorXd& nodes = quadrature::tensor_gauss(4).s;  // nodes of elements at the centre of a face; values between nodes are interpolated
   for (const spline::Site& site : {spline::Site{4, nodes[0], nodes[2]}, {31, nodes[1], nodes[1]}, {49, nodes[3], nodes[0]}}) {
     const Vec3 n = surface::point(s.space, s.net, site).n, stretch(1.2, 0.9, 1.05);
     const Mat3 strain = stretch.asDiagonal() * (Mat3::Identity() - n * n.transpose()) * stretch.asDiagonal();
@@ -46,7 +46,7 @@ TEST(MaxwellElement, GivesRefinementTheLogarithmOfItsStrainInSpace) {
   }
 }
 
-/// Whose law is that of small strains: E = int (G |dev e|^2 + K/2 (tr e)^2) dG, as every law's with the same moduli.
+/// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dG, like every law with the same moduli.
 TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -55,7 +55,7 @@ TEST(MaxwellElement, IsAnElasticMembraneBeforeItForgets) {
   springs.set_state(x, springs.start(s.net));
   const Membrane elastic(s.space, s.net, EvansSkalak{shear, c});
   const Net load = elastic.load(x);
-  EXPECT_LT((springs.load() - load).norm(), 3 * small * load.norm());  // what differs is of second order
+  EXPECT_LT((springs.load() - load).norm(), 3 * small * load.norm());  // the difference is of second order
   EXPECT_NEAR(springs.energy() / elastic.energy(x), 1, 3 * small);
 }
 
@@ -89,7 +89,7 @@ TEST(MaxwellElement, TurnsIntoHeatWhatItsSpringsLoseAtRest) {
   EXPECT_NEAR((at(-h) - at(h)) / (2 * h) / heat, 1, 1e-8);
 }
 
-/// J - 1 of a sphere that is blown up decays like exp(-t/T), and the energy is K/2 (J - 1)^2 of its area.
+/// If a sphere is inflated, J - 1 decays like exp(-t/T), and the energy is K/2 (J - 1)^2 times its area.
 TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -97,7 +97,7 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   Eigen::VectorXd q = springs.start(s.net);
   const double h = 0.01 * time_of_it, first = (springs.set_state(x, q), springs.energy());
   const auto rate = [&](const Eigen::VectorXd& at) { return springs.set_state(x, at), springs.rate({}); };
-  for (int step = 0; step < 100; ++step) {  // classical Runge and Kutta's: 1e-10
+  for (int step = 0; step < 100; ++step) {  // classical Runge-Kutta scheme, error 1e-10
     const Eigen::VectorXd k1 = rate(q), k2 = rate(q + h / 2 * k1), k3 = rate(q + h / 2 * k2), k4 = rate(q + h * k3);
     q += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   }
@@ -106,7 +106,7 @@ TEST(MaxwellElement, ForgetsAnAreaExponentially) {
   EXPECT_NEAR(springs.energy() / first, std::exp(-2.), 1e-9);
 }
 
-/// (3.10) with eta_s and kappa_s, where the surface moves steadily for many T.
+/// If the surface moves steadily for many T, the stress is the viscous stress (3.10) with eta_s and kappa_s.
 TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   const Sphere& s = sphere(3);
   const double fast = 1e-5;
@@ -127,7 +127,7 @@ TEST(MaxwellElement, IsViscousWhereItForgetsFast) {
   EXPECT_NEAR(springs.dissipation() / expected.cwiseProduct(v).sum(), 1, 1e-3);
 }
 
-/// Load and rate of the images of x and q are the images of load and rate, where nothing of the state is symmetric.
+/// Load and rate of the images of x and q are the images of load and rate, even though the state has no symmetry.
 TEST(MaxwellElement, HasTheImagesOfItsSurface) {
   const Sphere& s = sphere(3);
   MaxwellElement springs = element(s);
@@ -155,7 +155,7 @@ TEST(MaxwellElement, HasTheImagesOfItsSurface) {
       return image;
     };
     springs.set_state(of_net(x), of_q(q));
-    EXPECT_LT((springs.load() - of_net(load)).norm(), 1e-9 * load.norm()) << g.signs.transpose();  // the fit of the sphere is symmetric to 1e-10
+    EXPECT_LT((springs.load() - of_net(load)).norm(), 1e-9 * load.norm()) << g.signs.transpose();  // the fitted sphere is symmetric to 1e-10
     EXPECT_LT((springs.rate({}) - of_q(rate)).norm(), 1e-9 * rate.norm()) << g.signs.transpose();
   }
 }

@@ -20,7 +20,7 @@ TEST(Membrane, LoadIsTheGradientOfTheEnergy) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = random_net(x.rows(), 1);
   for (const Law& law : laws)
-    for (int order : {3, 4, 6})  // usual and unusual orders take different code
+    for (int order : {3, 4, 6})  // usual and unusual orders use different code
       EXPECT_LT(gradient_error(Membrane(s.space, s.net, law, order), x, u), 1e-8);  // cancellation in the sum over random u
 }
 
@@ -50,7 +50,7 @@ TEST(Membrane, TangentIsSymmetricAndKnowsRigidMotions) {
       turned.row(i) = spin.cross(Vec3(turned.row(i)));
     }
     tangent.apply(turn, moved);
-    EXPECT_LT((moved - turned).norm(), 1e-12 * hu.norm());  // the load turns with the membrane
+    EXPECT_LT((moved - turned).norm(), 1e-12 * hu.norm());  // the load rotates with the membrane
   }
 }
 
@@ -97,12 +97,12 @@ TEST(Membrane, RowsDoNotDependOnHowElementsAreShared) {
   tangent.apply(u, part_tangent);
   for (int i = 0; i < s.space.n_points; ++i)
     if (mine[i]) {
-      EXPECT_EQ(part.row(i), whole.row(i));  // to the last bit
+      EXPECT_EQ(part.row(i), whole.row(i));  // bitwise
       EXPECT_EQ(part_tangent.row(i), whole_tangent.row(i));
     }
 }
 
-/// int dt . du = int de_ab tau^ab dGamma with (3.1), (3.2) as they are printed.
+/// Compares with int dt . du = int de_ab tau^ab dGamma and (3.1), (3.2) as printed.
 TEST(Membrane, LoadDoesTheVirtualWork) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), du = random_net(x.rows(), 7);
@@ -149,7 +149,7 @@ TEST(Membrane, InflationStretchesAlikeEverywhere) {
     for (const Law& law : laws) {
       const Membrane membrane(s.space, s.net, law, 8);
       const double tension = principal_tensions(law, stretch, stretch)[0];
-      EXPECT_NEAR(membrane.energy(stretch * s.net) / (energy(law, stretch, stretch) * area), 1, 1e-6);  // the area's quadrature
+      EXPECT_NEAR(membrane.energy(stretch * s.net) / (energy(law, stretch, stretch) * area), 1, 1e-6);  // quadrature error of the area
       const TensionSummary summary = membrane.tension_summary(stretch * s.net);
       EXPECT_NEAR(summary.smallest / (tension / modulus(law)), 1, 1e-12);  // round-off
       EXPECT_EQ(summary.compressed_area, tension < 0 ? 1 : 0);
@@ -166,7 +166,7 @@ TEST(Membrane, PreInflationLeavesTheStretchOneToOnePlusAlpha) {
   EXPECT_NEAR(membrane.tension_summary(rest).smallest, principal_tensions(NeoHookean{1}, 1.05, 1.05)[0], 1e-12);  // round-off
 }
 
-/// Principal tensions of a membrane at some sites, smaller first, over the modulus.
+/// Returns the principal tensions of a membrane at some sites, smaller first, divided by the modulus.
 Eigen::MatrixX2d tensions_at(const Membrane& membrane, const Net& x, std::span<const spline::Site> sites) {
   std::vector<surface::Jet> before, now;
   for (const auto& [element, s, t] : sites) {
@@ -176,9 +176,9 @@ Eigen::MatrixX2d tensions_at(const Membrane& membrane, const Net& x, std::span<c
   return tensions(membrane.law(), before, now);
 }
 
-/// x = F X: at the pole on x3 the stretches are those of F in the x1 x2 plane.
+/// For x = F X, the stretches at the pole on x3 are those of F in the x1 x2 plane.
 TEST(Membrane, PrincipalTensionsOfAHomogeneousStretch) {
-  const Sphere& s = sphere(4);  // an even mesh has a vertex on each axis
+  const Sphere& s = sphere(4);  // a mesh with an even number of elements has a vertex on each axis
   int pole = 0;
   s.net.col(2).maxCoeff(&pole);
   const spline::Site site = s.space.collocation[pole][0];
@@ -203,7 +203,7 @@ TEST(Membrane, SmallestTensionIsTheSmallestOfItsPoints) {
     if (s.space.elements[e].degree == 3)
       for (int q = 0; q < rule.size(); ++q) sites.push_back({e, rule.s[q], rule.t[q]});
   const TensionSummary summary = membrane.tension_summary(x);
-  EXPECT_LE(summary.smallest, tensions_at(membrane, x, sites).col(0).minCoeff() + 1e-12);  // points of other elements may be lower
+  EXPECT_LE(summary.smallest, tensions_at(membrane, x, sites).col(0).minCoeff() + 1e-12);  // Gauss points of other elements may have lower tensions
   EXPECT_NEAR(summary.smallest, tensions_at(membrane, x, sites).col(0).minCoeff(), 0.05);
   EXPECT_GT(summary.compressed_area, 0);
   EXPECT_LT(summary.compressed_area, 1);

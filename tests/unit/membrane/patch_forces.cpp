@@ -31,13 +31,13 @@ TEST(PatchForces, AddUpToTheForcesAndTheirTorque) {
     EXPECT_LT((work.colwise().sum().transpose() - force).norm(), 1e-14);
     Vec3 torque = Vec3::Zero();
     for (Eigen::Index a = 0; a < work.rows(); ++a) torque += Vec3(sphere.net.row(a)).cross(Vec3(work.row(a)));
-    // Round about the ray; the mean of cos = sqrt(1 - radius^2 u) over (1 - u)^2 du, where u is 1/4 in the mean.
+    // The force is axisymmetric about the ray. Mean of cos = sqrt(1 - radius^2 u) with the weight (1 - u)^2 du, for which the mean of u is 1/4.
     const Vec3 lever = (1 - radius * radius / 8) * direction.normalized();
     EXPECT_LT((torque - lever.cross(force)).norm(), 2e-3 * torque.norm()) << radius;
   }
 }
 
-/// In a fine patch a coarse mesh has, and on a fine mesh a coarse patch, the same moments: the rule resolves both.
+/// The moments are equal for a small patch on a coarse mesh and for a large patch on a fine mesh: the quadrature resolves both.
 TEST(PatchForces, HaveTheSameMomentsOnEveryMesh) {
   std::vector<Mat3> moments;
   for (const int n : {4, 8}) {

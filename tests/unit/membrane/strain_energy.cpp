@@ -19,7 +19,7 @@ const std::string neo_hookean = "(I1 - 1 + 1/(I2 + 1))/2", skalak = "(I1^2 + 2*I
                   evans = "((I1 + 2)/J - 2)/2 + K/2*(J - 1)^2", fung = "(exp(k*(I1 - 1 + 1/(I2 + 1))) - 1)/(2*k)",
                   odd = "((I1 + 2)/2)^1.3 - 0.65*log(I2 + 1) + J^-1.3 + 0.65*I2 + (sqrt(J) - 1)^3";
 
-/// What the sentence of a text that is not an energy says.
+/// Returns the error message for a text that is not an energy.
 std::string refusal(const std::string& text, const Constants& constants = {}) {
   try {
     own(text, constants);
@@ -39,7 +39,7 @@ TEST(StrainEnergy, OfABuiltInLawIsThatLaw) {
         std::visit(
             [&](const auto& l) {
               const auto a = expression.response(i1, i2), b = l.response(i1, i2);
-              EXPECT_NEAR(expression.energy(i1, i2), l.energy(i1, i2), 1e-14);  // round-off of numbers of the order of 10, here and below
+              EXPECT_NEAR(expression.energy(i1, i2), l.energy(i1, i2), 1e-14);  // round-off of values of order 10, here and below
               EXPECT_NEAR(a.psi1, b.psi1, 1e-14);
               EXPECT_NEAR(a.psi2, b.psi2, 1e-14);
               EXPECT_NEAR(a.psi11, b.psi11, 1e-14);
@@ -63,7 +63,7 @@ TEST(StrainEnergy, ModuliAreThoseOfSmallStrains) {
   }
 }
 
-/// Registers and numbers with slopes take the same way as single numbers.
+/// Evaluations with registers and with dual numbers give the same results as with single numbers.
 TEST(StrainEnergy, LoadAndTangentAreTheDifferencesOfTheEnergy) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net), u = random_net(x.rows(), 1);
@@ -74,7 +74,7 @@ TEST(StrainEnergy, LoadAndTangentAreTheDifferencesOfTheEnergy) {
   }
 }
 
-/// By dual numbers (P-3), of a law that is built in, too.
+/// The strong load uses dual numbers (P-3); compares with a built-in law.
 TEST(StrainEnergy, TheStrongLoadIsThatOfTheBuiltInLaw) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net);

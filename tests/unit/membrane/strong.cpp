@@ -9,7 +9,7 @@
 namespace tanktread::membrane {
 namespace {
 
-/// int N_A t dGamma with the strong load, `order` Gauss points a direction.
+/// Returns int N_A t dGamma with the strong load, with `order` Gauss points per direction.
 Net tested_strong_load(const Membrane& membrane, const Net& x, int order) {
   const spline::Space& space = membrane.space();
   const auto& rule = quadrature::tensor_gauss(order);
@@ -25,7 +25,7 @@ Net tested_strong_load(const Membrane& membrane, const Net& x, int order) {
   return d;
 }
 
-/// Integration by parts leaves nothing behind where both surfaces are smooth across every element side, extraordinary points included.
+/// Integration by parts has no boundary terms if both surfaces are smooth across every element side, including at extraordinary points.
 TEST(StrongForm, TestedWithTheSplineFunctionsIsTheWeakForm) {
   const Sphere& s = sphere(3);
   const Net x = deformed(s.net);
@@ -36,7 +36,7 @@ TEST(StrongForm, TestedWithTheSplineFunctionsIsTheWeakForm) {
   }
 }
 
-/// div_s(sigma P) = -2 sigma chi n: the strong form of an interface is its curvature form, on any surface.
+/// div_s(sigma P) = -2 sigma chi n: the strong form of an interface is its curvature times its normal, on any surface.
 TEST(StrongForm, OfASurfaceTensionIsTheCurvatureTimesTheNormal) {
   const Sphere& s = sphere(4);
   const Net x = deformed(s.net);
@@ -48,7 +48,7 @@ TEST(StrongForm, OfASurfaceTensionIsTheCurvatureTimesTheNormal) {
   }
 }
 
-/// Of a sphere inflated by 1.2: root mean square error of the load at the Greville points over the closed form 2 T/R n.
+/// Returns the root mean square error of the load at the Greville points, relative to the closed form 2 T/R n, for a sphere inflated by 1.2.
 double error_at_greville_points(int n) {
   const Sphere& s = sphere(n);
   const double stretch = 1.2, pressure = 2 * principal_tensions(NeoHookean{1}, stretch, stretch)[0] / stretch;
@@ -66,7 +66,7 @@ TEST(StrongForm, AtGrevillePointsIsFarBehindTheWeakForm) {
   const double e4 = error_at_greville_points(4), e8 = error_at_greville_points(8), e16 = error_at_greville_points(16);
   EXPECT_LT(e8, 0.6 * e4);
   EXPECT_LT(e16, 0.6 * e8);
-  EXPECT_GT(e16, 0.01);  // measured 0.018, where the weak form has 1e-4 (Load, OfAnInflatedSphereConvergesToTheClosedForm)
+  EXPECT_GT(e16, 0.01);  // 0.018 measured; the weak form has 1e-4 (Load, OfAnInflatedSphereConvergesToTheClosedForm)
 }
 
 }  // namespace

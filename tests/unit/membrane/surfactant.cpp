@@ -41,7 +41,7 @@ TEST(Surfactant, GivesRefinementItsConcentrationPerMean) {
   const Sphere& s = sphere(3);
   Surfactant surfactant(s.space, s.net, linear(0.2), 1, 0);
   const Net x = 1.5 * s.net;
-  const Eigen::VectorXd c = Eigen::VectorXd::Constant(s.net.rows(), 0.3) + 0.1 * s.net.col(0);  // whose mean is 0.3
+  const Eigen::VectorXd c = Eigen::VectorXd::Constant(s.net.rows(), 0.3) + 0.1 * s.net.col(0);  // has the mean 0.3
   surfactant.set_state(x, surfactant.contents(x, c));
   const auto values = surfactant.values_at();
   for (const spline::Site& site : {spline::Site{0, 0.2, 0.7}, {30, 0.9, 0.4}, {53, 0, 1}}) {
@@ -50,8 +50,8 @@ TEST(Surfactant, GivesRefinementItsConcentrationPerMean) {
   }
 }
 
-/// c = 1 + 0.3 Y(n), Y = a x^2 + b y^2 - (a + b) z^2 with axes that no control or Gauss point lies on; -(a + b) and a are the extremes of Y. A
-/// sample of points spaced by h misses them by h^2 at any order of the interpolation, which has the order 4.
+/// c = 1 + 0.3 Y(n) with Y = a x^2 + b y^2 - (a + b) z^2, whose axes pass through no control or Gauss point. The extremes of Y are -(a + b) and a.
+/// Sampling at points of spacing h would have an error h^2; the interpolation has the order 4.
 TEST(Surfactant, HasTheExtremesOfTheSplineSurface) {
   const double a = 1, b = 0.4;
   const Mat3 axes = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
@@ -76,7 +76,7 @@ TEST(Surfactant, HasTheEquationsOfStateOfItsName) {
   langmuir.coverage = 0.25;
   EXPECT_DOUBLE_EQ(linear(0.3).tension(2), 0.4);
   EXPECT_DOUBLE_EQ(langmuir.tension(2), 1 + 0.3 * std::log(0.5));
-  const double h = 1e-5;  // little of it: the linear one of E x
+  const double h = 1e-5;  // at low coverage the law is the linear one with elasticity E x
   langmuir.coverage = h;
   EXPECT_NEAR((langmuir.tension(1) - 1) / h, -0.3, 1e-5);
 }
@@ -89,7 +89,7 @@ TEST(Surfactant, FreeEnergyLessWhatTheConcentrationIsWorthIsTheTension) {
     EXPECT_NEAR(state.free_energy(c) - c * (state.free_energy(c + h) - state.free_energy(c - h)) / (2 * h), state.tension(c), 1e-9);
 }
 
-/// Where control points carry their surfactant along; c is projected, so that this is not exact on a mesh.
+/// Control points transport their surfactant. The equality is not exact on a mesh, because c is projected.
 TEST(Surfactant, LoadIsTheGradientOfTheFreeEnergy) {
   const auto error = [](int n) {
     const Sphere& s = sphere(n);

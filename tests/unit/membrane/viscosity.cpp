@@ -1,4 +1,4 @@
-// The viscous load of a membrane (3.10).
+// Tests of the viscous load of a membrane (3.10).
 
 #include <numbers>
 
@@ -22,7 +22,7 @@ struct Sphere {
     for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) all.push_back(e);
   }
 
-  /// C v at the net x.
+  /// Returns C v at the net x.
   Net load(const SurfaceViscosity& viscosity, const Net& x, const Net& v) const {
     const Membrane membrane(space, net, Materials{{{NeoHookean{1}, {}, viscosity}}, {}});
     ViscousLoad viscous(membrane);
@@ -34,7 +34,7 @@ struct Sphere {
   double power(const SurfaceViscosity& viscosity, const Net& x, const Net& v) const { return v.cwiseProduct(load(viscosity, x, v)).sum(); }
 };
 
-/// An ellipsoid, so that nothing is right by symmetry.
+/// Returns an ellipsoid, so that no result is right only by symmetry.
 Net stretched(const Net& net) { return net * Vec3(1.3, 0.9, 1.1).asDiagonal(); }
 
 TEST(ViscousLoad, OfARigidMotionIsNothing) {
@@ -59,11 +59,12 @@ TEST(ViscousLoad, IsSymmetricAndAddsUpToNoForce) {
   EXPECT_LT(cv.colwise().sum().norm(), 1e-12 * cv.norm());
 }
 
-/// On the unit sphere v = x spreads: d = g, div 2, tau:d = 4 kappa. v = (-x1/2, -x2/2, x3) has, along the meridian and the parallel,
-/// d = 1 - 3/2 cos^2 and -1/2: (d1 - d2)^2 = 9/4 sin^4, d1 + d2 = 1/2 - 3/2 cos^2; over the sphere 4 pi x 6/5 and 4 pi x 1/5.
+/// On the unit sphere v = x is a dilatation: d = g, div 2, tau:d = 4 kappa. The rates of strain of v = (-x1/2, -x2/2, x3) along the meridian and the
+/// parallel are d1 = 1 - 3/2 cos^2 and d2 = -1/2, so (d1 - d2)^2 = 9/4 sin^4 and d1 + d2 = 1/2 - 3/2 cos^2. The integrals of (d1 - d2)^2 and (d1 +
+/// d2)^2 over the sphere are 4 pi x 6/5 and 4 pi x 1/5.
 TEST(ViscousLoad, DissipatesWhatTheRateOfStrainSays) {
   const Sphere sphere;
-  const double four_pi = 4 * std::numbers::pi, mesh = 1e-3;  // of the sphere's fit
+  const double four_pi = 4 * std::numbers::pi, mesh = 1e-3;  // error of the sphere's fit
   EXPECT_NEAR(sphere.power({0.7, 1.9}, sphere.net, sphere.net), four_pi * 4 * 1.9, mesh * four_pi * 4 * 1.9);
   const Net v = sphere.net * Vec3(-0.5, -0.5, 1).asDiagonal();
   EXPECT_NEAR(sphere.power({0.7, 0}, sphere.net, v), four_pi * 0.7 * 1.2, mesh * four_pi);

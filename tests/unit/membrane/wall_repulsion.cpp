@@ -11,7 +11,7 @@
 namespace tanktread::membrane {
 namespace {
 
-/// A unit sphere in a channel that narrows and widens, its wall nowhere far.
+/// A unit sphere in a channel that narrows and widens, with the wall close to it everywhere.
 struct Sphere {
   spline::TMesh mesh = spline::cube(4);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -30,12 +30,12 @@ TEST(WallRepulsion, LoadIsTheGradientOfTheEnergy) {
   for (int k = 0; k < 3; ++k) {
     const Net u = Net::Random(of.x.rows(), 3);
     const double h = 1e-5, slope = (of.repulsion.potential(of.x + h * u, of.elements) - of.repulsion.potential(of.x - h * u, of.elements)) / (2 * h);
-    EXPECT_NEAR((d.array() * u.array()).sum(), slope, 1e-7 * d.norm() * u.norm());  // differences, of the wall's slope too
+    EXPECT_NEAR((d.array() * u.array()).sum(), slope, 1e-7 * d.norm() * u.norm());  // error of the differences, including that of the wall's slope
   }
   EXPECT_GT(d.norm(), 0.1);
 }
 
-// What the tangent leaves out, the turn of the normals, is of the order of the range over the radius.
+// The tangent neglects the rotation of the normals, a relative error of order range/radius.
 TEST(WallRepulsion, TangentIsSymmetricAndAllButTheDerivativeOfTheLoad) {
   Sphere of;
   of.repulsion.linearise(of.x, of.elements, {});

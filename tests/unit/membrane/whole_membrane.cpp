@@ -14,7 +14,7 @@
 namespace tanktread::membrane {
 namespace {
 
-/// A unit sphere, drawn out.
+/// A unit sphere and an elongated shape.
 struct Whole {
   spline::TMesh mesh = spline::cube(4);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -51,7 +51,7 @@ TEST(WholeMembrane, EnergyIsOfTheWholeArea) {
   EXPECT_NEAR(of.energy(of.unstressed), 0, 1e-25);
 }
 
-/// 4 pi (c + a^2 acos(c/a)/sqrt(a^2 - c^2)) is the integral of twice the mean curvature of an oblate spheroid; the mesh is coarse.
+/// The integral of twice the mean curvature of an oblate spheroid is 4 pi (c + a^2 acos(c/a)/sqrt(a^2 - c^2)); the mesh is coarse.
 TEST(WholeMembrane, EnergyIsOfTheDifferenceOfTheLeaves) {
   const Whole of(0, 3);
   const double pi = std::numbers::pi, relaxed = 1.2 * 8 * pi;
@@ -82,11 +82,11 @@ TEST(WholeMembrane, TangentIsTheDerivativeOfTheLoad) {
   EXPECT_LT((hu - (of.load(of.x + h * of.slant) - of.load(of.x - h * of.slant)) / (2 * h)).norm(), 1e-8 * hu.norm());
 }
 
-/// Difference without stress as of a sphere: what acts is that of a spontaneous curvature, and a tension.
+/// If the stress-free area difference is that of a sphere, the load is that of a spontaneous curvature and a tension.
 TEST(WholeMembrane, LeavesActLikeASpontaneousCurvature) {
   const Whole of(0, 3);
   const double stiffness = 3 * std::numbers::pi / surface::measures(of.space, of.unstressed).area;
-  const double change = std::sqrt(2 * of.energy(of.x) / stiffness), curvature = 0.3;  // N is the smaller one
+  const double change = std::sqrt(2 * of.energy(of.x) / stiffness), curvature = 0.3;  // N is smaller than its stress-free value
   const auto bent = [&](double c0) {
     return Membrane(of.space, of.unstressed, SurfaceTension{0}, 4, {1, false, c0}).load(of.x);
   };

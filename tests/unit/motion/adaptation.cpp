@@ -1,4 +1,4 @@
-// The rule P-37 on made-up metrics.
+// Tests of the rule P-37 on artificial metrics.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(Adaptation, WhatIsMergedIsNotCutAgain) {
 
 using Resolved = std::array<surface::Resolution, 2>;
 
-/// Of an element of this length: its errors, and those of one twice as long.
+/// Returns the resolution along one direction: length, errors, and the error of an element of twice the length.
 surface::Resolution along(double length, double surface, double load = 0, double merged = 0) { return {length, {surface, load}, {merged, 0}}; }
 
 TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
@@ -69,7 +69,7 @@ TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
   const std::vector<Resolved> elements = {
       {along(0.2, 1.1e-3), along(0.2, 0.9e-3)}, {along(0.04, 1), along(0.04, 1)}, {along(0.2, 0, 0.5), along(0.2, 0)}};
   const auto found = marks(elements, o);
-  ASSERT_EQ(found.size(), 1u);  // the second is at the floor, the third's load is not looked at
+  ASSERT_EQ(found.size(), 1u);  // the second is at the minimum length, and the load of the third is not checked
   EXPECT_EQ(found[0].element, 0);
   EXPECT_TRUE(found[0].s);
   EXPECT_FALSE(found[0].t);

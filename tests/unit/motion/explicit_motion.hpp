@@ -1,11 +1,11 @@
 #pragma once
-// What models of a motion have in common if nothing of them is stiff and no volume is kept.
+// Base of model motions for tests that have no stiffness and no volume constraint.
 
 #include "system/dynamics.hpp"
 
 namespace tanktread::motion {
 
-/// A motion whose Jacobian is taken for 0. A model adds its velocity and its norm.
+/// A motion with a zero Jacobian. A model adds its velocity and its norm.
 class ExplicitMotion : public coupling::Dynamics {
  public:
   void freeze(const Net&) override {}

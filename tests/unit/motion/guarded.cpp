@@ -1,4 +1,4 @@
-// Evaluations that fail: one outcome for schemes, the same on all ranks.
+// Tests that failed evaluations have the same outcome on all ranks.
 
 #include "motion/guarded.hpp"
 
@@ -16,11 +16,11 @@
 namespace tanktread::motion {
 namespace {
 
-/// x' = -x, whose velocity `fails` may refuse.
+/// Model x' = -x, whose velocity throws if `fails` does.
 class Decay : public ExplicitMotion {
  public:
   std::function<void(const Net& x)> fails = [](const Net&) {};
-  double size = 1;  // of the norm
+  double size = 1;  // factor of the norm
   Net velocity(const Net& x) override {
     fails(x);
     return -x;
@@ -49,7 +49,7 @@ TEST(GuardedDynamics, WhatCannotBeEvaluatedMakesAStepShorterUnderEveryScheme) {
       if (x(0, 0) < 0.7) throw std::logic_error("no basis");
     };
     GuardedDynamics motion(decay, never);
-    State state = start(2);  // would end far below 0.7
+    State state = start(2);  // an unlimited step would end far below 0.7
     const StepReport report = integrator(options)->advance(motion, state, 4);
     EXPECT_GT(report.rejected, 0) << scheme;
     EXPECT_GT(state.x(0, 0), 0.7) << scheme;
@@ -98,7 +98,7 @@ TEST(GuardedDynamics, EveryRankStopsWhereOneWasTold) {
   EXPECT_THROW(motion.velocity(Net::Ones(2, 3)), Stopped);
 }
 
-// Two ranks that would find errors on either side of the tolerance come to the same steps.
+// Two ranks whose own errors would lie on either side of the tolerance take the same steps.
 TEST(GuardedDynamics, DecisionsOfAStepAreTheFirstRanks) {
   const coupling::Ranks ranks;
   for (const char* scheme : {"tr-bdf2", "bs3", "rkc2"}) {

@@ -1,4 +1,4 @@
-// Integrators on ordinary differential equations with known solutions: orders, stability, step control, failure.
+// Tests of time integrators on ordinary differential equations with known solutions: order, stability, step control, failure.
 
 #include <cmath>
 #include <limits>
@@ -15,9 +15,9 @@
 namespace tanktread::motion {
 namespace integrators_test {
 
-/// One control point whose three coordinates follow
+/// Model of one control point, whose three coordinates follow
 ///   x' = -rate (x - cos t) - sin t,  y' = -y^2,  t' = 1:   x = cos t, y = 1/(1 + t) from x = 1, y = 1, t = 0,
-/// with the exact Jacobian, so that a quasi-Newton iteration is Newton's.
+/// with the exact Jacobian, so that the quasi-Newton iteration is Newton's method.
 class Model : public coupling::Dynamics {
  public:
   explicit Model(double rate) : rate_(rate) {}
@@ -53,7 +53,7 @@ class Model : public coupling::Dynamics {
   Net at_;
 };
 
-/// The same with a Jacobian that lacks half of the stiffness and all of y' = -y^2; what the secants know of them is used.
+/// The model with a Jacobian that contains half of the stiffness and nothing of y' = -y^2. The secants supply the remaining part.
 class Incomplete : public Model {
  public:
   using Model::Model;
@@ -105,14 +105,14 @@ double observed_order(const std::string& scheme, double rate, double step = 0.04
   return std::log2(error_at_one(with(scheme), step, rate) / error_at_one(with(scheme), step / 2, rate));
 }
 
-// Orders within 0.15: the next term of the error is of relative size dt.
+// Orders are tested to 0.15, because the next term of the error is of relative size dt.
 TEST(Integrators, TrBdf2IsOfThirdOrder) { EXPECT_NEAR(observed_order("tr-bdf2", 2, 0.02), 3, 0.15); }
 TEST(Integrators, Bs3IsOfThirdOrder) { EXPECT_NEAR(observed_order("bs3", 2), 3, 0.15); }
 TEST(Integrators, Bdf3IsOfThirdOrder) { EXPECT_NEAR(observed_order("bdf3", 2, 0.02), 3, 0.15); }
 TEST(Integrators, Rkc2IsOfSecondOrder) { EXPECT_NEAR(observed_order("rkc2", 2), 2, 0.15); }
 TEST(Integrators, CrankNicolsonIsOfSecondOrder) { EXPECT_NEAR(observed_order("crank-nicolson", 2), 2, 0.15); }
 
-/// x' = -2 (x - c(t)) + c'(t), y' = -y c(t) by the clock: x = c, y = exp(-int c), with c = cos t until the kink and cos t - 1 from there on.
+/// Model with an explicit clock: x' = -2 (x - c(t)) + c'(t), y' = -y c(t), so x = c, y = exp(-int c), with c = cos t before the kink, then cos t - 1.
 class Clocked : public Model {
  public:
   static constexpr double kink = 0.3;
@@ -165,7 +165,7 @@ TEST(Integrators, EverySolverOfCrankNicolsonFindsTheSameSteps) {
   for (const char* solver : {"anderson", "newton-krylov"}) {
     options.nonlinear_solver = solver;
     options.newton_tolerance = 1e-5;                          // of the tolerance 1e-4
-    EXPECT_NEAR(error_at_one(options, 0.02, 2), plain, 1e-7) << solver;  // fifty steps of 1e-9
+    EXPECT_NEAR(error_at_one(options, 0.02, 2), plain, 1e-7) << solver;  // fifty steps, each with an error of 1e-9
   }
 }
 
@@ -190,7 +190,7 @@ TEST(Integrators, SecantsSpareEvaluationsAndLeaveTheResult) {
   }
 }
 
-// The extrapolation (4.30) needs no exact Jacobian: what it lacks changes the error of fourth order.
+// The extrapolation (4.30) needs no exact Jacobian: the neglected part changes only the error of fourth order.
 TEST(Integrators, TrBdf2IsOfThirdOrderForAnIncompleteJacobian) {
   const auto error = [](double step) {
     TimeOptions options = with("tr-bdf2");
@@ -205,7 +205,7 @@ TEST(Integrators, TrBdf2IsOfThirdOrderForAnIncompleteJacobian) {
   EXPECT_NEAR(std::log2(error(0.02) / error(0.01)), 3, 0.15);
 }
 
-/// x' = -x for all three coordinates, with a Jacobian that has only a part of it: corrections contract at a known rate.
+/// Model x' = -x for all three coordinates, with an incomplete Jacobian, so that corrections contract at a known rate.
 class Linear : public Model {
  public:
   explicit Linear(double known) : Model(1), known_(known) {}
@@ -237,11 +237,11 @@ TEST(QuasiNewton, TheErrorOfAStageIsMeasuredAndBounded) {
   }
 }
 
-/// Distance to the slow solution after steps of 0.1, begun far off it.
+/// Returns the distance to the slow solution after steps of 0.1 that start far from it.
 double transient(const std::string& scheme, double rate, int steps) {
   TimeOptions options = with(scheme);
   options.fixed_step = 0.1;
-  options.predictor_order = 0;  // slopes of the transient are no guide
+  options.predictor_order = 0;  // slopes of the transient are poor predictions
   Model model(rate);
   State state = start(0.1);
   state.x(0, 0) = 3;
@@ -252,7 +252,7 @@ double transient(const std::string& scheme, double rate, int steps) {
 
 TEST(Integrators, ImplicitSchemesForgetAStiffTransient) {
   EXPECT_LT(transient("tr-bdf2", 1e8, 2), 1e-6);  // L-stable: divided by about dt rate each step
-  EXPECT_LT(transient("bdf3", 1e8, 6), 1e-6);     // three steps of TR-BDF2, then three places that have forgotten it
+  EXPECT_LT(transient("bdf3", 1e8, 6), 1e-6);     // three steps of TR-BDF2, then three positions without the transient
 }
 
 TEST(Integrators, Rkc2TakesTheStagesThatStabilityNeeds) {
@@ -261,7 +261,7 @@ TEST(Integrators, Rkc2TakesTheStagesThatStabilityNeeds) {
     const double s = rkc2_stages(0.1, rho);
     EXPECT_LE(0.1 * rho, 0.653 * (s * s - 1) + 0.01);  // (4.8); 1/1.54 = 0.649
     EXPECT_LT(s, 2 + std::sqrt(1 + 1.54 * 0.1 * rho));
-    EXPECT_LT(transient("rkc2", rho, 150), 0.02);  // damped by a twentieth a step: 2e-3 of the transient is left, and dt^2 of the slow part
+    EXPECT_LT(transient("rkc2", rho, 150), 0.02);  // damped by 1/20 per step: 2e-3 of the transient remains, and dt^2 of the slow part
   }
 }
 
@@ -275,7 +275,7 @@ TEST(Integrators, TheStiffnessIsFoundFromARandomDirection) {
   Net direction;
   const Net x = start(0).x;
   EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 8), 40, 0.5);  // the other eigenvalues are 0 and -2
-  EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 1), 40, 0.1);  // from where it stopped
+  EXPECT_NEAR(stiffness(model, x, model.velocity(x), direction, 1), 40, 0.1);  // starts from the direction of the last call
 }
 
 TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
@@ -288,7 +288,7 @@ TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
     for (; state.time < 1; ++steps) scheme->advance(model, state, 1);
     EXPECT_LT(std::abs(state.x(0, 1) - 0.5), steps * options.tolerance);
     EXPECT_EQ(state.frozen.size() > 0, true);
-    EXPECT_LT(steps, 60) << rate;  // BS3 alone would take 4000 at the second rate
+    EXPECT_LT(steps, 60) << rate;  // BS3 would take 4000 steps at the second rate
     EXPECT_EQ(model.solves > 0, rate > 1e3);
   }
 }
@@ -305,7 +305,7 @@ TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
 
 TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
   TimeOptions options = with("auto");
-  options.largest_operator = 1e-9;  // of 12 bytes
+  options.largest_operator = 1e-9;  // in GB; the operator has 12 bytes
   Model model(1e3);
   State state = start(1e-3);
   const auto scheme = integrator(options);
@@ -314,7 +314,7 @@ TEST(Integrators, AutoAssemblesNothingLargerThanItIsAllowed) {
   EXPECT_EQ(model.solves, 0);
 }
 
-// Steps of a smooth motion x = sin t: the interpolation error of the cubic is dt^4/384, of its slope of third order.
+// For steps of the smooth motion x = sin t, the interpolation error of the cubic is dt^4/384; that of its slope is of third order.
 TEST(DenseOutput, IsOfFourthOrderAndItsSlopeOfThird) {
   const auto errors = [](double step) {
     const auto at = [](double time) {
@@ -327,7 +327,7 @@ TEST(DenseOutput, IsOfFourthOrderAndItsSlopeOfThird) {
     const DenseOutput dense(at(1), at(1 + step));
     EXPECT_EQ(dense.place(1)(0, 0), std::sin(1.0));
     EXPECT_NEAR(dense.slope(1 + step)(0, 0), std::cos(1 + step), 1e-14);
-    const double time = 1 + 0.3 * step;  // not where the error of the slope vanishes
+    const double time = 1 + 0.3 * step;  // not a point where the error of the slope vanishes
     return std::pair(std::abs(dense.place(time)(0, 0) - std::sin(time)), std::abs(dense.slope(time)(0, 0) - std::cos(time)));
   };
   const auto [place, slope] = errors(0.1);
@@ -351,7 +351,7 @@ TEST(Integrators, ControlledStepsMeetTheToleranceAndGrow) {
         EXPECT_LE(report.error, tolerance);
         ++steps;
       }
-      // The problem forgets errors, so the sum of `steps` local ones, each below the tolerance, bounds the global one.
+      // The problem damps errors, so the sum of `steps` local errors, each below the tolerance, bounds the global error.
       EXPECT_LT(std::hypot(state.x(0, 0) - std::cos(1.0), state.x(0, 1) - 0.5), std::sqrt(3.0) * steps * tolerance);
       EXPECT_GT(steps, previous);
       previous = steps;
@@ -375,7 +375,7 @@ TEST(Integrators, CrankNicolsonFollowsThePapersStepRule) {
   EXPECT_GE(report.rejected, 3);
   EXPECT_NEAR(report.step, 0.04 * std::pow(0.75, report.rejected), 1e-15);
   State landing = start(1e-6);
-  scheme->advance(gentle, landing, 5e-7);  // few sub-iterations as well, but of a step cut short to end at the limit
+  scheme->advance(gentle, landing, 5e-7);  // few sub-iterations as well, but the step was shortened to meet the limit
   EXPECT_DOUBLE_EQ(landing.step, 1e-6);
 }
 
@@ -398,7 +398,7 @@ TEST(Integrators, AStepBelowTheMinimumStopsTheRunAndKeepsTheState) {
   }
 }
 
-/// The same motion, in a unit of time that is so many times as long.
+/// The model in another unit of time, by the factor `unit`.
 class Rescaled : public Model {
  public:
   explicit Rescaled(double unit) : Model(30), unit_(unit) {}
@@ -441,7 +441,7 @@ TEST(Integrators, AttemptsFollowTheErrorDownWhateverItsPower) {
     double last = error();
     for (; last > 1; last = error()) attempts.reject(std::min(0.8, step_factor(last, 0, 3)), last);
     EXPECT_LE(attempts.report.rejected, 2) << power;
-    EXPECT_GT(last, 0.5) << power;  // no shorter than it has to be: the factor of safety is 0.9
+    EXPECT_GT(last, 0.5) << power;  // not smaller than necessary: the safety factor is 0.9
   }
 }
 

@@ -1,4 +1,4 @@
-// Returns of a motion with a known cycle: shape, period, multipliers.
+// Tests of return maps of a motion with a known limit cycle: shape, period, multipliers.
 
 #include <cmath>
 #include <numbers>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr double inward = 0.15, damping = 0.1, frequency = 1.3;
 
-/// One control point on its way to the unit circle in x1 x3, which it goes round: with r and y = x2, r' = inward r (1 - r^2), y' = -damping y.
-/// Over a period T the multipliers are exp(-2 inward T) and exp(-damping T).
+/// Model of one control point that approaches the unit circle in x1 x3 and goes around it: with r and y = x2, r' = inward r (1 - r^2), y' = -damping
+/// y. Over a period T the multipliers are exp(-2 inward T) and exp(-damping T).
 class Cycle : public ExplicitMotion {
  public:
   Net velocity(const Net& x) override {
@@ -33,7 +33,7 @@ TimeOptions explicit_steps() {
   return time;
 }
 
-/// Half a round is a whole one with a turn of 180 degrees.
+/// The parameter is the rotation in degrees. With 180 degrees, half a revolution is a period.
 class Periodic : public testing::TestWithParam<double> {};
 
 TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
@@ -67,7 +67,7 @@ TEST(Periodic, WhatDoesNotComeBackSaysSo) {
   Cycle motion;
   const TimeOptions time = explicit_steps();
   PeriodicOptions options;
-  options.period = 0.4 / frequency;  // up to a tenth of a round
+  options.period = 0.4 / frequency;  // the search covers up to a tenth of a revolution
   Net x(1, 3);
   x << 1, 0, 0;
   ReturnMap map(motion, time, nullptr, options, x);

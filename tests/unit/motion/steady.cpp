@@ -1,4 +1,4 @@
-// Searches for shapes at rest: how far from them they end.
+// Tests of the accuracy of the search for steady shapes.
 
 #include <cmath>
 #include <vector>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double slow = 0.02;  ///< a mode of this rate decays by 1 % in an implicit step of the search
 
-/// Points that go to the origin, the first at the rate `slow`, the others at rates between 1 and 2, faster where they are farther away. The frozen
+/// Model of points that move to the origin: the first at the rate `slow`, the others at rates between 1 and 2, faster at larger distance. The frozen
 /// Jacobian is 0.
 class Slow : public ExplicitMotion {
  public:
@@ -35,7 +35,7 @@ Net start() {
   return x;
 }
 
-// Affine, all directions seen: exact but for round-off, over 1 - rho = 0.01.
+// The map is affine, and all directions have been sampled: the estimate is exact up to round-off divided by 1 - rho = 0.01.
 TEST(FixedPointError, IsExactForAnAffineMap) {
   Net x(2, 3);
   x << 1, 2, 3, -1, 0.5, 2;
@@ -43,7 +43,7 @@ TEST(FixedPointError, IsExactForAnAffineMap) {
   rates << 0.01, 0.01, 0.5, 0.5, 0.01, 0.9;
   FixedPointError error(10);
   Net found;
-  for (int k = 0; k < 4; ++k) {  // three different rates: three secants
+  for (int k = 0; k < 4; ++k) {  // three different rates need three secants
     const Net f = -rates.cwiseProduct(x);
     found = error(x, f);
     if (k < 3) x += f;
@@ -51,7 +51,7 @@ TEST(FixedPointError, IsExactForAnAffineMap) {
   EXPECT_NEAR((found - x).norm() / x.norm(), 0, 1e-10);
 }
 
-// The correction alone is a hundredth of the error. Within a factor of 2, because the map is not affine.
+// The correction is a hundredth of the error. The estimate is tested to a factor of 2, because the map is not affine.
 TEST(FixedPointError, SeesTheErrorOfAModeThatDecaysSlowly) {
   Slow motion;
   FixedPointError error(10);
@@ -68,8 +68,8 @@ TEST(FixedPointError, SeesTheErrorOfAModeThatDecaysSlowly) {
 
 class Steady : public testing::TestWithParam<const char*> {};
 
-// The error left is at most twice the tolerance; judged by the correction it was up to 35 times. Looser tolerances than a hundredth of the first
-// error are met before the slow mode shows.
+// The error is at most twice the tolerance; with the correction as the criterion it was up to 35 times the tolerance. Tolerances above a hundredth of
+// the initial error are met before the slow mode dominates.
 TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
   Slow motion;
   for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
@@ -84,7 +84,7 @@ TEST_P(Steady, EndsWhereTheErrorIsTheTolerance) {
   }
 }
 
-// Only the slow mode is left at the start: its correction is a tenth of the tolerance, its error ten times the tolerance.
+// Only the slow mode is present at the start: its correction is a tenth of the tolerance, its error ten times the tolerance.
 TEST_P(Steady, DoesNotTrustTheFirstCorrection) {
   Slow motion;
   Net x = Net::Zero(40, 3);

@@ -1,4 +1,4 @@
-// Rules for singular and nearly singular integrands on the unit square, against the exact potential of a flat rectangle.
+// Compares rules for singular and nearly singular integrands on the unit square with the exact potential of a flat rectangle.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace tanktread::quadrature {
 namespace {
 
-/// int over [0, a] x [0, b] of 1 / sqrt((x - x0)^2 + (y - y0)^2 + z0^2), by its antiderivative at the corners.
+/// Returns the integral over [0, a] x [0, b] of 1 / sqrt((x - x0)^2 + (y - y0)^2 + z0^2), from its antiderivative at the corners.
 double potential(double a, double b, const Vec3& target) {
   const auto corner = [&](double x, double y) {
     const double z = target[2], r = std::sqrt(x * x + y * y + z * z);
@@ -48,13 +48,13 @@ TEST(Polar, IntegratesTheSingularityWhereverTheTargetIs) {
         const double exact = potential(1, b, Vec3(s, b * t, 0));
         EXPECT_NEAR(integral(rule, 1, b, Vec3(s, b * t, 0)), exact, tolerance * exact) << s << ' ' << t << ' ' << b;
         EXPECT_NEAR(area(rule), 1,
-                    20 * tolerance);  // d area grows with cosh^2 of the angular coordinate: steeper than what the rule is for
+                    20 * tolerance);  // the integrand of the area grows with cosh^2 of mu, faster than the rule is made for
       }
 }
 
 TEST(Polar, TakesUpTheShearOfTheElement) {
   const double s = 0.3, t = 0.6;
-  const Vec3 u(1, 0, 0), v(1.2, 0.5, 0);  // tangents that meet at 23 degrees
+  const Vec3 u(1, 0, 0), v(1.2, 0.5, 0);  // tangents with an angle of 23 degrees
   const auto value = [&](const Rule& rule) {
     double sum = 0;
     for (int q = 0; q < rule.size(); ++q) sum += rule.weights[q] / ((rule.s[q] - s) * u + (rule.t[q] - t) * v).norm();
@@ -72,7 +72,7 @@ TEST(Shear, FindsTheBinOfAMetric) {
   EXPECT_EQ(shear(4, 0, 1), (Shear{-2, 6}));
   EXPECT_EQ(shear(1, 0.5, 1), (Shear{0, 4}));  // 60 degrees
   EXPECT_EQ(shear(1, -0.5, 1), (Shear{0, 8}));
-  EXPECT_EQ(shear(0, 0, 1), (Shear{0, 6}));  // no metric
+  EXPECT_EQ(shear(0, 0, 1), (Shear{0, 6}));  // degenerate metric
 }
 
 TEST(LachatWatson, ConvergesAtACornerAndIsPoorCloseToAnEdge) {
@@ -82,7 +82,7 @@ TEST(LachatWatson, ConvergesAtACornerAndIsPoorCloseToAnEdge) {
   EXPECT_GT(std::abs(integral(lachat_watson(0.02, 0.4, 8), 1, 1, Vec3(0.02, 0.4, 0)) - edge), 1e-4 * edge);
 }
 
-/// A flat bilinear element as Bezier points of degree 1.
+/// Returns the Bezier points of degree 1 of a rectangle.
 std::vector<double> rectangle(double a, double b) { return {0, a, 0, a, 0, 0, b, b, 0, 0, 0, 0}; }
 
 TEST(Graded, KeepsTheToleranceAtAnyDistance) {
@@ -92,7 +92,7 @@ TEST(Graded, KeepsTheToleranceAtAnyDistance) {
         for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
           const Vec3 target(s, b * t, distance);
           const double exact = potential(1, b, target);
-          Rule rule;  // each of some twenty parts may err by what is allowed
+          Rule rule;  // has about twenty parts, and the error of each may be as large as `allowed`
           graded(rectangle(1, b), 1, target, {.allowed = tolerance * exact / 20, .tolerance = tolerance}, rule);
           EXPECT_NEAR(integral(rule, 1, b, target), exact, tolerance * exact) << s << ' ' << t << ' ' << distance;
           EXPECT_NEAR(area(rule), 1, 1e-13);
@@ -124,8 +124,8 @@ TEST(Ellipse, TellsTheErrorOfGauss) {
     const GaussRule& rule = gauss(n);
     double sum = 0;
     for (int q = 0; q < n; ++q) sum += 2 * rule.weights[q] / std::hypot(2 * rule.nodes[q] - 1, height);
-    EXPECT_LT(std::abs(sum - exact), 1e-7 * exact);   // rho^(-2 n) up to a factor of three or so
-    EXPECT_GT(std::abs(sum - exact), 1e-12 * exact);  // and no gross waste
+    EXPECT_LT(std::abs(sum - exact), 1e-7 * exact);   // the error is rho^(-2 n) up to a factor of about three
+    EXPECT_GT(std::abs(sum - exact), 1e-12 * exact);  // the order is not much larger than needed
   }
 }
 
@@ -133,8 +133,8 @@ TEST(Sight, SeesTheNearestPlaceOfAPatch) {
   const Patch patch{Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 2, 0)};
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(0.3, 1, 0.5)).distance, 0.5);
   EXPECT_DOUBLE_EQ(sight(patch, Vec3(3, 0, 0)).distance, 2);
-  EXPECT_NEAR(sight(patch, Vec3(3, 0, 0)).rho_u, 3 + std::sqrt(8), 1e-14);   // beside: z = 3
-  EXPECT_NEAR(sight(patch, Vec3(0, 0, 1)).rho_u, 1 + std::sqrt(2.), 1e-14);  // above: z = i
+  EXPECT_NEAR(sight(patch, Vec3(3, 0, 0)).rho_u, 3 + std::sqrt(8), 1e-14);   // target in the plane of the patch: z = 3
+  EXPECT_NEAR(sight(patch, Vec3(0, 0, 1)).rho_u, 1 + std::sqrt(2.), 1e-14);  // target above the centre of the patch: z = i
 }
 
 }  // namespace

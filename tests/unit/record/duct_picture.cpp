@@ -20,7 +20,7 @@ TEST(DuctPicture, HoldsTheSectionAndTheVelocityInsideOfIt) {
     if (std::abs(u) < 1e-12) continue;
     EXPECT_EQ(std::isnan(v.values[i]), u < 0);
     if (u > 0) {
-      EXPECT_NEAR(v.values[i], u, 1e-13);  // twice the mean on the axis
+      EXPECT_NEAR(v.values[i], u, 1e-13);  // on the axis the velocity is twice the mean velocity
     }
   }
   for (std::size_t i = 0; i < outline.shape[0]; ++i)

@@ -62,7 +62,7 @@ TEST(Series, ThatMayBeUndefinedDoNotEndTheRun) {
   EXPECT_THROW(finish(failed), RunFailure);
 }
 
-/// The inclination of an ellipsoid in a flow.
+/// Returns the inclination of an ellipsoid in a flow.
 double inclination(const Vec3& semi_axes, const stokes::FlowOptions& flow) {
   const spline::TMesh mesh = spline::cube(4);
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -94,7 +94,7 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
   EXPECT_EQ(flow_plane(linear({0, 1, 0, 0, 0, 0, 0, 0, 0})).description(), "in the plane x1 x2");
   EXPECT_EQ(flow_plane(linear({0, 0, 0, 0, 0, 1, 0, 0, 0})).description(), "in the plane x2 x3");
   EXPECT_EQ(flow_plane(linear({1, 0.3, 0, 0.2, -1, 0, 0, 0, 0})).description(), "in the plane x1 x2");
-  // Any turn of a shear turns its plane: the vorticity stays along the normal.
+  // Rotating a shear flow rotates its plane, and the vorticity stays along the normal.
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   stokes::FlowOptions flow = linear({0, 0, 1, 0, 0, 0, 0, 0, 0});
   flow.gradient = turn * *flow.gradient * turn.transpose();
@@ -107,7 +107,7 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
 TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
   const FlowPlane plane = flow_plane(linear({1, 0.5, 0, -0.5, 1, 0, 0, 0, -2}));
   EXPECT_FALSE(plane.holds_flow);
-  EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // about the vorticity
+  EXPECT_EQ(plane.axes.row(1).cwiseAbs(), Eigen::RowVector3d(0, 0, 1));  // the normal is along the vorticity
 }
 
 TEST(Inclination, IsUndefinedIfThePlaneOfANonplanarFlowIs) {
@@ -120,7 +120,7 @@ TEST(Inclination, IsUndefinedIfThePlaneOfANonplanarFlowIs) {
   EXPECT_TRUE(std::isnan(inclination(Vec3(1, 2, 1), planar)));
 }
 
-// A pole has one tangent only that is not zero.
+// At a pole only one tangent is not zero.
 TEST(SiteAhead, IsFoundAtAPoleToo) {
   for (const spline::PoleRule rule : {spline::PoleRule::plain, spline::PoleRule::c1}) {
     const spline::PolarMesh mesh{10, 4, rule};
@@ -132,7 +132,7 @@ TEST(SiteAhead, IsFoundAtAPoleToo) {
       const FlowPlane plane = plane_normal_to(Vec3(std::sin(away), 1, 0.7 * away));
       const spline::Site site = site_ahead(space, sphere, Vec3::Zero(), plane);
       const Vec3 y = plane.components(surface::value(space, sphere, site));
-      EXPECT_NEAR(y[0] / y.norm(), 1, 1e-9) << away;  // so that its angle is 0 to 1e-4
+      EXPECT_NEAR(y[0] / y.norm(), 1, 1e-9) << away;  // the error of the angle is then below 1e-4
     }
   }
 }
@@ -141,7 +141,7 @@ TEST(Turnings, CountPastWholeTurns) {
   PhaseAngle turning;
   double angle = 0;
   for (int k = 1; k <= 40; ++k) {
-    angle += 100;  // a step of more than a quarter turn
+    angle += 100;  // each step is more than a quarter turn
     turning.advance(1, 100 * std::numbers::pi / 180, std::remainder(angle, 360));
     EXPECT_NEAR(turning.degrees, angle, 1e-9);
   }

@@ -39,7 +39,7 @@ TEST(Drift, TheDeckDecides) {
 }
 
 TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
-  // Points that move with the flow alone, v = L x, have the slopes L x wherever they are.
+  // Points that only move with the flow, v = L x, have the slopes L x at any position.
   const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
   const spline::TMesh mesh = spline::cube(4);
   const spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::catmull_clark);
@@ -56,7 +56,7 @@ TEST(Drift, PuttingTheCentroidBackTakesTheSlopesAlong) {
   EXPECT_LT((state.history[0] - state.x * l.transpose()).norm(), 1e-13);
 }
 
-// Points that move with the flow alone were at exp(-L s) x a time s ago, wherever they are now.
+// Points that only move with the flow were at exp(-L s) x a time s earlier, for any current position x.
 TEST(Drift, PuttingTheCentroidBackTakesEarlierPlacesAlong) {
   const stokes::AmbientFlow flow(scene("planar hyperbolic").flow);
   const spline::TMesh mesh = spline::cube(4);

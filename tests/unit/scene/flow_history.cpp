@@ -1,4 +1,4 @@
-// Runs in flows that change in time: against closed forms, and against the same run in a steady flow.
+// Runs in flows that change in time, compared with closed forms and with the same run in a steady flow.
 
 #include <cmath>
 #include <functional>
@@ -71,11 +71,11 @@ TEST(FlowHistory, AnAmplitudeOfOneIsTheSteadyFlowToTheLastBit) {
 }
 
 TEST(FlowHistory, ATurnOfTheFlowTurnsTheCapsule) {
-  // Shear turned by a quarter about x2 is (x3, 0, 0) with x1 and x3 exchanged and one of them turned around: the mesh has this symmetry.
+  // Shear rotated by 90 degrees about x2 is the flow (x3, 0, 0) with x1 and x3 exchanged and one of them reversed. The mesh has this symmetry.
   Evolution steady(capsule_in_shear), turned(with(capsule_in_shear, {"Flow/history/times=[0]", "Flow/history/angles=[90]"}));
   steady.to(0.3);
   turned.to(0.3);
-  EXPECT_NEAR(turned.deformation().taylor_inertia, steady.deformation().taylor_inertia, 1e-5);  // the quadrature's tolerance
+  EXPECT_NEAR(turned.deformation().taylor_inertia, steady.deformation().taylor_inertia, 1e-5);  // tolerance of the quadrature
   EXPECT_NEAR(std::remainder(turned.deformation().inclination - steady.deformation().inclination - 90, 180), 0, 1e-2);
 }
 
@@ -86,7 +86,7 @@ TEST(FlowHistory, OnlySymmetriesOfEveryDirectionAreUsed) {
             "mirror x2 and point symmetry");
 }
 
-/// Angle of the axis of a spheroid of axis ratio 1.5 that began along x1, after the strain int a dt (Jeffery 1922), in degrees.
+/// Returns the angle, in degrees, of the axis of a spheroid with axis ratio 1.5 that starts along x1, after the strain int a dt (Jeffery 1922).
 double jeffery(double strain) { return -std::atan(std::tan(strain / (1.5 + 1 / 1.5)) / 1.5) * 180 / pi; }
 
 TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
@@ -106,7 +106,7 @@ TEST(FlowHistory, ASpheroidsAngleFollowsFromTheStrainSoFar) {
     while (state.time < 3) {
       scheme->advance(body->dynamics(), state, 3);
       const double found = body->row(state, {}).value("inclination");
-      EXPECT_NEAR(found, jeffery(strain(state.time)), 2e-3) << "at " << state.time;  // six elements a side: 1e-5 of a period
+      EXPECT_NEAR(found, jeffery(strain(state.time)), 2e-3) << "at " << state.time;  // six elements per side cause an error of 1e-5 of a period
     }
   };
   follow({"Flow/history/type=sine", "Flow/history/frequency=0.25", "Flow/history/amplitude=2"},

@@ -1,4 +1,4 @@
-// Runs that begin with another shape than the resting one.
+// Runs whose initial shape differs from the resting shape.
 
 #include <cmath>
 
@@ -20,7 +20,8 @@ std::vector<std::string> at_rest(std::vector<std::string> more) {
 TEST(InitialShape, RelaxesToTheRestingOneAndLosesEnergyInEveryStep) {
   Evolution run(at_rest({"Particle/initial shape/stretch=[1.4, 1, 0.8]"}));
   const double first = run.energy(), volume = surface::volume(run.body().space, run.body().rest);
-  EXPECT_NEAR(run.deformation().taylor_inertia, 0.6 / 2.2, 1e-3);  // semi-axes 1.4 and 0.8 to a factor; the mesh of three elements a side
+  // semi-axes 1.4 and 0.8 times a common factor; the mesh has three elements per side
+  EXPECT_NEAR(run.deformation().taylor_inertia, 0.6 / 2.2, 1e-3);
   while (run.state.time < 12) {
     const double energy = run.energy();
     run.step(12);

@@ -1,4 +1,4 @@
-// Spheres packed at random in a cell that repeats.
+// Spheres packed at random in a periodic cell.
 
 #include <numbers>
 
@@ -11,7 +11,7 @@ namespace packing_test {
 
 using std::numbers::pi;
 
-/// Of two spheres and all images, the smallest distance over the one that they are to keep.
+/// Returns the smallest ratio of the distance of two spheres or images to the least distance that they must keep.
 double closest(const std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell) {
   double least = 1e9;
   for (std::size_t i = 0; i < spheres.size(); ++i)
@@ -24,7 +24,7 @@ double closest(const std::vector<PackedSphere>& spheres, const stokes::PeriodicC
   return least;
 }
 
-/// `n` spheres anywhere in a cell of this shape, of which they fill a part.
+/// Scene of `n` spheres at random positions in a cell of this shape, with the given volume fraction.
 struct Scene {
   std::vector<PackedSphere> spheres;
   stokes::PeriodicCell cell;
@@ -71,8 +71,8 @@ TEST(Packing, ComesAgainFromItsSeed) {
   EXPECT_NE(one.spheres[7].centre, third.spheres[7].centre);
 }
 
-/// At contact the pair distribution of hard spheres in equilibrium is (1 - phi/2)/(1 - phi)^3 (Carnahan & Starling 1969): pushed apart alone they
-/// would nearly all touch, placed one after the other fewer would.
+/// At contact, the pair distribution of hard spheres in equilibrium is (1 - phi/2)/(1 - phi)^3 (Carnahan & Starling 1969). If spheres were only
+/// pushed apart, nearly all would touch; if they were placed one after the other, fewer would.
 TEST(Packing, IsThatOfHardSpheresInEquilibrium) {
   constexpr double fraction = 0.4;
   constexpr int n = 500;
@@ -87,7 +87,7 @@ TEST(Packing, IsThatOfHardSpheresInEquilibrium) {
     }
   const double shell = 4 * pi / 3 * std::pow(diameter, 3) * (std::pow(beyond, 3) - 1), density = n / scene.cell.volume();
   const double found = 2. * close / n / (shell * density), expected = (1 - fraction / 2) / std::pow(1 - fraction, 3);
-  EXPECT_GT(found / expected, 0.75);  // in a shell of this width, through which it falls
+  EXPECT_GT(found / expected, 0.75);  // the pair distribution decreases within a shell of this width
   EXPECT_LT(found / expected, 1.05);
 }
 

@@ -1,4 +1,4 @@
-// Spheres in unbounded parabolic flow, against Faxen's laws.
+// Spheres in unbounded parabolic flow, compared with Faxen's laws.
 
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ using std::numbers::pi;
 const Vec3 centre(0.3, -0.2, 0.5);
 constexpr double a = 0.8, fastest = 2, half_width = 1.6;
 
-/// v_inf, its Laplacian and its curl at the centre.
+/// Values of v_inf, its Laplacian and its curl at the centre.
 struct Exact {
   Vec3 velocity, laplacian, curl;
   explicit Exact(bool round) {
@@ -40,7 +40,7 @@ TEST(ParabolicFlow, HoldsASphereWithFaxensForceAndTorque) {
                                                                                   "Particle/velocity=[0, 0, 0]", "Surface/elements per side=6"}));
     const Exact exact(profile == std::string("round"));
     const Vec3 force = 6 * pi * a * (exact.velocity + a * a / 6 * exact.laplacian), torque = 4 * pi * a * a * a * exact.curl;
-    EXPECT_LT((s.force - force).norm() / force.norm(), 2e-5) << profile;  // the flow is interpolated: 8e-6
+    EXPECT_LT((s.force - force).norm() / force.norm(), 2e-5) << profile;  // interpolation of the flow causes 8e-6
     EXPECT_LT((s.torque - torque).norm() / torque.norm(), 1e-5) << profile;
     EXPECT_TRUE(std::isnan(s.error)) << "the exact solution of a uniform flow is none here";
   }
@@ -50,7 +50,8 @@ TEST(ParabolicFlow, CarriesAnUnstressedCapsuleWithItsMeanOverTheVolume) {
   const Evolution run(in_flow("round", {"Particle/radius=0.8", "Surface/elements per side=5"}));
   const Exact exact(true);
   const Vec3 velocity = surface::centroid_velocity(run.capsule->geometry().bezier(), run.state.x, run.state.history[0]);
-  EXPECT_LT((velocity - exact.velocity - a * a / 10 * exact.laplacian).norm(), 1e-3 * velocity.norm());  // interpolation on 152 control points
+  // error of the interpolation on 152 control points
+  EXPECT_LT((velocity - exact.velocity - a * a / 10 * exact.laplacian).norm(), 1e-3 * velocity.norm());
 }
 
 }  // namespace

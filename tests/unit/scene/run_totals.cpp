@@ -1,4 +1,4 @@
-// What a run has done, in a checkpoint and out of it.
+// Totals of a run, written to a checkpoint and read from it.
 
 #include "scene/series/run_totals.hpp"
 
@@ -41,7 +41,7 @@ TEST(RunTotals, OfAnotherVersionIsLacking) {
   EXPECT_THROW(stored_totals(checkpoint), std::out_of_range);
 }
 
-/// Compression that lets waves grow, a step at a time.
+/// Returns the warnings of one step with a compression that lets waves grow.
 std::vector<std::string> look(Warnings& warnings) {
   StepFindings signs;
   signs.step = 0.1;
@@ -64,7 +64,7 @@ TEST(RunTotals, WarningsGoOnWhereTheyWere) {
   EXPECT_EQ(look(second).size(), 1u);
   Warnings third(scene);
   third.remember(second.memory());
-  for (int k = 0; k < steps; ++k) EXPECT_TRUE(look(third).empty());  // it is said already
+  for (int k = 0; k < steps; ++k) EXPECT_TRUE(look(third).empty());  // the warning was shown already
 }
 
 }  // namespace

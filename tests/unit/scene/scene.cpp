@@ -73,8 +73,8 @@ TEST(Scenes, HaveViscosityRatiosThatRoundingLeavesSolvable) {
 TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
   const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
   const bool one_rank = coupling::Ranks().size() == 1;
-  EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB a rank
-  EXPECT_NE(refusal(tube + "300}\n").find("more than 64"), std::string::npos);  // 66 GB
+  EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB per rank
+  EXPECT_NE(refusal(tube + "300}\n").find("more than 64"), std::string::npos);  // 66 GB per rank
 }
 
 TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
@@ -93,7 +93,7 @@ TEST(Moduli, FollowFromTheCapillaryNumber) {
   EXPECT_DOUBLE_EQ(scene("  Flow: {viscosity: 2, shear rate: 3}\n  Particle: {radius: 4}\n  Membrane: {capillary number: 0.5}\n").modulus(),
                    48.0);
   EXPECT_DOUBLE_EQ(scene("  Membrane: {shear modulus: 7}\n").modulus(), 7.0);
-  // The largest singular value of the gradient of shear is the shear rate, of hyperbolic flow its rate.
+  // For shear, the largest singular value of the gradient is the shear rate; for hyperbolic flow it is the rate of that flow.
   EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [0, 0, 2.5, 0, 0, 0, 0, 0, 0]}\n").flow.rate(), 2.5);
   EXPECT_DOUBLE_EQ(scene("  Flow: {type: linear, gradient: [2, 0, 0, 0, 0, 0, 0, 0, -2]}\n").flow.rate(), 2.0);
 }
@@ -101,7 +101,7 @@ TEST(Moduli, FollowFromTheCapillaryNumber) {
 TEST(Moduli, FollowFromTheRateOfAParabolicFlowAndFromTheBendingNumber) {
   const Scene s = scene("  Flow: {type: parabolic, half width: 8, maximum velocity: 2}\n  Particle: {radius: 4}\n"
                         "  Membrane: {capillary number: 0.5, bending number: 0.1}\n");
-  EXPECT_DOUBLE_EQ(s.modulus(), 2);            // rate 2/8 times radius over Ca
+  EXPECT_DOUBLE_EQ(s.modulus(), 2);            // the rate 2/8 times the radius divided by Ca
   EXPECT_DOUBLE_EQ(s.bending_modulus(), 3.2);  // 0.1 G_s R_C^2
 }
 
@@ -116,7 +116,7 @@ TEST(EquivalentRadii, AreThoseOfTheSphereOfEqualVolume) {
     volume += 2 * std::numbers::pi * r * std::sqrt(1 - r * r) * (0.21 + 2.0 * r * r - 1.12 * std::pow(r, 4)) / steps;
   }
   EXPECT_NEAR(scene("  Particle: {shape: red cell, radius: 2}\n").radius(), 2 * std::cbrt(volume * 3 / (4 * std::numbers::pi)),
-              1e-6);  // the rule's error
+              1e-6);  // error of the midpoint rule
 }
 
 TEST(Orientations, TurnTheAxesOfTheParticle) {
@@ -187,7 +187,7 @@ TEST(Contradictions, AreOneSentenceEach) {
 
 TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   const std::string assembled = "  Solvers: {frozen operator: assembled}\n";
-  EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"), "");  // nothing is kept but what is near
+  EXPECT_EQ(refusal("  Surface: {elements per side: 100}\n"), "");  // only near-field matrices are stored
   EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 110}\n"), "");
   EXPECT_EQ(
       refusal(assembled + "  Surface: {elements per side: 120}\n"),
@@ -200,7 +200,7 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   EXPECT_EQ(
       refusal("  Particle: {motion: free}\n  Surface: {elements per side: 80}\n"),
       "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
-  const double of_wall = 72.0 * coupling::Ranks().size();  // factors on every rank
+  const double of_wall = 72.0 * coupling::Ranks().size();  // every rank stores the factors
   EXPECT_EQ(refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
             formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the layers of 40600 control points "
                       "take %.0f GB assembled, more than 64.",
@@ -208,7 +208,7 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }
 
-/// A list of a particle at a place along x1, with these lists.
+/// Returns the section of a particle with its centre on the x1 axis and with additional subsections.
 std::string particle(const std::string& name, double x1, const std::string& lists = "") {
   return formatted("    %s: {center: [%g, 0, 0], Surface: {elements per side: 3}%s}\n", name.c_str(), x1, lists.c_str());
 }

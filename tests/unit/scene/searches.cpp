@@ -1,4 +1,4 @@
-// Rigid motions that a steady search leaves free: how many, of one particle and of several.
+// Number of rigid motions that a steady search leaves free, for one particle and for several.
 
 #include <string>
 
@@ -38,7 +38,7 @@ std::string with_a_second(const std::string& particle, const std::string& membra
 
 TEST(FreeMotions, InAFluidAtRestAreAll) { EXPECT_EQ(free_number(still_fluid + one_particle("", capsule)), 6u); }
 
-// Translations, and the rotation about the force.
+// The free motions are the translations and the rotation about the force.
 TEST(FreeMotions, DoNotTurnAWeight) {
   EXPECT_EQ(free_number(with_gravity + one_particle("density difference: 1", capsule)), 4u);
   EXPECT_EQ(free_number(with_gravity + with_a_second("density difference: 1", capsule)), 4u);
@@ -49,7 +49,7 @@ TEST(FreeMotions, DoNotTurnForcesOnPatches) {
   EXPECT_EQ(free_number(still_fluid + with_a_second("shape: sphere", pulled)), 4u);
 }
 
-// The rotation about the axis only: a flow of one gradient does not rest elsewhere.
+// Only the rotation about the axis is free, because an extensional flow is at rest only at its centre.
 TEST(FreeMotions, InAnExtensionTurnAboutItsAxis) { EXPECT_EQ(free_number("  Flow: {type: uniaxial extension}\n"), 1u); }
 
 }  // namespace

@@ -37,13 +37,13 @@ StepFindings at(double step, double tension, double element = 0.13) {
 TEST(Warnings, AreSilentAboutAHealthyRun) {
   Told run({"Membrane/capillary number=0.3"});
   for (int k = 0; k < 100; ++k)
-    EXPECT_EQ(run.first(at(0.1, k < 10 ? -0.19 : -0.05)), "");  // the start and the steady state of a run that
-                                                                // agrees with other methods to five digits
+    EXPECT_EQ(run.first(at(0.1, k < 10 ? -0.19 : -0.05)), "");  // tensions at the start and in the steady state of a run
+                                                                // that agrees with other methods to five digits
 }
 
 TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // they take their time
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // the waves need time to grow
   for (int k = 0; k < 10; ++k) run.first(at(0.1, -0.13));
   ASSERT_EQ(run.warnings.memory().said.size(), 1u);
   const std::string sentence = run.warnings.memory().said.front().sentence;
@@ -54,7 +54,7 @@ TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
 
 TEST(Warnings, TellOfCompressionOnlyWhereTheMeshAndNotBendingSetsTheWave) {
   Told stiff({"Membrane/capillary number=0.1", "Membrane/bending modulus=0.02"});
-  for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // k = 4.7, of 24 on the mesh
+  for (int k = 0; k < 50; ++k) EXPECT_EQ(stiff.first(at(0.1, -0.13)), "");  // the fastest wave has k = 4.7, and the mesh resolves k = 24
   Told soft({"Membrane/capillary number=0.1", "Membrane/bending modulus=1e-5"});
   for (int k = 0; k < 50; ++k) soft.first(at(0.1, -0.13));
   EXPECT_TRUE(names(soft.warnings.memory().said.at(0).sentence, "too little resistance"));
@@ -112,7 +112,7 @@ TEST(Soundness, EndsARunWhoseElementFolds) {
   EXPECT_GT(soundness(map, sphere.rest, ranks).jacobian_ratio, 0.4);
   Net folded = sphere.rest;
   const std::vector<int>& points = sphere.space.elements[14].points;
-  folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // pulled over its neighbour
+  folded.row(points[5]) += 3 * (folded.row(points[6]) - folded.row(points[5]));  // control point moved past its neighbour
   EXPECT_THROW(soundness(map, folded, ranks), RunFailure);
 }
 

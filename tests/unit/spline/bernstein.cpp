@@ -7,7 +7,7 @@
 namespace tanktread::spline {
 namespace {
 
-constexpr double rounding = 1e-14;  // sums of a few dozen products of numbers below 1
+constexpr double rounding = 1e-14;  // round-off of sums of a few dozen products of numbers below 1
 
 TEST(Bernstein, ValuesAreTheBinomialFormulaAndSumToOne) {
   for (int p = 1; p <= 6; ++p)

@@ -56,7 +56,7 @@ TEST(CatmullClark, FieldsAreC2AcrossAllSidesButThoseOfTheInnermostSquares) {
   for (int k = 0; k < int(s.elements.size()); ++k) {
     const Element& e = s.elements[k];
     if (e.size[0] < 1.5 * cap) continue;
-    // Across the right side, into the element behind it, if it is neither beyond the macro face nor an innermost square.
+    // Compares the element with its neighbour across the right side, unless this is on another macro face or is an innermost square.
     const double x = e.origin[0] + e.size[0];
     if (x > 1 - 1e-9) continue;
     for (double t : {0.2, 0.8}) {

@@ -73,10 +73,11 @@ TEST(Coarsening, HalfTheSurfaceLeavesAValidMesh) {
   }
 }
 
-/// A bump that wanders around the cube, refined where a fit misses it and coarsened behind: neither the mesh nor the error drifts.
+/// Moves a feature around the cube twice, and refines the mesh at the feature and coarsens it elsewhere. The number of control points must not grow
+/// in the second revolution.
 TEST(Coarsening, AMovingFeatureKeepsTheNumberOfControlPointsBounded) {
   TMesh mesh = cube(4, 3);
-  int most[2] = {0, 0};  // in the first and the second revolution
+  int most[2] = {0, 0};  // largest number of control points in the first and the second revolution
   auto near = [&](const Lattice& l, const Rectangle& r, double angle, double radius) {
     const Vec3 middle = (l.position[corners(l, r)[0]] + l.position[corners(l, r)[2]]) / 2;
     const Vec3 bump(std::cos(angle), std::sin(angle), 0.3 * std::sin(2 * angle));
@@ -104,8 +105,8 @@ TEST(Coarsening, AMovingFeatureKeepsTheNumberOfControlPointsBounded) {
     int& here = most[cycle / 32];
     here = std::max(here, points);
   }
-  EXPECT_GT(most[0], 200);   // the base mesh has 98
-  EXPECT_LT(most[0], 1000);  // the uniform mesh of the bump's resolution 1538
+  EXPECT_GT(most[0], 200);   // the base mesh has 98 control points
+  EXPECT_LT(most[0], 1000);  // the uniform mesh with the resolution at the feature has 1538
   EXPECT_LT(most[1], 1.1 * most[0]);
 }
 

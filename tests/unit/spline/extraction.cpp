@@ -60,8 +60,8 @@ TEST(Extraction, LevelsOfTheLatticeThatAreNotUsedChangeNothing) {
   }
 }
 
-/// The averaging form of the extraction: inner Bezier point of a face next to a corner is (4 P0 + 2 P1 + P2 + 2 P3) / 9; a point on a side
-/// the mean of its two neighbours across the side. Source: Scott et al. 2013, T-spline extraction; valid on uniform meshes.
+/// Compares the extraction with its averaging form: the inner Bezier point of a face next to corner P0 is (4 P0 + 2 P1 + P2 + 2 P3) / 9, and a point
+/// on a side is the mean of its two neighbours across the side. Source: Scott et al. 2013, T-spline extraction; valid on uniform meshes.
 TEST(Extraction, IsTheAveragingFormOnAUniformMesh) {
   const TMesh mesh = cube(4);
   const Space s = space(mesh, ExtraordinaryRule::g1);
@@ -83,8 +83,8 @@ TEST(Extraction, IsTheAveragingFormOnAUniformMesh) {
   }
 }
 
-/// Value, gradient and second derivatives of a random field on both sides of each side of each element, by unit of the face's own
-/// coordinates.
+/// Compares the values, gradients and second derivatives of a random field on both sides of each side of each element, with respect to the
+/// coordinates of the macro face.
 TEST(Extraction, FieldsAreC2AcrossRegularSidesAndG1AtExtraordinaryPoints) {
   const TMesh mesh = cube(4);
   const Space s = space(mesh, ExtraordinaryRule::g1);
@@ -97,7 +97,7 @@ TEST(Extraction, FieldsAreC2AcrossRegularSidesAndG1AtExtraordinaryPoints) {
       c0 = std::max(c0, (a.value - b.value).norm());
       if (!bent_a && !bent_b) c2 = std::max({c2, (a.slope + b.slope).norm(), (a.bend - b.bend).norm()});
       if (bent_a != bent_b) c1_around = std::max(c1_around, (a.slope + b.slope).norm());
-      // Tangent planes agree: the slopes across and the slope along are linearly dependent.
+      // Tangent planes agree if the two derivatives across the side and the derivative along it are linearly dependent.
       if (bent_a && bent_b) {
         Mat3 m;
         m << a.slope, b.slope, a.along;
@@ -105,8 +105,8 @@ TEST(Extraction, FieldsAreC2AcrossRegularSidesAndG1AtExtraordinaryPoints) {
       }
     }
   }
-  EXPECT_LT(c0, 1e-13);  // rounding of sums of 16 to 19 values of size 1
-  EXPECT_LT(c2, 1e-12);  // and of second derivatives
+  EXPECT_LT(c0, 1e-13);  // round-off of sums of 16 to 19 values of order 1
+  EXPECT_LT(c2, 1e-12);  // round-off of second derivatives
   EXPECT_LT(c1_around, 1e-12);
   EXPECT_LT(g1, 1e-12);
 }
@@ -142,8 +142,8 @@ TEST(Extraction, BasisDerivativesAreDifferenceQuotients) {
 }
 
 TEST(ExtraordinaryG1, QuarticExtractionHasItsPublishedValues) {
-  // Source: constrained Bezier extraction decoded from a public plug-in file, re-derived as the full least squares, valence 3, Bernstein
-  // (1, 1).
+  // Source: constrained Bezier extraction for valence 3 from a public plug-in file, derived again as a full least-squares problem; row of the
+  // Bernstein polynomial (1, 1).
   const Eigen::MatrixXd c = constrained_biquartic();
   EXPECT_NEAR(c(6, OneRing::P), 0.48611111111111105, 1e-14);
   EXPECT_NEAR(c(6, OneRing::E), 0.18558010926025434, 1e-14);

@@ -16,7 +16,7 @@
 namespace tanktread::spline {
 namespace {
 
-/// A file of this test that is deleted with it.
+/// A temporary file that is deleted at the end of the test.
 struct Scratch {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("tanktread_iga_" + std::to_string(std::random_device{}()) + ".iga");
@@ -28,7 +28,7 @@ struct Scratch {
   void write(const std::string& text) const { std::ofstream(path) << text; }
 };
 
-/// The control points on the unit sphere, at their anchors.
+/// Returns the control points at the positions of their anchors, projected to the unit sphere.
 Net ball(const TMesh& mesh) {
   const auto anchor = anchors(mesh);
   Net net(Eigen::Index(anchor.size()), 3);
@@ -61,7 +61,7 @@ TEST(Iga, EveryFunctionOfAnImportedSurfaceGetsItsOwnPlace) {
   const Scratch file;
   write_iga(file.path, space(mesh, ExtraordinaryRule::g1), ball(mesh));
   const SplineSurface read = read_iga(file.path);
-  EXPECT_LT(collocation_condition(read.space), 15);  // on a uniform mesh the places are the vertices
+  EXPECT_LT(collocation_condition(read.space), 15);  // on a uniform mesh the collocation points are the vertices
   for (const auto& sites : read.space.collocation) {
     EXPECT_GE(sites.size(), 3u);
     for (const Site& site : sites)
@@ -83,7 +83,7 @@ TEST(Iga, SurfacesWithPolesAreClosedToo) {
   EXPECT_EQ(read_iga(file.path).space.n_points, s.n_points);
 }
 
-/// What read_iga says against a file; "read" if nothing.
+/// Returns the error message of read_iga for a file, or "read" if there is none.
 std::string refusal(const std::filesystem::path& file) {
   try {
     read_iga(file);
@@ -95,7 +95,7 @@ std::string refusal(const std::filesystem::path& file) {
 
 bool says(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
 
-/// The message for a file made from the cube's text by a change.
+/// Returns the error message for the text of a cube after a change.
 std::string complaint(const std::function<void(std::string&)>& change) {
   const TMesh mesh = cube(3);
   const Scratch file;
@@ -114,7 +114,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 
 TEST(Iga, EveryFaultGetsOneSentence) {
   EXPECT_EQ(complaint([](std::string&) {}), "read");
-  // A missing element, announced and not.
+  // Removes the last element, first without and then with a change of the number of elements.
   EXPECT_TRUE(says(complaint([](std::string& t) { t.erase(t.rfind("belem")); }), "elemN says 54 elements, the file has 53"));
   EXPECT_TRUE(says(complaint([](std::string& t) {
                      t.erase(t.rfind("belem"));
@@ -140,7 +140,7 @@ TEST(Iga, EveryFaultGetsOneSentence) {
   EXPECT_THROW(read_iga(std::filesystem::temp_directory_path()), UserError);
 }
 
-/// An element whose s runs backwards: its functions the same, its Bernstein columns reversed in every row.
+/// Returns the element with the direction of s reversed: it has the same functions, with reversed Bernstein columns in s.
 Element turned_over(Element e) {
   const int n = e.degree + 1;
   Eigen::MatrixXd c = *e.extraction;

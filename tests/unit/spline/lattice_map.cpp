@@ -1,4 +1,4 @@
-// Maps of a lattice onto itself, and meshes that keep them.
+// Tests of the symmetries of a lattice, and of meshes that keep them.
 
 #include "spline/refinement.hpp"
 
@@ -12,7 +12,7 @@
 namespace tanktread::spline {
 namespace {
 
-/// Every map that takes the ray to another one.
+/// Returns every symmetry of the lattice. Each is determined by the image of the ray.
 std::vector<LatticeMap> all_maps(const Lattice& l, Ray from) {
   std::vector<LatticeMap> out;
   for (int v = 0; v < l.vertices(); ++v)
@@ -22,7 +22,7 @@ std::vector<LatticeMap> all_maps(const Lattice& l, Ray from) {
   return out;
 }
 
-/// Those of them that change signs of the positions' coordinates, the identity left out.
+/// Returns the symmetries that only change signs of the coordinates of positions, without the identity.
 std::vector<LatticeMap> reflections(const Lattice& l, Ray from) {
   std::vector<LatticeMap> out;
   for (LatticeMap& map : all_maps(l, from)) {
@@ -75,7 +75,7 @@ TEST(LatticeMaps, TakeElementsToWhereTheirCornersGo) {
       const auto at = std::ranges::find(to_corners, map.vertex[from_corners[0]]) - to_corners.begin();
       const bool forward = to_corners[(at + 1) % 4] == map.vertex[from_corners[1]];
       EXPECT_EQ(forward, !map.mirrored);
-      EXPECT_EQ(to.exchanged, (at % 2 == 1) == forward);  // from corner 0 forward along s; from corner 1 along t
+      EXPECT_EQ(to.exchanged, (at % 2 == 1) == forward);  // the side that begins at corner 0 is along s, at corner 1 along t
     }
 }
 
@@ -131,7 +131,7 @@ TEST(SymmetricCoarsening, KeepsTheSymmetryOnTheWayBackToTheBaseMesh) {
       std::mt19937 generator(seed);
       TMesh mesh = base;
       for (int step = 0; step < 3; ++step) mesh = refine(mesh, random_marks(mesh, 2, 1, generator), rules).mesh;
-      std::vector<Merge> some;  // every other element: what its images do not allow stays
+      std::vector<Merge> some;  // every second element; lines stay if one of the images is not in this list
       for (int i = 0; i < int(elements(mesh).tiles.size()); i += 2) some.push_back({i});
       EXPECT_TRUE(has_all(coarsen(mesh, some, rules).mesh, rules.images));
       for (int round = 0; round < 8 && mesh.edges != base.edges; ++round) {

@@ -45,7 +45,7 @@ TEST(Polar, FunctionsSumToOneAndUseEveryControlPoint) {
   }
 }
 
-/// With control values at the generalised Greville places, the way along the meridian is a field of the space.
+/// If the control values are the meridian coordinates of the generalised Greville points, the field is the meridian coordinate.
 TEST(Polar, ReproducesTheWayAlongTheMeridian) {
   const PolarMesh mesh{8, 6, PoleRule::plain};
   const Space s = space(mesh);
@@ -73,7 +73,7 @@ TEST(Polar, FieldsAreC2AcrossAllSidesBetweenThePoles) {
         compare(j * m + i, 1, j * m + (i + 1) % m, 3);
         if (j + 1 < r) compare(j * m + i, 2, (j + 1) * m + i, 0);
       }
-    EXPECT_LT(jump, 1e-12);  // rounding of second derivatives of fields of size one
+    EXPECT_LT(jump, 1e-12);  // round-off of second derivatives of fields of order 1
   }
 }
 
@@ -86,7 +86,7 @@ TEST(Polar, PlainElementsCollapseToThePole) {
   }
 }
 
-/// Largest difference between unit normals at distance t of the pole behind.
+/// Returns the largest difference between unit normals at the distance t from the first pole.
 double spread_of_normals(const Space& s, const Net& net, int m, double t) {
   std::vector<Vec3> normals;
   for (int i = 0; i < m; ++i) {
@@ -108,7 +108,7 @@ TEST(Polar, NormalsAreSingleValuedAtAC1Pole) {
   EXPECT_LT(coarse, 0.2);
   EXPECT_NEAR(coarse / fine, 100, 5);
   EXPECT_GT(spread_of_normals(plain, random_net(plain.n_points, 11), 9, 1e-5), 0.5);
-  // The normal at the pole is that of the control triangle.
+  // The normal at the pole is the normal of the control triangle.
   const Basis b = basis(smooth.elements[0], 0.35, 1e-7, 1);
   const Eigen::MatrixXd P = net_of(smooth.elements[0], net);
   const Vec3 a1 = (b.s.transpose() * P).transpose(), a2 = (b.t.transpose() * P).transpose();
@@ -117,21 +117,22 @@ TEST(Polar, NormalsAreSingleValuedAtAC1Pole) {
 }
 
 TEST(Polar, TransformedElementsAgreeAlongAllTheirSides) {
-  // A closed surface without gaps: every value on a side is found again on the side of another element.
+  // The surface has no gaps if every value on a side is also a value on the side of another element.
   const Space s = space({5, 4, PoleRule::bezier_transform, 1});
   const Net net = random_net(s.n_points, 2);
   std::vector<Vec3> points;
   for (std::size_t e = 0; e < s.elements.size(); ++e)
     for (const double x : {0.0, 0.5, 1.0})
       for (const auto& [a, b] : {std::array{x, 0.0}, {1.0, x}, {x, 1.0}, {0.0, x}}) points.push_back(value_at(s, net, {int(e), a, b}));
-  // Ends of sides, and middles of sides that end at no other middle: base sides of the pieces are a quarter of a side of the tensor grid.
+  // Counts the points that no other element has. The base sides of the pieces are parts of the sides of the tensor grid, so their middles have no
+  // partner.
   int lonely = 0;
   for (std::size_t p = 0; p < points.size(); ++p) {
     int others = 0;
     for (std::size_t q = 0; q < points.size(); ++q) others += q / 12 != p / 12 && (points[p] - points[q]).norm() < 1e-12;
     lonely += others == 0;
   }
-  EXPECT_EQ(lonely, 2 * 5 * 4);  // middles of the four parts of each base side; the grid's own side is a whole one
+  EXPECT_EQ(lonely, 2 * 5 * 4);  // middles of the four parts of each base side, because the side of the tensor grid is not divided
 }
 
 TEST(PolarSites, AllSitesOfAPointSeeTheSameField) {
@@ -154,7 +155,7 @@ TEST(PolarSites, AllSitesOfAPointSeeTheSameField) {
 TEST(PolarSites, CollocationIsWellConditioned) {
   for (const PoleRule rule : every_rule) {
     for (const auto& [m, r] : {std::array{8, 4}, {16, 8}, {20, 10}}) {
-      EXPECT_LT(condition_number(collocation_matrix(space({m, r, rule}))), 17);  // 13.6, 15.5, 15.8 with one point a pole, 8.2 to 9.4 with three
+      EXPECT_LT(condition_number(collocation_matrix(space({m, r, rule}))), 17);  // 13.6 to 15.8 with one point per pole, 8.2 to 9.4 with three
     }
   }
 }

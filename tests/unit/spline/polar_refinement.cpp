@@ -23,7 +23,8 @@ TEST(PolarRefinement, RandomSequencesStayNestedAndIndependent) {
     auto options = on_poles(poles);
     for (unsigned seed = 0; seed < 8; ++seed) run_sequence(seed % 2 ? polar(8, 4, 4) : polar(7, 6, 4), seed, options, found);
     expect_nested(found);
-    // The column of the one function of a plain pole is as long as many points around see it: 13 on 8 elements around, 19 on 32, without cuts.
+    // The single function of a plain pole has a long column, because it is not zero at many points around the pole. Without cuts, the condition
+    // number is 13 for 8 elements in azimuth and 19 for 32.
     EXPECT_LT(found.condition, poles == PoleRule::c1 ? 15 : 25);
     EXPECT_LT(found.scaled, 15);
     EXPECT_EQ(found.finest, 1);

@@ -17,7 +17,7 @@ double in_basis(const Eigen::VectorXd& points, double u, double v) {
   return sum;
 }
 
-/// A degenerate element that is a triangle: rows u = const of degree 3 - i in v.
+/// Returns a degenerate element that is exactly a triangle: row i (u = const) has degree 3 - i in v.
 Eigen::VectorXd affine_at_the_pole() {
   Eigen::VectorXd points(16);
   const Eigen::Vector4d base(0.3, -0.7, 1.1, 0.2);
@@ -69,14 +69,14 @@ TEST(PoleTransform, ReproducesSurfacesWhoseRowNextToThePoleIsAffine) {
             ++found;
           }
     }
-    EXPECT_GE(found, 30);  // every place lies in some piece
+    EXPECT_GE(found, 30);  // every point is in at least one piece
   }
 }
 
 TEST(PoleTransform, ConvergesWithTheSquareOfTheAngleOfAPiece) {
-  // A planar polar element: u from the rim to the pole, v over a quarter of a turn.
+  // A planar polar element, with u from the rim to the pole and v over a quarter circle.
   Eigen::VectorXd x(16);
-  const double k = 4. / 3 * (std::sqrt(2.) - 1);  // of the usual cubic for a quarter circle
+  const double k = 4. / 3 * (std::sqrt(2.) - 1);  // parameter of the usual cubic approximation of a quarter circle
   const double arc[4] = {1, 1, k, 0};
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i) x[4 * j + i] = (3 - i) / 3. * arc[j];

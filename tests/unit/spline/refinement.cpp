@@ -31,7 +31,7 @@ TEST(Refinement, RandomSequencesStayNestedAndIndependent) {
   EXPECT_GT(found.least_diagonal, 0.25);
 }
 
-/// The largest residual over a few sequences, or infinity when the rings broke down.
+/// Returns the largest residual over a few sequences, or infinity if the rings are not uniform at some step.
 double residual_without(const RepairRules& rules) {
   Findings found;
   SequenceOptions options;
@@ -174,7 +174,7 @@ TEST(Refinement, IncrementalTablesAgreeWithFreshOnesAfterUndo) {
   EXPECT_EQ(extended.missing(), 0);
 }
 
-/// The paper's rule is not nested: the surface moves when the rings at an extraordinary point are cut.
+/// Tests that the spaces of the paper's rule are not nested: the surface changes if the rings at an extraordinary point are cut.
 TEST(Refinement, G1SpacesAreNotNestedAtAnExtraordinaryPointButAwayFromIt) {
   const TMesh mesh = cube(8, 2);
   const Lattice& l = *mesh.lattice;

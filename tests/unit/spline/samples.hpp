@@ -1,5 +1,5 @@
 #pragma once
-// Random fields and what they do across the sides of elements: shared by the tests of this room.
+// Random fields and their derivatives across the sides of elements, for the tests of this module.
 
 #include <array>
 #include <map>
@@ -19,14 +19,14 @@ inline Net random_net(int n, unsigned seed) {
   return net;
 }
 
-/// The control points of an element, shape (m, 3).
+/// Returns the control points of an element, shape (m, 3).
 inline Eigen::MatrixXd net_of(const Element& e, const Net& net) {
   Eigen::MatrixXd out(Eigen::Index(e.points.size()), 3);
   for (std::size_t i = 0; i < e.points.size(); ++i) out.row(Eigen::Index(i)) = net.row(e.points[i]);
   return out;
 }
 
-/// Lattice vertices at the corners of a rectangle, outward orientation.
+/// Returns the lattice vertices at the corners of a rectangle, outward orientation.
 inline std::array<int, 4> corners(const Lattice& lattice, const Rectangle& r) {
   std::array<int, 4> out;
   for (int k = 0; k < 4; ++k) out[k] = sides(lattice, r)[k].vertex;
@@ -53,7 +53,7 @@ inline Eigen::MatrixXd collocation_matrix(const Space& s) {
 struct SharedSide {
   std::array<int, 2> element, edge;
 };
-/// Sides that are whole sides of both elements; elements of the space are the tiles of the mesh's Bezier mesh.
+/// Returns the sides that are whole sides of two elements. The elements of the space must be the tiles of the Bezier mesh.
 inline std::vector<SharedSide> shared_sides(const TMesh& mesh, const Space& s) {
   std::map<std::pair<int, int>, std::pair<int, int>> open;
   std::vector<SharedSide> out;
@@ -71,8 +71,8 @@ inline std::vector<SharedSide> shared_sides(const TMesh& mesh, const Space& s) {
   return out;
 }
 
-/// A field at fraction x along an edge of an element: value, first and second derivative outwards across it, derivative along it. By
-/// lengths in sides of the macro face, times the length of the shortest side.
+/// A field at a point of an edge of an element: value, first and second outward derivative across the edge, and derivative along it. Derivatives are
+/// with respect to lengths in units of one tenth of the side of the macro face.
 struct Jet {
   Vec3 value, slope, bend, along;
 };

@@ -32,7 +32,7 @@ void expect_nested(const Findings& found) {
   EXPECT_EQ(found.straddling, 0);
   EXPECT_EQ(found.wrong_counts, 0);
   EXPECT_LT(found.unity, 1e-13);
-  EXPECT_LT(found.residual, 1e-12);  // of fields of size 1; 1e-14 measured; a broken rule gives 1e-3 to 1
+  EXPECT_LT(found.residual, 1e-12);  // for fields of order 1; measured: 1e-14, and 1e-3 to 1 if a rule is violated
 }
 
 double condition_number(const Eigen::SparseMatrix<double>& C) {

@@ -1,5 +1,5 @@
 #pragma once
-// What makes the splines of a T-mesh linearly independent and nested, counted afresh.
+// Violations of the conditions for linearly independent and nested splines on a T-mesh, counted without earlier results.
 
 #include "spline/extended_mesh.hpp"
 

@@ -45,7 +45,7 @@ TEST(Lattice, EveryStraightLineClosesOrEndsAtAnExtraordinaryPoint) {
         ++ended;
       }
     }
-  EXPECT_EQ(ended, 12 * 3 * 2);  // the inner vertices of the cube's edges, both ways
+  EXPECT_EQ(ended, 12 * 3 * 2);  // inner vertices of the edges of the cube, in both directions
   EXPECT_EQ(closed, (l.vertices() - 8) * 4 - ended);
 }
 

@@ -35,7 +35,7 @@ TEST(Transfer, WhatIsFarFromACutIsCopiedToTheLastBit) {
   int copied = 0;
   for (int i = 0; i < fine.n_points; ++i) copied += old_point[at[i]] >= 0 && moved.row(i) == net.row(old_point[at[i]]);
   EXPECT_LT(copied, coarse.n_points);
-  EXPECT_GT(copied, coarse.n_points - 49);  // a cut reaches three elements far each way
+  EXPECT_GT(copied, coarse.n_points - 49);  // a cut has an effect up to three elements away in each direction
 }
 
 TEST(Transfer, ResidualTellsWhenSpacesAreNotNested) {

@@ -84,8 +84,8 @@ TEST(FlowHistory, OfATableIsStraightBetweenItsTimesAndJumpsWhereTwoAreEqual) {
   const FlowHistory history = stopped();
   EXPECT_EQ(history.at(0, 0).amplitude, 1);
   EXPECT_EQ(history.at(1.5, 1).amplitude, 2);
-  EXPECT_EQ(history.at(2, 1.5).amplitude, 3);  // where a step ends
-  EXPECT_EQ(history.at(2, 2).amplitude, 0);    // where one begins
+  EXPECT_EQ(history.at(2, 1.5).amplitude, 3);  // end of a step
+  EXPECT_EQ(history.at(2, 2).amplitude, 0);    // start of a step
   EXPECT_EQ(history.at(9, 2).amplitude, 0);
   EXPECT_LT((history.at(2, 1).turn * Vec3::UnitZ() - Vec3::UnitX()).norm(), 1e-15);
   EXPECT_EQ(history.next_kink(0), 1);
@@ -93,7 +93,7 @@ TEST(FlowHistory, OfATableIsStraightBetweenItsTimesAndJumpsWhereTwoAreEqual) {
   EXPECT_EQ(history.next_kink(2), std::numeric_limits<double>::infinity());
 }
 
-/// A source of vorticity at (0, 0, 2).
+/// A rotlet (point torque) at (0, 0, 2).
 struct Rotlet : UserFlow {
   static Vec3 from(const Vec3& at) { return at - Vec3(0, 0, 2); }
   Vec3 velocity(const Vec3& at) const override { return Vec3(from(at)[2], 0, -from(at)[0]) / std::pow(from(at).norm(), 3); }

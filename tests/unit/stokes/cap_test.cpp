@@ -1,4 +1,4 @@
-// The open ends of a tube: line integrals against integrals over the area.
+// The open ends of a tube: line integrals compared with area integrals.
 
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 using surface::Vec2;
 
-/// A slightly non-convex section about (0.1, -0.2).
+/// Returns a slightly non-convex section about (0.1, -0.2).
 surface::Outline bean(int m = 24) {
   std::vector<double> knots;
   std::vector<Vec2> points;
@@ -33,7 +33,7 @@ surface::Outline circle(int m) {
   return surface::outline(options).spline(m);
 }
 
-/// int f(x) dS over the section, in rays from its middle.
+/// Returns int f(x) dS over the section, integrated along rays from its middle.
 template <class F>
 auto over_section(const surface::Outline& outline, double place, const F& f) {
   const auto& rule = quadrature::gauss(12);
@@ -69,7 +69,7 @@ TEST(Cap, IsBoundedAndContinuousAtItsRim) {
     const Vec2 p = outline.point(0, u);
     const Vec3 on = cap.integral(Vec3(0, p[0], p[1])), off = cap.integral(Vec3(1e-7, p[0], p[1]));
     EXPECT_TRUE(on.allFinite());
-    EXPECT_LT((on - off).norm() / on.norm(), 1e-5);  // h log h
+    EXPECT_LT((on - off).norm() / on.norm(), 1e-5);  // the difference behaves like h log h
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Cap, LetsThroughWhatADoubleLayerDrives) {
 
 TEST(Cap, DrivesAFlowThroughItself) {
   // int int 1/|x - x'| dS dS' = 16 pi/3 on the unit disc.
-  EXPECT_NEAR(Cap(circle(48), 0, 1e-9).own_flow(), 2. / 3, 2e-6);  // 8e-7 is the spline's area
+  EXPECT_NEAR(Cap(circle(48), 0, 1e-9).own_flow(), 2. / 3, 2e-6);  // the spline's area accounts for 8e-7
   EXPECT_NEAR(Cap(circle(24), 0, 1e-9).own_flow(), 2. / 3, 2e-5);
 }
 

@@ -1,4 +1,4 @@
-// Layers of one surface at points off it: identities, and the same answer from every route.
+// Layers of one surface at points off it: identities, and agreement of all ways to evaluate them.
 
 #include <cmath>
 #include <numbers>

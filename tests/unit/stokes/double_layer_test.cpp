@@ -12,7 +12,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// A deformed surface of the smallest cube mesh.
+/// A deformed surface on the smallest cube mesh.
 struct Scene {
   spline::Space space;
   Net x, v;
@@ -56,7 +56,7 @@ TEST(DoubleLayer, AssembledRowsTimesAVelocityAreTheSum) {
   }
 }
 
-// A translation drops out of the integrand. int T_ijk n_k (omega x r)_j dG = 0 in and on the surface (2.3).
+// The integrand vanishes for a translation. For a rotation, int T_ijk n_k (omega x r)_j dG = 0 inside and on the surface (2.3).
 TEST(DoubleLayer, GivesNothingForRigidBodyMotions) {
   Net translation = Net::Zero(scene().space.n_points, 3), rotation = translation;
   translation.rowwise() = Eigen::RowVector3d(1, -2, 3);
@@ -65,7 +65,7 @@ TEST(DoubleLayer, GivesNothingForRigidBodyMotions) {
   EXPECT_LT(largest(scene().apply(rotation, {.tolerance = 1e-10})), 1e-10 * largest(rotation));
 }
 
-/// The scene and, a gap above its top, the same turned over: two surfaces. Targets are on the second.
+/// Two surfaces: the scene, and its reflection about a horizontal plane, at a gap above its top. Targets are on the second surface.
 struct Film {
   spline::Space space;
   Net x;
@@ -87,7 +87,7 @@ struct Film {
   }
 };
 
-// int T_ijk n_k (U + omega x r)_j dG = 0 outside (2.3), however near and whatever the velocity of the surface that the target lies on.
+// int T_ijk n_k (U + omega x r)_j dG = 0 outside (2.3), at any distance and for any velocity of the surface that contains the target.
 TEST(DoubleLayer, GivesNothingAcrossAFilmForRigidBodyMotionsOfTheOtherSurface) {
   for (const double gap : {0.1, 1e-3}) {
     const Film film(gap);
@@ -112,7 +112,7 @@ TEST(DoubleLayer, AssembledRowsOfTwoSurfacesTimesAVelocityAreTheSum) {
   layer.assemble(film.x, film.all, a);
   const Eigen::VectorXd rows = a * v.reshaped<Eigen::RowMajor>();
   EXPECT_LT((u.bottomRows(scene().space.n_points).reshaped<Eigen::RowMajor>() - rows).norm(),
-            1e-11 * rows.norm());  // round-off, 1 / gap^2 times
+            1e-11 * rows.norm());  // round-off, multiplied by 1 / gap^2
 }
 
 TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
@@ -120,7 +120,7 @@ TEST(DoubleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
   const double at_6 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 6}) - exact) / largest(exact);
   const double at_12 = largest(scene().apply(scene().v, {.rule = "desingularised", .points = 12}) - exact) / largest(exact);
   EXPECT_LT(at_12, 1e-3);
-  EXPECT_GT(at_6 / at_12, 3.5);  // an integrand that is bounded and no more: at least the square of the spacing
+  EXPECT_GT(at_6 / at_12, 3.5);  // the integrand is bounded but not smooth: the order is at least two in the spacing of the points
 }
 
 TEST(SingleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
@@ -134,7 +134,7 @@ TEST(SingleLayer, DesingularisedAgreesToWhatItsPointsAllow) {
   const double at_6 = largest(apply({.rule = "desingularised", .points = 6}) - exact) / largest(exact);
   const double at_12 = largest(apply({.rule = "desingularised", .points = 12}) - exact) / largest(exact);
   EXPECT_LT(at_12, 1e-3);
-  EXPECT_GT(at_6 / at_12, 3.5);  // as above
+  EXPECT_GT(at_6 / at_12, 3.5);  // the order is at least two, as for the double layer
 }
 
 }  // namespace

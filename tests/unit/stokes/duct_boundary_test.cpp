@@ -68,13 +68,13 @@ TEST(CauchySums, GiveAnAnalyticFunctionAndItsDerivativeUpToTheCurve) {
       const Vec2 p = o.point(0, 0.57 * i) - depth * o.normal(0, 0.57 * i);
       px.push_back(p[0]), py.push_back(p[1]);
     }
-  px.push_back(x[5]), py.push_back(y[5]);  // a node itself
+  px.push_back(x[5]), py.push_back(y[5]);  // a point that coincides with a node
   std::vector<double> u(px.size()), u2(px.size()), u3(px.size()), alone(px.size());
   cauchy_sums(nodes, 1, static_cast<int>(px.size()), px.data(), py.data(), u.data(), u2.data(), u3.data());
   for (std::size_t i = 0; i < px.size(); ++i) {
     const std::complex<double> z(px[i], py[i]);
-    EXPECT_NEAR(u[i], function(z).real(), 1e-12) << i;  // 8 Gauss points on elements of 0.2: beyond round-off
-    if (i + 1 < px.size()) {                            // round-off over the distance to a node
+    EXPECT_NEAR(u[i], function(z).real(), 1e-12) << i;  // 8 Gauss points on elements of size 0.2: error below round-off
+    if (i + 1 < px.size()) {                            // round-off divided by the distance to a node
       EXPECT_LT(std::hypot(u2[i] - slope(z).real(), u3[i] + slope(z).imag()), 1e-8) << i;
     }
     cauchy_sums(nodes, 1, 1, &px[i], &py[i], &alone[i], nullptr, nullptr);
@@ -83,7 +83,7 @@ TEST(CauchySums, GiveAnAnalyticFunctionAndItsDerivativeUpToTheCurve) {
 }
 
 TEST(BoundaryProfile, OfACircleIsExactOnTheExactCircleOfAnyRadius) {
-  for (const double radius : {0.3, 1.0, 7.0}) {  // 1: where the logarithmic kernel alone is singular
+  for (const double radius : {0.3, 1.0, 7.0}) {  // for radius 1 the logarithmic kernel without kappa is singular
     const BoundaryProfile p(ellipse(radius, radius), 12);
     EXPECT_NEAR(p.flow_rate() / (pi * std::pow(radius, 4) / 8), 1, 1e-13);
   }
@@ -92,7 +92,7 @@ TEST(BoundaryProfile, OfACircleIsExactOnTheExactCircleOfAnyRadius) {
 TEST(BoundaryProfile, DoesNotDependOnWhereTheSectionIs) {
   const std::vector<Vec2> corners{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
   std::vector<Vec2> moved;
-  for (const Vec2& c : corners) moved.push_back(0.5 * Vec2(-c[1], c[0]) + Vec2(4, -3));  // turned by a right angle, halved
+  for (const Vec2& c : corners) moved.push_back(0.5 * Vec2(-c[1], c[0]) + Vec2(4, -3));  // rotated by a right angle and scaled by a half
   const BoundaryProfile one(polygon(corners), 48), other(polygon(moved), 48);
   EXPECT_NEAR(other.flow_rate() * 16 / one.flow_rate(), 1, 1e-11);  // round-off of the matrix
   const Vec2 x(0.8, 0.7), z = 0.5 * Vec2(-x[1], x[0]) + Vec2(4, -3);

@@ -42,13 +42,13 @@ TEST(DuctFlow, IsPoiseuillesInACircle) {
 TEST(DuctFlow, HasTheKnownFlowRates) {
   EXPECT_NEAR(duct_profile(ellipse(1, 0.5), surface::outline(ellipse(1, 0.5)))->flow_rate(), pi * 0.125 / 5, 1e-15);
   const auto rate = [](double w, double h) { return rectangle_profile({w, h})->flow_rate(); };
-  EXPECT_NEAR(rate(2, 2) / 16, 0.035144253739, 1e-12);  // to the digits of the reference
+  EXPECT_NEAR(rate(2, 2) / 16, 0.035144253739, 1e-12);  // digits of the reference
   EXPECT_NEAR(rate(2, 1), 2 * 0.0571704193, 2e-10);
   EXPECT_NEAR(rate(1, 3), 3 * 0.0658292328, 3e-10);
   EXPECT_NEAR(rate(5, 1), 5 * 0.0728291885, 5e-10);
 }
 
-/// Mean of v and largest |v| on the wall by points, against what the flow says of itself.
+/// Checks gradient, momentum equation and traction of the flow at several points against finite differences.
 void expect_consistent(const DuctFlow& flow) {
   const auto [low, high] = flow.outline().box();
   const double h = 1e-4 * flow.radius();
@@ -103,7 +103,7 @@ TEST(DuctFlow, VanishesOnTheWallOfARectangle) {
 TEST(DuctFlow, HasTheMeanVelocityThatIsAskedFor) {
   const DuctFlow flow(capillary(), 1, 0.7);
   const auto [low, high] = flow.outline().box();
-  constexpr int grid = 100;  // a sum over the points of a grid, of order 2: v vanishes on the wall
+  constexpr int grid = 100;  // a sum over the points of a grid, of second order because v vanishes on the wall
   Net x(grid * grid, 3);
   Eigen::Index n = 0;
   for (int j = 0; j < grid; ++j)

@@ -27,7 +27,7 @@ TEST(Stokeslet, IsFreeOfDivergence) {
   EXPECT_LT(divergence.norm(), 1e-9);  // central differences: h^2 and round-off over h
 }
 
-// sigma_ik of the velocity G_ij g_j (viscosity 1) is T_ijk g_j; its pressure is 2 r.g / r^3.
+// The stress sigma_ik of the velocity G_ij g_j (viscosity 1) is T_ijk g_j, and the pressure is 2 r.g / r^3.
 TEST(Stresslet, IsTheStressOfTheStokeslet) {
   const double h = 1e-5;
   const Vec3 g(0.2, 0.9, -0.4), n = Vec3(1, 2, -2) / 3;
@@ -67,7 +67,7 @@ TEST(FarSum, IsTheSumOfStokeslets) {
   }
 }
 
-// 1/r of one node in every lane, in numbers far beyond those of single precision, which some processors' estimates of it begin with.
+// 1/r of one node in every lane, for values outside the range of single precision, in which some processors compute initial estimates of 1/r.
 TEST(FarSum, IsAccurateAtEveryScale) {
   for (double scale = 1e-100; scale < 1e100; scale *= 7.3) {
     const Vec3 place = scale * r, force(0.4, -0.2, 0.9);
@@ -81,7 +81,7 @@ TEST(FarSum, IsAccurateAtEveryScale) {
   }
 }
 
-// A target's sum does not depend on its neighbours, whatever the instructions.
+// The sum of a target does not depend on its neighbours, for any instruction set.
 TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
   const Forces forces(37);
   double target[3 * far_block], u[3 * far_block];
@@ -94,7 +94,7 @@ TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
 TEST(FarSum, TakesNothingFromANodeAtTheTarget) {
   Forces forces(5);
   double target[3 * far_block], u[3 * far_block];
-  for (int l = 0; l < far_block; ++l)  // in lanes beyond the first but for rounding
+  for (int l = 0; l < far_block; ++l)  // exact coincidence in the first lane, up to rounding in the others
     for (int c = 0; c < 3; ++c) target[far_block * c + l] = forces.position(2)[c] * (1 + 1e-16 * l * (c + 1));
   far_sum(forces.view, target, u);
   Vec3 sum = Vec3::Zero(), one;

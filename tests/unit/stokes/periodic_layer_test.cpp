@@ -80,7 +80,7 @@ TEST(PeriodicLayer, WhatCrossesTheFacesOfACellIsAsInside) {
     const Net moved = x.rowwise() + Eigen::RowVector3d(0.47, n > 1 ? -0.41 : 0, n > 2 ? 0.3 : 0);
     for (const double tolerance : {1e-4, 1e-7}) {
       EXPECT_LT(difference(double_layer(moved, field, cell(n), tolerance), double_layer(x, field, cell(n), tolerance)), tolerance) << n;
-      if (n < 3) continue;  // with a net force they are known but for a constant
+      if (n < 3) continue;  // for a net force the velocity is determined only up to a constant
       EXPECT_LT(difference(single_layer(moved, field, cell(), tolerance), single_layer(x, field, cell(), tolerance)), tolerance);
     }
   }
@@ -118,7 +118,8 @@ TEST(PeriodicLayer, ALatticeIsTheSameByCellsOfOneAndOfTwo) {
 
 TEST(PeriodicLayer, ACellTiltedByAWholePeriodIsTheSame) {
   const auto& [space, x, field, all] = ellipsoid();
-  EXPECT_LT(difference(single_layer(x, field, cell(3, 1), 1e-7), single_layer(x, field, cell(3, 0), 1e-7)), 1e-13);  // the shortest vectors are
+  EXPECT_LT(difference(single_layer(x, field, cell(3, 1), 1e-7), single_layer(x, field, cell(3, 0), 1e-7)), 1e-13);  // both have equal shortest
+                                                                                                                     // lattice vectors
   for (const double tolerance : {1e-4, 1e-7}) {
     EXPECT_LT(difference(single_layer(x, field, cell(3, 0.51), tolerance), single_layer(x, field, cell(3, -0.49), tolerance)), 1e-12);
     EXPECT_LT(difference(double_layer(x, field, cell(3, 0.5), tolerance), double_layer(x, field, cell(3, -0.5), tolerance)), tolerance);

@@ -20,7 +20,7 @@ namespace plane_wall_test {
 
 const PlaneWall level(Vec3(0.3, 0.2, -0.4), Vec3(0, 0, 1)), oblique(Vec3(0.1, -0.2, 0.3), Vec3(1, -2, 2));
 
-/// u at x0 of what the images of one node at y carry.
+/// Returns the velocity at x0 due to the images of one node at y with the strength `carried`.
 Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>& carried, const Vec3& y, const Vec3& x0) {
   ImageSum sum(kind, wall, {});
   const std::vector<double> node[3] = {{y[0]}, {y[1]}, {y[2]}};
@@ -31,14 +31,14 @@ Vec3 image(ImageSum::Kind kind, const PlaneWall& wall, const std::vector<double>
   return sum.sum(each).row(0).transpose();
 }
 
-/// G of (2.35).
+/// Returns G of (2.35).
 Mat3 green(const PlaneWall& wall, const Vec3& y, const Vec3& x0) {
   Mat3 g = stokeslet(y - x0);
   for (int j = 0; j < 3; ++j) g.col(j) += image(ImageSum::Kind::forces, wall, {j == 0 ? 1. : 0., j == 1 ? 1. : 0., j == 2 ? 1. : 0.}, y, x0);
   return g;
 }
 
-/// T S of (2.36).
+/// Returns T S of (2.36).
 Vec3 stress(const PlaneWall& wall, const Mat3& s, const Vec3& y, const Vec3& x0) {
   const Vec3 r = y - x0;
   return -6 * r * r.dot(s * r) / std::pow(r.norm(), 5) +
@@ -66,7 +66,7 @@ TEST(PlaneWall, KernelIsSymmetric) {
   }
 }
 
-/// By differences of fourth order.
+/// Returns the velocity gradient by finite differences of fourth order.
 Mat3 gradient(const auto& velocity, const Vec3& x) {
   constexpr double e = 1e-2;
   Mat3 l;
@@ -83,7 +83,7 @@ TEST(PlaneWall, FlowsAreFreeOfDivergence) {
   EXPECT_LT(std::abs(gradient([&](const Vec3& x) { return stress(oblique, symmetric, y, x); }, x0).trace()), 1e-6);
 }
 
-/// T S at x0 is the stress in y, times S, of the flow of a force at x0; without a trace of S its pressure does not count.
+/// T S at x0 equals S times the stress at y in the flow of a point force at x0. The pressure of this flow does not contribute if S is trace-free.
 TEST(PlaneWall, StressIsThatOfTheKernel) {
   const Vec3 y = above(oblique, 0.2, -0.3, 0.7), x0 = above(oblique, -0.6, 0.1, 0.5);
   const Mat3 s = symmetric - symmetric.trace() / 3 * Mat3::Identity();
@@ -93,7 +93,7 @@ TEST(PlaneWall, StressIsThatOfTheKernel) {
   }
 }
 
-/// The wall takes all of a force along it: 8 pi times the force is the integral of the slope of the flow there.
+/// The wall takes up the whole force if it is parallel to the wall: 8 pi times the force is the integral of the velocity gradient over the wall.
 TEST(PlaneWall, TakesTheForce) {
   const Vec3 y = above(level, 0, 0, 0.5);
   constexpr double e = 1e-4;
@@ -129,7 +129,7 @@ struct Surface {
     std::iota(all.begin(), all.end(), 0);
   }
 
-  /// The wall at this distance below it.
+  /// Returns the wall at this distance below the ellipsoid.
   PlaneWall below(double gap) const { return {Vec3(0, 0, -0.8 - gap), Vec3(0, 0, 1)}; }
 };
 

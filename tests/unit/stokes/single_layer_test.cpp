@@ -14,7 +14,7 @@
 namespace tanktread::stokes {
 namespace single_layer_test {
 
-/// A deformed surface of the smallest cube mesh, and a load on it.
+/// A deformed surface on the smallest cube mesh, and a load on it.
 struct Scene {
   spline::Space space;
   Net unstressed, x, f;
@@ -47,7 +47,7 @@ const Scene& scene() {
 
 double largest(const Net& u) { return u.rowwise().norm().maxCoeff(); }
 
-/// What is near, and which rule it gets, goes with the surface's own size: eight of them are as accurate as one.
+/// The choice of near panels and of their rules depends on the size of their own surface only: eight surfaces are integrated as accurately as one.
 TEST(SingleLayer, RulesOfASurfaceDoNotDependOnHowManyThereAre) {
   const Scene one;
   std::vector<const spline::Space*> spaces(8, &one.space);
@@ -92,7 +92,7 @@ TEST(SingleLayer, BlocksOfNearControlPointsAreThoseOfTheRows) {
     Rows<double> a;
     layer.assemble(scene().x, Measure::reference, scene().all, a);
     NearPoints near;
-    for (const int i : scene().all) {  // a few, the target among them
+    for (const int i : scene().all) {  // a few control points, including the target
       for (int j = i; j < scene().space.n_points; j += 17) near.point.push_back(j);
       near.first.push_back(near.point.size());
     }
@@ -118,7 +118,7 @@ TEST(SingleLayer, DoesNotDependOnHowTargetsAreSplit) {
   for (const int i : scene().all) (i % 2 ? odd : even).push_back(i);
   layer.apply(scene().x, scene().f, Measure::reference, odd, parts);
   layer.apply(scene().x, scene().f, Measure::reference, even, parts);
-  EXPECT_EQ(whole, parts);  // to the last bit
+  EXPECT_EQ(whole, parts);  // bitwise equal
 }
 
 TEST(SingleLayer, ForgetsEarlierShapes) {
@@ -127,7 +127,7 @@ TEST(SingleLayer, ForgetsEarlierShapes) {
   Net u = Net::Zero(scene().space.n_points, 3), v = u;
   for (const Net& x : {scene().unstressed, Net(2 * scene().x), scene().x}) used.apply(x, scene().f, Measure::reference, scene().all, u);
   fresh.apply(scene().x, scene().f, Measure::reference, scene().all, v);
-  EXPECT_EQ(u, v);  // a resumed run goes on to the last bit
+  EXPECT_EQ(u, v);  // a resumed run must be bitwise equal
 }
 
 TEST(SingleLayer, MovesAndTurnsWithTheSurface) {
@@ -135,13 +135,13 @@ TEST(SingleLayer, MovesAndTurnsWithTheSurface) {
   const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net moved = scene().apply((scene().x * turn.transpose()).rowwise() + Eigen::RowVector3d(5, -3, 2), scene().f * turn.transpose(),
                                   {.tolerance = 1e-10});
-  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // the rules choose metrics and distances anew
+  EXPECT_LT(largest(moved - u * turn.transpose()), 1e-9 * largest(u));  // rules are chosen for other metrics and distances
 }
 
 TEST(SingleLayer, ScalesWithLengthAndWithTheDensity) {
   const Net u = scene().apply(scene().x, scene().f, {.tolerance = 1e-6}),
             v = scene().apply(4 * scene().x, 0.5 * scene().f, {.tolerance = 1e-6});
-  EXPECT_LT(largest(v - 2 * u), 1e-13 * largest(u));  // same rules, powers of two
+  EXPECT_LT(largest(v - 2 * u), 1e-13 * largest(u));  // equal rules, scaled by powers of two
 }
 
 TEST(SingleLayer, MeasuresAgreeWhereTheSurfaceIsUnstressed) {
@@ -167,7 +167,7 @@ TEST(SingleLayer, FixedRuleOfThePaperIsGoodToSevenDigitsAtVertices) {
   const Net exact = scene().apply(scene().x, scene().f, {.tolerance = 1e-10});
   const Net fixed = scene().apply(scene().x, scene().f, {.rule = "fixed", .points = 8});
   EXPECT_LT(largest(fixed - exact), 1e-6 * largest(exact));
-  EXPECT_GT(largest(fixed - exact), 1e-9 * largest(exact));  // another rule it is
+  EXPECT_GT(largest(fixed - exact), 1e-9 * largest(exact));  // the rules differ
 }
 
 }  // namespace single_layer_test

@@ -10,7 +10,7 @@
 namespace tanktread::stokes {
 namespace single_precision_test {
 
-/// Nodes on a sphere about a place far from the origin, in any unit of length, that carry random numbers; targets beside some of them.
+/// Nodes with random strengths on a sphere about a point far from the origin, in any unit of length. Targets are close to some of the nodes.
 struct Scene {
   static constexpr int n = 1000;
   std::vector<double> x[3], q[6];
@@ -25,7 +25,7 @@ struct Scene {
       for (auto& component : q) component.push_back(normal(random));
     }
     for (int l = 0; l < far_block; ++l)
-      for (int c = 0; c < 3; ++c) {  // the first coincides with a node, the others come closer and closer to one
+      for (int c = 0; c < 3; ++c) {  // the first target coincides with a node, the others are at decreasing distances from one
         target[far_block * c + l] = x[c][static_cast<std::size_t>(10 * l)] + (l > 0 ? unit * normal(random) * std::pow(0.5, l) : 0);
         target[far_block * (3 + c) + l] = normal(random);
       }
@@ -39,7 +39,7 @@ struct Scene {
     return {n, x[0].data(), x[1].data(), x[2].data(), {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}};
   }
 
-  /// sum |q| / r^power over the nodes that do not coincide with target l.
+  /// Returns sum 10 / r^power over the nodes that do not coincide with target l, of the order of the sum of the magnitudes of the terms.
   double magnitude(int l, int power) const {
     double sum = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -51,7 +51,7 @@ struct Scene {
   }
 };
 
-/// Largest difference over what the terms add up to without their signs.
+/// Returns the largest error divided by the sum of the magnitudes of the terms.
 double largest_error(const Scene& scene, int power, const double* single, const double* full) {
   double largest = 0;
   for (int l = 0; l < far_block; ++l)
@@ -60,8 +60,8 @@ double largest_error(const Scene& scene, int power, const double* single, const 
   return largest;
 }
 
-// The bounds are 4 roundings of single precision, and 16 of a stresslet, which holds the fifth power of a rounded number. Without what single
-// precision leaves of a place they are exceeded a hundredfold.
+// The bounds are 4 rounding errors of single precision, and 16 for a stresslet, which contains the fifth power of a rounded value. Without the stored
+// remainders of the positions the errors are a hundred times larger.
 TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
   const double rounding = 0x1p-24;
   for (const double unit : {1e-9, 1e-6, 1., 1e9}) {

@@ -20,7 +20,7 @@ struct Cloud {
   std::vector<int> starts{0};
   std::vector<Vec3> targets;
 
-  /// `flatness` shrinks the cube of side 2 along its diagonal; a few targets are nodes.
+  /// `flatness` shrinks the cube of side 2 along its diagonal. A few targets coincide with nodes.
   Cloud(int nodes, int n_targets, double flatness) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> side(-1, 1);
@@ -48,7 +48,7 @@ struct Cloud {
     return u;
   }
 
-  /// Largest error at the wanted rows, relative to sum |f| / r there.
+  /// Returns the largest error of the wanted rows, relative to sum |f| / r at each target.
   double error(const Net& u, const std::vector<int>& wanted) const {
     double largest = 0;
     for (const int i : wanted) {
@@ -107,7 +107,7 @@ TEST(TreeSum, RowsDoNotDependOnWhichOthersAreWanted) {
   const std::vector<int> few = every(37, 1000);
   const Net part = cloud.sum(other, few), again = cloud.sum(tree, few);
   for (const int i : few) {
-    EXPECT_EQ(part.row(i), whole.row(i));  // to the last bit: ranks ask for different rows
+    EXPECT_EQ(part.row(i), whole.row(i));  // bitwise equal, because ranks compute different rows
     EXPECT_EQ(again.row(i), whole.row(i));
   }
 }
@@ -127,7 +127,7 @@ TEST(TreeSum, PassesOnWhatIsNotANumber) {
   Cloud cloud(2000, 300, 0.1);
   for (int k = 0; k < 2000; k += 3) cloud.x[k % 2][k] = NAN;
   TreeSum tree(1e-5);
-  EXPECT_FALSE(cloud.sum(tree, every(1, 300)).allFinite());  // and ends: a run that goes wrong asks for this
+  EXPECT_FALSE(cloud.sum(tree, every(1, 300)).allFinite());  // the call must also return, because a diverging run passes such values
 }
 
 /// A deformed sphere with enough elements for clusters, and a field on it.
@@ -162,13 +162,13 @@ TEST(TreeSum, MakesTheSingleLayerOfALoadToTheTolerance) {
     tree.apply(x, f, Measure::current, all, u);
     dense.apply(x, f, Measure::current, all, exact);
     EXPECT_LT(difference(u, exact), tolerance);
-    EXPECT_GT(difference(u, exact), 1e-15);  // another sum it is
+    EXPECT_GT(difference(u, exact), 1e-15);  // the sums differ
     EXPECT_LT(tree.evaluations().far, dense.evaluations().far);
   }
 }
 
 TEST(TreeSum, MakesTheSingleLayerOfASymmetricLoadFromAPartOfTheSurface) {
-  for (const int n : {6, 7}) {  // with 7, panels are images of themselves
+  for (const int n : {6, 7}) {  // with 7, some panels are images of themselves
     auto [space, x, f, all] = Surface(n);
     const Net* nets[] = {&x};
     const surface::Symmetry symmetry = surface::symmetry(space, nets, [](const surface::Image&) { return true; });
@@ -216,7 +216,7 @@ TEST(TreeSum, MakesTheDoubleLayerOfAVelocityToTheTolerance) {
     EXPECT_GT(difference(u, exact), 1e-15);
     tree.apply(0.5 * x, v, all, again);
     tree.apply(x, v, all, again);
-    EXPECT_EQ(again, u);  // nothing is remembered of another shape
+    EXPECT_EQ(again, u);  // no data of another shape are kept
   }
 }
 
@@ -255,7 +255,7 @@ TEST(TreeSum, IsChosenForLargeSurfacesOnly) {
   EXPECT_TRUE(chosen(24, {}));
   EXPECT_TRUE(chosen(6, {.far_sum = "tree"}));
   EXPECT_FALSE(chosen(24, {.far_sum = "dense"}));
-  EXPECT_FALSE(chosen(24, {.rule = "desingularised"}));  // its identities meet every node
+  EXPECT_FALSE(chosen(24, {.rule = "desingularised"}));  // its identities sum over every node
 }
 
 }  // namespace tree_sum_test

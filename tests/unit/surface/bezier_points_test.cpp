@@ -14,7 +14,7 @@ TEST(BezierPoints, BlocksHoldEveryElementOnceGroupedByDegree) {
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0].degree, 3);
   EXPECT_EQ(blocks[1].degree, 4);
-  EXPECT_EQ(blocks[1].elements.size(), 24u);  // three around each of eight extraordinary points
+  EXPECT_EQ(blocks[1].elements.size(), 24u);  // three around each of the eight extraordinary points
   std::vector<int> held(cube.space.elements.size(), 0);
   for (const Block& block : blocks)
     for (const int e : block.elements) {
@@ -55,13 +55,13 @@ TEST(BezierPoints, BackwardMapIsTheTranspose) {
 TEST(BezierPoints, DerivativesOfAPatchAreThoseOfItsPlaces) {
   const CubeMesh cube(3);
   const Net net = cube.crumpled(0.1);
-  for (const int e : {0, 4}) {  // at an extraordinary point, and regular
+  for (const int e : {0, 4}) {  // next to an extraordinary point, and regular
     const ElementPoints element(cube.space, net, e);
     const Patch patch = element.patch();
     const double s = 0.3, t = 0.8, h = 1e-4;
     const Jet at = jet(patch, s, t);
     EXPECT_LT((at.x - place(patch, s, t)).norm(), 1e-15);
-    // Central differences err by h^2 times a third derivative of order one, or by round-off over h^2 = 1e-8.
+    // The errors of central differences are h^2 times a third derivative of order one, or round-off divided by h^2 = 1e-8.
     EXPECT_LT(((place(patch, s + h, t) - place(patch, s - h, t)) / (2 * h) - at.s).norm(), 1e-7);
     EXPECT_LT(((place(patch, s, t + h) - place(patch, s, t - h)) / (2 * h) - at.t).norm(), 1e-7);
     EXPECT_LT(((jet(patch, s + h, t).s - jet(patch, s - h, t).s) / (2 * h) - at.ss).norm(), 1e-7);

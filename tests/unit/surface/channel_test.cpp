@@ -1,4 +1,4 @@
-// Channels: sections along a centre line, straight or bent, and the wall through them.
+// Tests of channels: sections along a straight or bent centre line, and the wall surface through them.
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(Channel, NarrowsAsItsProfileSays) {
   const Channel slit(step());
   EXPECT_NEAR(slit.section(0).factor[1], 0.5, 1e-14);
   EXPECT_NEAR(slit.section(0).factor[0], 1, 1e-14);
-  EXPECT_NEAR(slit.section(-0.9).factor[1], (1 + 0.2 - std::sqrt(0.04 - 0.01)) / 2, 1e-9);   // the edge's arc
+  EXPECT_NEAR(slit.section(-0.9).factor[1], (1 + 0.2 - std::sqrt(0.04 - 0.01)) / 2, 1e-9);   // the arc of the rounded edge
   EXPECT_NEAR(slit.section(1.1).factor[1], (2 - 0.2 + std::sqrt(0.04 - 0.01)) / 2, 1e-9);
   EXPECT_NEAR(slit.smallest_radius(), 1, 1e-12);
 }
@@ -92,9 +92,9 @@ TEST(Channel, HasAWallThroughItsSections) {
     double error = 0;
     for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e) {
       const Point p = point(wall.space, wall.net, {e, 0.3, 0.6});
-      EXPECT_LT(p.n.dot(Vec3(0, p.x[1], p.x[2])), 0);  // into the fluid
+      EXPECT_LT(p.n.dot(Vec3(0, p.x[1], p.x[2])), 0);  // normal into the fluid
       const double off = std::abs(p.x.tail<2>().norm() - channel->section(p.x[0]).factor[0]);
-      error = std::max(error, off);  // beside the jumps of the curvature at |s| = 2 as well, for knots are there
+      error = std::max(error, off);  // also near the jumps of the curvature at |s| = 2, because knots are there
     }
     if (before > 0) {
       EXPECT_GT(std::log2(before / error), 3.3);
@@ -119,7 +119,7 @@ TEST(Channel, HasCreasesWhereItsCurvatureJumps) {
     for (const auto& sites : wall.space.collocation)
       for (const spline::Site& site : sites)
         EXPECT_LT((value(wall.space, wall.net, site) - value(wall.space, wall.net, sites.front())).norm(), 1e-12);
-    for (int e = 0; e + 12 < static_cast<int>(wall.space.elements.size()); ++e)  // the surface has one normal there
+    for (int e = 0; e + 12 < static_cast<int>(wall.space.elements.size()); ++e)  // the normal of the surface is continuous there
       EXPECT_LT((point(wall.space, wall.net, {e, 1, 0.5}).n - point(wall.space, wall.net, {e + 12, 0, 0.5}).n).norm(), 1e-7);
   }
   EXPECT_EQ(Channel(step()).knots(40).size(), 41u) << "the sides of a step would have many points at one place";

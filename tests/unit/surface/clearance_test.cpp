@@ -12,7 +12,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// The smallest distance by brute force: on each element the best of a grid, then of finer and finer ones about the best so far.
+/// Returns the smallest distance by brute force: on each element the best point of a grid, refined repeatedly about the best point so far.
 double sampled(const Patches& surface, const Outline& outline) {
   double least = std::numeric_limits<double>::infinity();
   for (int e = 0; e < surface.size(); ++e) {
@@ -40,7 +40,7 @@ struct Scene {
   Outline outline;
 };
 
-/// The place found is as near to the outline as it says, and no sample is nearer, nor the nearest farther; with how much work.
+/// Checks that the point found has the reported distance, that no sample is nearer and the nearest sample not farther, and the work.
 void is_the_least(const Scene& scene, int most_pieces, double tolerance = 1e-7) {
   const Patches surface(BezierMap(scene.mesh.space), scene.net);
   const Clearance found = clearance(surface, scene.outline);
@@ -63,12 +63,12 @@ TEST(Clearance, IsTheLeastWhereverTheSurfaceComesNear) {
 TEST(Clearance, TakesLittleWorkWhereGapsAreEqual) {
   const CubeMesh mesh(6);
   const Net sphere = 0.6 * mesh.sphere();
-  is_the_least({sphere, mesh, ellipse(1, 1)}, 800);              // a belt
-  is_the_least({sphere, mesh, ellipse(1, 1).spline(24)}, 1500);  // a belt of minima that differ by 1e-6
-  is_the_least({sphere, mesh, square(1)}, 800);                  // four
-  is_the_least({sphere, mesh, trefoil(48)}, 800);                // three, where the wall curves the other way
-  is_the_least({sphere, mesh, ellipse(1.2, 0.9)}, 800);          // two
-  is_the_least({mesh.ellipsoid({1.5, 1.2, 0.8}), mesh, ellipse(1.3, 0.9)}, 3000);  // four in a gap that hardly varies
+  is_the_least({sphere, mesh, ellipse(1, 1)}, 800);              // minima on a circle
+  is_the_least({sphere, mesh, ellipse(1, 1).spline(24)}, 1500);  // minima on a circle that differ by 1e-6
+  is_the_least({sphere, mesh, square(1)}, 800);                  // four minima
+  is_the_least({sphere, mesh, trefoil(48)}, 800);                // three minima, where the wall is concave
+  is_the_least({sphere, mesh, ellipse(1.2, 0.9)}, 800);          // two minima
+  is_the_least({mesh.ellipsoid({1.5, 1.2, 0.8}), mesh, ellipse(1.3, 0.9)}, 3000);  // four minima in a gap of almost constant width
 }
 
 TEST(Clearance, IsNegativeOutside) {

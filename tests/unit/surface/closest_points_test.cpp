@@ -1,4 +1,4 @@
-// The nearest points of two surfaces: against brute force, and where the answer is known.
+// Tests of the closest points of two surfaces, against brute force and known results.
 
 #include <algorithm>
 #include <limits>
@@ -21,7 +21,7 @@ struct Shape {
   BezierMap map{space};
   Net sphere = initial_shape(space, mesh, {});
 
-  /// An uneven ellipsoid about a place.
+  /// Returns an irregular ellipsoid about a centre.
   Net bumpy(std::mt19937& random, const Vec3& centre) const {
     std::uniform_real_distribution<double> number(-1, 1);
     Mat3 stretch;
@@ -37,7 +37,7 @@ ClosestPoints closest(const Shape& shape, const Net& a, const Net& b, double bey
   return closest_points(ElementBoxes(first), ElementBoxes(second), 1e-8, beyond);
 }
 
-/// Over a grid of each element, so fine that it errs by less than 5e-3 between these shapes.
+/// Returns the distance on a grid in each element. The grid is so fine that the error is below 5e-3 for these shapes.
 double by_brute_force(const Shape& shape, const Net& a, const Net& b) {
   constexpr int n = 12;
   const auto points = [&](const Net& net) {
@@ -71,7 +71,7 @@ TEST(ClosestPoints, OfRandomSurfacesAreThoseOfAFineGrid) {
   }
 }
 
-/// The same surface, moved along its own third axis, by whose symmetry the two tops are nearest.
+/// The second surface is the first one, moved along its own third axis. By symmetry, the two tops are the closest points.
 TEST(ClosestPoints, OfEqualSurfacesAboveEachOtherAreTheirTops) {
   const Shape shape;
   const Patches patches(shape.map, shape.sphere);
@@ -101,7 +101,7 @@ TEST(ClosestPoints, OfSurfacesThatMeetHaveNoGap) {
   EXPECT_LT(closest(shape, shape.sphere, other).gap, 1e-7);
 }
 
-/// A sphere on the axis of a tube: beside its equator, within reach, and nowhere else.
+/// A sphere on the axis of a tube: the film is within reach near the equator only.
 TEST(FilmWidths, BesideTheWallOfATube) {
   const Shape shape;
   TubeOptions options;
@@ -110,7 +110,7 @@ TEST(FilmWidths, BesideTheWallOfATube) {
   const Patches sphere(shape.map, shape.sphere), around(BezierMap(wall.space), wall.net);
   const Patches* const others[] = {&around};
   const std::vector<double> widths = film_widths(sphere, others, 0.25);
-  EXPECT_NEAR(*std::ranges::min_element(widths), 0.1, 3e-3);  // the sphere's fit, and what elements bend away from their tangent planes
+  EXPECT_NEAR(*std::ranges::min_element(widths), 0.1, 3e-3);  // the sphere's fit, and the distance of elements from their tangent planes
   for (int e = 0; e < sphere.size(); ++e)
     if (place(sphere[e], 0.5, 0.5).tail<2>().norm() < 0.3) {
       EXPECT_EQ(widths[static_cast<std::size_t>(e)], std::numeric_limits<double>::infinity());

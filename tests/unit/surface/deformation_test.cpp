@@ -13,7 +13,7 @@ namespace {
 struct Axes {
   double longest, shortest, angle;
 };
-/// Semi-axes of the ellipse x.A x = 1 and the angle of the long one with the first coordinate, degrees.
+/// Returns the semi-axes of the ellipse x.A x = 1, and the angle of the long axis with the first coordinate, in degrees.
 Axes ellipse(const Eigen::Matrix2d& a) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(a);
   const Eigen::Vector2d v = solver.eigenvectors().col(0);
@@ -80,7 +80,7 @@ TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
         }
       }
     }
-    // Sampling falls short by curvature times the square of its spacing, 1/240 of a face; straight cuts of the grid add as much.
+    // The sampling error is the curvature times the square of the spacing, 1/240 of a face; straight cuts of the grid add the same amount.
     const double spacing = 2e-4;
     for (int c = 0; c < 3; ++c) {
       EXPECT_GE(coordinate[c].largest, high[c]);
@@ -94,15 +94,15 @@ TEST(Deformation, ExtremesOfACrumpledSurfaceBoundWhatDenseSamplingFinds) {
 }
 
 TEST(Deformation, ExtremesDoNotDependOnWhereElementsMeetThePlane) {
-  // Aligned, the section runs along element edges; turned about x2, through the elements. The section of an ellipsoid of revolution about x2 with
-  // circular section stays the same circle; here the surface itself is turned, so values agree to round-off.
+  // Aligned, the section runs along element edges; rotated about x2, through the elements. The section of an ellipsoid of revolution about x2 with
+  // circular section stays the same circle. Here the surface itself is rotated, so values agree to round-off.
   const CubeMesh cube(6);
   ParticleShape shape;
   shape.shape = "ellipsoid";
   shape.semi_axes = Vec3(1.5, 1.0, 0.8);
   const Deformation aligned = Geometry(cube.space).deformation(cube.shape(shape));
   EXPECT_NEAR(aligned.inclination, 0, 1e-10);
-  shape.orientation = Vec3(0, -25, 0);  // lifts x1 towards x3
+  shape.orientation = Vec3(0, -25, 0);  // rotates x1 towards x3
   const Deformation turned = Geometry(cube.space).deformation(cube.shape(shape));
   EXPECT_NEAR(turned.taylor_surface, aligned.taylor_surface, 1e-10);
   EXPECT_NEAR(turned.taylor_inertia, aligned.taylor_inertia, 1e-12);
@@ -114,14 +114,14 @@ TEST(Deformation, AnUprightParticleIsInclinedBy90DegreesWhateverTheRounding) {
   ParticleShape shape;
   shape.shape = "ellipsoid";
   shape.semi_axes = Vec3(0.8, 1.0, 1.5);
-  for (const double tilt : {0.0, 1e-10, -1e-10}) {  // degrees; far above the rounding of moments
+  for (const double tilt : {0.0, 1e-10, -1e-10}) {  // degrees; far above the round-off of the moments
     shape.orientation = Vec3(0, tilt, 0);
     EXPECT_NEAR(Geometry(cube.space).deformation(cube.shape(shape)).inclination, 90, 1e-9) << tilt;
   }
 }
 
 TEST(Deformation, InclinationIsUndefinedIfTheTwoSemiAxesInThePlaneAreEqual) {
-  const CubeMesh cube(3);  // fits a sphere with semi-axes that are equal to round-off; on four elements they differ by 2.5e-7
+  const CubeMesh cube(3);  // here a fitted sphere has equal semi-axes to round-off; on four elements they differ by 2.5e-7
   for (const double radius : {1.0, 4e-6}) {
     const auto inclination = [&](const Vec3& axes) {
       ParticleShape shape;
@@ -131,7 +131,7 @@ TEST(Deformation, InclinationIsUndefinedIfTheTwoSemiAxesInThePlaneAreEqual) {
     };
     EXPECT_TRUE(std::isnan(inclination(Vec3(1, 1, 1))));
     EXPECT_TRUE(std::isnan(inclination(Vec3(1 + 0.8e-6, 1, 1))));
-    EXPECT_NEAR(inclination(Vec3(1 + 1.2e-6, 1, 1)), 0, 1e-3);  // round-off of the moments over the difference
+    EXPECT_NEAR(inclination(Vec3(1 + 1.2e-6, 1, 1)), 0, 1e-3);  // round-off of the moments divided by the difference
     EXPECT_NEAR(inclination(Vec3(1, 1, 1 + 1.2e-6)), 90, 1e-3);
     EXPECT_TRUE(std::isnan(inclination(Vec3(1, 2, 1)))) << "the axes in the plane are equal";
     EXPECT_NEAR(inclination(Vec3(1, 1, 0.5)), 0, 1e-9) << "only the plane's own axes matter";
@@ -154,7 +154,7 @@ TEST(PrincipalAxes, AreDefinedIfTheyDiffer) {
 }
 
 TEST(Deformation, ExtentsAreAlsoFoundOnSidesAndCornersOfElements) {
-  // The poles x_i = +-a_i of an aligned ellipsoid are element corners for even n, element middles for odd n.
+  // The poles x_i = +-a_i of an aligned ellipsoid are at element corners for even n, in the middle of elements for odd n.
   for (const int n : {5, 6}) {
     const CubeMesh cube(n);
     const Deformation d = Geometry(cube.space).deformation(cube.ellipsoid({1.3, 1.0, 0.8}));

@@ -46,7 +46,7 @@ TEST(Extremes, OfNoElementsAreOfNothingAndASurfaceThatThePlaneMissesIsRefused) {
   EXPECT_THROW(geometry.deformation(net, measures), RunFailure);
 }
 
-// Where the section is a circle, all but, what is sampled on chords does not tell near from far.
+// If the section is nearly a circle, samples on chords do not distinguish near from far.
 TEST(Extremes, OfACoarsePolarSphereAreInOrderInEveryPlane) {
   const spline::PolarMesh mesh{8, 5, spline::PoleRule::c1};
   const spline::Space space = spline::space(mesh);
@@ -61,7 +61,7 @@ TEST(Extremes, OfACoarsePolarSphereAreInOrderInEveryPlane) {
       const Mat3 q = (Eigen::AngleAxisd(tilt, Vec3::UnitX()) * Eigen::AngleAxisd(turn * std::numbers::pi / 90, Vec3::UnitZ())).toRotationMatrix();
       const Range range = section_distances(Patches(map, sphere * q.transpose(), all), Vec3::Zero());
       EXPECT_LE(range.smallest, range.largest) << tilt << " " << turn;
-      EXPECT_NEAR(range.smallest, 1, 0.02) << tilt << " " << turn;  // what eight elements around leave
+      EXPECT_NEAR(range.smallest, 1, 0.02) << tilt << " " << turn;  // the error with eight elements around
       EXPECT_NEAR(range.largest, 1, 0.02) << tilt << " " << turn;
     }
 }

@@ -10,7 +10,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Largest distance of a fit to the affine image of a net from the affine image itself, which is in the space.
+/// Returns the largest distance between the affine image of a net, which is in the space, and its fit.
 double defect(const spline::Space& space) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
@@ -22,7 +22,7 @@ double defect(const spline::Space& space) {
   return (fitted - ((net * map.transpose()).rowwise() + shift.transpose())).rowwise().norm().maxCoeff();
 }
 
-constexpr double round_off = 1e-11;  // of numbers up to 7, times the condition of the matrix
+constexpr double round_off = 1e-11;  // for values up to 7, times the condition number of the matrix
 
 TEST(LeastSquaresFit, FindsWhatLiesInTheSpace) {
   EXPECT_LT(defect(CubeMesh(4).space), round_off);

@@ -19,7 +19,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The same integrals by a plain loop with twelve points a direction, from the definitions.
+/// Computes the same integrals from their definitions, by a plain loop with twelve points per direction.
 Measures reference(const spline::Space& space, const Net& net) {
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(12);
   Measures result;
@@ -46,12 +46,12 @@ TEST(Geometry, VolumeAndMomentsAreExactForPolynomialElements) {
   const CubeMesh cube(3);
   const Net net = cube.crumpled(0.1);
   const Measures fast = measures(cube.space, net), exact = reference(cube.space, net);
-  // Both rules are exact: what differs is the order of sums of some thousand terms.
+  // Both rules are exact: only the order of sums of some thousand terms differs.
   EXPECT_NEAR(fast.volume, exact.volume, 1e-12);
   EXPECT_NEAR(volume(cube.space, net), exact.volume, 1e-12);
   EXPECT_LT((fast.centroid - exact.centroid).norm(), 1e-12);
   EXPECT_LT((fast.second_moments - exact.second_moments).norm(), 1e-12);
-  // The area is not a polynomial; on such a coarse, crumpled surface eight points against twelve.
+  // The area is not a polynomial; this coarse, crumpled surface shows the difference between eight and twelve points.
   EXPECT_NEAR(fast.area, exact.area, 1e-4);
 }
 
@@ -64,13 +64,13 @@ TEST(Geometry, EllipsoidIsMeasuredToTheOrderOfItsFit) {
     const Measures m = measures(cube.space, net);
     const Eigen::SelfAdjointEigenSolver<Mat3> principal(m.second_moments);
     const Vec3 fitted = (5 / m.volume * principal.eigenvalues().reverse()).cwiseSqrt();  // (6.1)
-    EXPECT_LT((m.centroid - place).norm(), 1e-12);  // by symmetry, whatever the fit
+    EXPECT_LT((m.centroid - place).norm(), 1e-12);  // by symmetry, for any fit
     const double error = std::abs(m.volume / (4 * pi / 3 * axes.prod()) - 1);
     const double error_axes = (fitted - axes).norm();
     EXPECT_LT(error, n == 3 ? 1e-5 : n == 6 ? 1e-6 : 1e-8);
     EXPECT_LT(error_axes, n == 3 ? 1e-5 : n == 6 ? 1e-6 : 1e-8);
     if (n == 12) {
-      EXPECT_LT(error_axes, before / 16);  // at least fourth order; at n = 3 the error happens to change sign
+      EXPECT_LT(error_axes, before / 16);  // at least fourth order; at n = 3 the error changes sign by chance
     }
     before = error_axes;
   }
@@ -99,7 +99,7 @@ TEST(Geometry, VolumeGradientIsTheDerivativeOfTheVolume) {
       moved(a, c) += h;
       const double above = geometry.volume(moved);
       moved(a, c) -= 2 * h;
-      // V is a cubic polynomial of which a coordinate of one point appears linearly: central differences are exact but for round-off.
+      // V is a cubic polynomial that is linear in each coordinate of one point, so central differences are exact up to round-off.
       EXPECT_NEAR(b(a, c), (above - geometry.volume(moved)) / (2 * h), 1e-11);
     }
   }
@@ -113,7 +113,7 @@ TEST(Geometry, VolumeGradientObeysTranslationAndScaling) {
   EXPECT_NEAR(b.cwiseProduct(net).sum(), 3 * volume(cube.space, net), 1e-12);  // V is homogeneous of degree three
   Vec3 torque = Vec3::Zero();
   for (int a = 0; a < net.rows(); ++a) torque += Vec3(net.row(a)).cross(Vec3(b.row(a)));
-  EXPECT_LT(torque.norm(), 1e-12);  // a rotation keeps the volume
+  EXPECT_LT(torque.norm(), 1e-12);  // a rotation does not change the volume
 }
 
 TEST(Geometry, AShareOfTheElementsGivesItsRowsToTheLastBit) {
@@ -144,7 +144,7 @@ TEST(Geometry, SharedBlocksOfElementsGiveMeasuresToTheLastBit) {
   const Measures whole = geometry.measures(net);
   ASSERT_GT(geometry.n_blocks(), 2);
   std::vector<double> moments(geometry.block_moments(net, {}).size(), 0.);
-  for (int b = geometry.n_blocks(); b-- > 0;) {  // zeros of the others change nothing, in any order
+  for (int b = geometry.n_blocks(); b-- > 0;) {  // adding the zeros of other blocks changes nothing, in any order
     const std::vector<double> m = geometry.block_moments(net, std::span(&b, 1));
     for (std::size_t k = 0; k < m.size(); ++k) moments[k] += m[k];
   }
@@ -162,7 +162,7 @@ TEST(Geometry, FarFromTheOriginNothingIsLost) {
   const Deformation shape = geometry.deformation(net);
   net.col(0).array() += 1e3;
   net.col(2).array() -= 1e3;
-  // Coordinates of 1e3 carry round-off of 1e-13.
+  // Coordinates of 1e3 have round-off of 1e-13.
   EXPECT_NEAR(geometry.volume(net), here.volume, 1e-11);
   EXPECT_LT((geometry.measures(net).second_moments - here.second_moments).norm(), 1e-11);
   EXPECT_NEAR(geometry.deformation(net).taylor_inertia, shape.taylor_inertia, 1e-11);
@@ -183,7 +183,7 @@ TEST(Geometry, NormalsPointOutwardEverywhere) {
   }
 }
 
-/// Root mean square error of the mean curvature on a sphere of radius 2 and on a spheroid, relative to its size.
+/// Returns the root mean square error of the mean curvature on a sphere of radius 2 or on a spheroid, relative to the exact value.
 double curvature_error(int n, bool spheroid) {
   const CubeMesh cube(n);
   const Vec3 axes = spheroid ? Vec3(1, 1, 1.5) : Vec3(2, 2, 2);
@@ -208,7 +208,7 @@ double curvature_error(int n, bool spheroid) {
 TEST(Geometry, MeanCurvatureOfSphereAndSpheroidConverges) {
   for (const bool spheroid : {false, true}) {
     const double coarse = curvature_error(6, spheroid), fine = curvature_error(12, spheroid), finest = curvature_error(24, spheroid);
-    // First order overall: the curvature around the extraordinary points, on a share h^2 of the surface, does not converge.
+    // First order overall: around the extraordinary points, on a fraction h^2 of the surface, the curvature does not converge.
     EXPECT_GT(std::log2(coarse / fine), 0.9);
     EXPECT_GT(std::log2(fine / finest), 0.9);
     EXPECT_LT(finest, 5e-3);

@@ -26,13 +26,13 @@ TEST(Metrics, MidLinesOfASphereMeasureItsElementsAndHaveNoCurvatureVariation) {
       largest = std::max(largest, line.curvature * line.length);
     }
   }
-  // An element covers 4 pi/(6 n^2) of area, so its mean mid-line is a little below sqrt(4 pi/6)/n, the side of a square.
+  // An element has the area 4 pi/(6 n^2), so its mean mid-line is slightly shorter than sqrt(4 pi/6)/n, the side of a square.
   EXPECT_NEAR(sum / (12 * n * n) * n, std::sqrt(4 * 3.14159265 / 6), 0.05);
-  EXPECT_LT(largest, 0.05);  // chi = 1 everywhere but for the error of the fit at the extraordinary points
+  EXPECT_LT(largest, 0.05);  // chi = 1 everywhere up to the error of the fit at the extraordinary points
 }
 
 TEST(Metrics, ALinearFieldVariesAlongMidLinesAsTheyAreLong) {
-  // phi = x itself: |phi(end) - phi(start)| / L is chord over arc, one but for the curvature of the element.
+  // phi = x itself: |phi(end) - phi(start)| / L is the ratio of chord to arc, which is one up to the curvature of the element.
   const CubeMesh cube(12);
   const Net net = cube.sphere();
   const auto metrics = element_metrics(cube.mesh, cube.space, net, {field_of_net(cube.space, net), field_of_net(cube.space, net)});
@@ -76,7 +76,7 @@ TEST(Metrics, AStretchedSphereHasTheAspectRatioOfTheStretch) {
 }
 
 TEST(Metrics, TractionIsPerCurrentArea) {
-  // A uniform load per reference area on a sphere blown up to twice its size is a quarter of it per current area, everywhere.
+  // A uniform load per reference area on a sphere inflated to twice its radius is a quarter of it per current area, everywhere.
   const CubeMesh cube(4);
   const Net rest = cube.sphere(), net = 2 * rest;
   const Net load = Net::Ones(cube.space.n_points, 3);
@@ -85,7 +85,7 @@ TEST(Metrics, TractionIsPerCurrentArea) {
 }
 
 TEST(Metrics, CuttingAnElementHalvesItsMidLineAndLeavesTheOthersAsTheyAre) {
-  // Refinement is exact, so what is measured on elements that stay does not change, although T-junctions now split Bezier elements.
+  // Refinement is exact, so the metrics of unchanged elements stay the same, although T-junctions now divide Bezier elements.
   spline::TMesh mesh = spline::cube(8, 2);
   const auto rule = spline::ExtraordinaryRule::catmull_clark;
   const spline::Space coarse = spline::space(mesh, rule);

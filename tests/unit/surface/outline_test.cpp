@@ -112,7 +112,7 @@ TEST(Outline, FindsTheNearestPlaceAndTheSide) {
   for (const Outline& o : outlines)
     for (int i = 0; i < 60; ++i) {
       const Vec2 p(2.3 * std::sin(1.7 * i), 1.9 * std::cos(2.3 * i + 1));
-      double least = 1e300, turns = 0;  // winding by the sum of the angles
+      double least = 1e300, turns = 0;  // winding number, from the sum of the angles
       for (int k = 0; k < o.n_sides(); ++k) {
         const auto u = o.knots(k, 4000);
         for (std::size_t j = 0; j + 1 < u.size(); ++j) {
@@ -123,7 +123,7 @@ TEST(Outline, FindsTheNearestPlaceAndTheSide) {
       }
       const Nearest n = o.nearest(p);
       EXPECT_LE(std::abs(n.distance), least + 1e-12);
-      EXPECT_GE(std::abs(n.distance), least - 4e-3);  // half the distance of the samples
+      EXPECT_GE(std::abs(n.distance), least - 4e-3);  // half the spacing of the samples
       EXPECT_NEAR((n.x - p).norm(), std::abs(n.distance), 1e-13);
       EXPECT_LT((o.point(n.side, n.u) - n.x).norm(), 1e-13);
       EXPECT_EQ(o.inside(p), turns > pi) << p.transpose();
@@ -137,7 +137,7 @@ TEST(Outline, TellsInsideFromOutsideCloseToItself) {
       for (const double u : o.knots(k, 37))
         for (const double d : {1e-2, 1e-6, 1e-10}) {
           const auto [first, last] = range(o.side(k));
-          if (!o.smooth() && std::min(u - first, last - u) < 2 * d) continue;  // at a corner both may be the same side
+          if (!o.smooth() && std::min(u - first, last - u) < 2 * d) continue;  // near a corner, the nearest point may be on another side
           EXPECT_NEAR(o.distance(o.point(k, u) - d * o.normal(k, u)), d, 1e-14);
           EXPECT_NEAR(o.distance(o.point(k, u) + d * o.normal(k, u)), -d, 1e-14);
         }
@@ -173,7 +173,7 @@ TEST(Outline, RefusesSidesThatCrossOrRunClockwise) {
   EXPECT_EQ(message({{0, 0}, {0, 1}, {1, 0}}), "The outline must run counter-clockwise, from x2 towards x3, but runs clockwise.");
 }
 
-/// A file that lives as long as the test.
+/// A file that exists as long as the test.
 class OutlineFile : public testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
@@ -183,7 +183,7 @@ class OutlineFile : public testing::Test {
     return read_outline(path_);
   }
 
-  /// What follows the name of the file.
+  /// Returns the error message after the name of the file.
   std::string refusal(const std::string& text) const {
     try {
       read(text);
@@ -208,7 +208,7 @@ class OutlineFile : public testing::Test {
 TEST_F(OutlineFile, OfPointsOnACircleIsACircle) {
   const Outline o = read("# a comment\nx2,x3\n" + ring(48) + "\n");
   EXPECT_TRUE(o.smooth());
-  EXPECT_NEAR(o.radius(), 1, 1e-5);  // order 4, and the six digits of the file
+  EXPECT_NEAR(o.radius(), 1, 1e-5);  // order 4, and six digits in the file
   EXPECT_NEAR(o.distance({0.2, 0.1}), 1 - std::sqrt(0.05), 2e-5);
   EXPECT_NEAR(read(ring(48) + "1, 1e-9\n").area(), o.area(), 1e-14) << "the first point may stand at the end again";
 }

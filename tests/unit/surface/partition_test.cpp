@@ -34,7 +34,7 @@ TEST(Partition, BalancesElementsPointsAndCost) {
     const Partition p = partition(cube.space, parts, cost);
     const std::vector<double> costs = cost_by_part(p, cost);
     const double mean = std::accumulate(costs.begin(), costs.end(), 0.) / parts;
-    EXPECT_LT(*std::max_element(costs.begin(), costs.end()), 1.08 * mean) << parts;  // an element of cost 3 is a tenth of a part of 36
+    EXPECT_LT(*std::max_element(costs.begin(), costs.end()), 1.08 * mean) << parts;  // an element of cost 3 is a tenth of a part of cost 36
     std::vector<int> points(parts, 0);
     for (const int owner : p.point_owner) ++points[owner];
     EXPECT_LT(*std::max_element(points.begin(), points.end()), 1.05 * cube.space.n_points / parts) << parts;
@@ -64,7 +64,7 @@ TEST(Partition, PartsAreCompactEnoughThatSharesOverlapLittle) {
   const Partition p = partition(cube.space, 2);
   std::size_t sum = 0;
   for (int rank = 0; rank < 2; ++rank) sum += share(cube.space, p, rank).elements.size();
-  // Four rows of elements along a cut of some 48 elements are done twice: less than a third of 864.
+  // Four rows of elements along a cut of about 48 elements are evaluated twice: less than a third of 864.
   EXPECT_LT(sum, 4 * cube.space.elements.size() / 3);
 }
 

@@ -17,10 +17,10 @@ namespace {
 using spline::PoleRule;
 const PoleRule every_rule[] = {PoleRule::plain, PoleRule::bezier_transform, PoleRule::c1};
 
-/// The paper's spheroid: V = 1, b/a = 1.5, poles on the long axis.
+/// Semi-axes of the paper's spheroid: V = 1, b/a = 1.5, poles on the long axis.
 const Vec3 spheroid_axes(0.5419260701, 0.5419260701, 0.8128891052);
 
-/// L2 norm over the surface of the error in the normal, of the image of the sphere under x -> axes * x against the ellipsoid.
+/// Returns the L2 norm over the surface of the error in the normal: image of the sphere under x -> axes * x compared with the ellipsoid.
 double normal_error(const spline::PolarMesh& mesh, const Vec3& axes) {
   const spline::Space space = spline::space(mesh);
   const Net net = unit_sphere(mesh, space) * axes.asDiagonal();
@@ -38,8 +38,8 @@ double normal_error(const spline::PolarMesh& mesh, const Vec3& axes) {
 }
 
 TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
-  // 42, 146, 546 and 2114 points; a least-squares fit of places gives 8.7e-3, 1.0e-3, 1.2e-4 and 1.5e-5, the paper's best of 546 is
-  // 8.947e-5.
+  // 42, 146, 546 and 2114 points. A least-squares fit of positions gives 8.7e-3, 1.0e-3, 1.2e-4 and 1.5e-5. The paper's best result with 546 points
+  // is 8.947e-5.
   const double table[] = {6.52e-3, 7.26e-4, 8.78e-5, 1.086e-5};
   for (const PoleRule rule : {PoleRule::plain, PoleRule::c1}) {
     double before = 0;
@@ -56,7 +56,7 @@ TEST(PolarSphere, NormalOfThePapersSpheroidIsBetterThanThePapers) {
 }
 
 TEST(PolarSphere, TransformErrsAtThePolesByTheAngleOfAPiece) {
-  // On the unit sphere, 146 points: what the transform adds to the error of the plain mesh halves with each subdivision.
+  // On the unit sphere with 146 points, the error that the transform adds to that of the plain mesh halves with each subdivision.
   const double plain = normal_error({16, 8, PoleRule::plain}, Vec3::Ones());
   double before = 0;
   for (int n = 0; n <= 4; ++n) {
@@ -105,13 +105,13 @@ TEST(PolarSphere, ConvergesOnUnequalMeshes) {
   }
 }
 
-// A long slide of close rows along the meridian would fold the surface onto itself, and its area would be 2 to 10 % too large.
+// A long slide of closely spaced rows along the meridian would fold the surface, and its area would be 2 to 10 % too large.
 TEST(PolarSphere, IsNotFoldedWhereRowsAreCloserThanThePointsOfARow) {
   for (const auto& [m, r] : {std::array{16, 32}, {16, 48}, {24, 96}})
     for (const PoleRule rule : {PoleRule::c1, PoleRule::bezier_transform}) {
       const spline::PolarMesh mesh{m, r, rule};
       const spline::Space space = spline::space(mesh);
-      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // of 16 points a row
+      EXPECT_NEAR(measures(space, unit_sphere(mesh, space, 2)).area / (4 * std::numbers::pi), 1, 2e-5) << m << " " << r;  // for 16 points per row
     }
 }
 
@@ -122,14 +122,14 @@ TEST(PolarShapes, StandWhereTheDeckPutsThem) {
     ParticleShape shape;
     shape.shape = "spheroid";
     shape.semi_axes = Vec3(2, 1, 1);
-    shape.orientation = Vec3(0, 0, 90);  // turns the particle's x1 into x2
+    shape.orientation = Vec3(0, 0, 90);  // rotates the particle's x1 to x2
     shape.center = Vec3(1, 2, 3);
     const Net net = initial_shape(space, mesh, 0, shape);
     const Deformation d = Geometry(space).deformation(net);
     EXPECT_NEAR(d.lengths[0], 2, 1e-3);
     EXPECT_NEAR(d.lengths[1], 4, 1e-3);
     EXPECT_LT((measures(space, net).centroid - shape.center).norm(), 1e-5);
-    EXPECT_NEAR(net(0, 1), 0, 1e-2);  // the pole behind at the end of the long axis
+    EXPECT_NEAR(net(0, 1), 0, 1e-2);  // the pole at the negative end of the long axis
   }
 }
 

@@ -15,7 +15,7 @@ TEST(Quality, AFittedSphereIsEven) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   const Quality q = quality(map, cube.sphere());
-  EXPECT_GT(q.jacobian_ratio, 0.4);  // the corners of the cube are the most uneven
+  EXPECT_GT(q.jacobian_ratio, 0.4);  // the elements at the corners of the cube are the most uneven
   EXPECT_LT(q.aspect_ratio, 1.5);
   EXPECT_NO_THROW(require_sound(q));
 }
@@ -49,7 +49,7 @@ TEST(Quality, AFoldedElementIsNamedWithItsPlace) {
   const CubeMesh cube(6);
   const BezierMap map(cube.space);
   Net net = cube.sphere();
-  // A control point pulled over its neighbour: a fold between them.
+  // A control point moved past its neighbour makes a fold between them.
   const spline::Element& element = cube.space.elements[14];
   const Net before = net;
   net.row(element.points[5]) += 3 * (net.row(element.points[6]) - net.row(element.points[5]));

@@ -24,7 +24,7 @@ double largest_surface_error(const std::vector<std::array<Resolution, 2>>& all) 
 }
 
 TEST(Resolution, AParticleThatHasKeptItsShapeHasNoError) {
-  // Turned, moved and blown up: x = c Q X + d, and F = c Q.
+  // Rotated, translated and inflated: x = c Q X + d, so F = c Q.
   const CubeMesh cube(6, spline::ExtraordinaryRule::catmull_clark);
   const Net rest = cube.sphere();
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
@@ -33,7 +33,7 @@ TEST(Resolution, AParticleThatHasKeptItsShapeHasNoError) {
 }
 
 TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
-  // phi = (n x)^4 in the coordinate of the face: the fourth difference is 4! = 24 wherever five places lie on one face.
+  // phi = (n x)^4 in the coordinate of the face: the fourth difference is 4! = 24 if five points lie on one face.
   const int n = 8;
   const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
   const Net rest = cube.sphere();
@@ -45,7 +45,7 @@ TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
     const int unit = tiles[e].width;
     if (tiles[e].x < 3 * unit || tiles[e].x > (n - 4) * unit || tiles[e].y < 3 * unit || tiles[e].y > (n - 4) * unit) continue;
     ++counted;
-    EXPECT_NEAR(found[e][0].errors.load, 24. / 384, 1e-9);  // of numbers up to 4096
+    EXPECT_NEAR(found[e][0].errors.load, 24. / 384, 1e-9);  // round-off of values up to 4096
     EXPECT_NEAR(found[e][1].errors.load, 0, 1e-9);
   }
   EXPECT_EQ(counted, 6 * 2 * 2);
@@ -64,13 +64,13 @@ TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
   };
   const Errors coarse = errors(12), fine = errors(24);
   for (const double order : {std::log2(coarse.load / fine.load), std::log2(coarse.fields / fine.fields)}) {
-    EXPECT_GT(order, 3.5);  // the lines at extraordinary points, a share of 1/n of them, have a lower one
+    EXPECT_GT(order, 3.5);  // lines at extraordinary points, a fraction 1/n of all lines, have a lower order
     EXPECT_LT(order, 4.1);
   }
 }
 
 TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
-  // Of q = x only the difference across the surface counts, not what the parameters do along it, which do not turn smoothly there.
+  // The field is q = x. Its fourth differences along the surface come from the parametrisation, which is not smooth at extraordinary points.
   const auto largest = [](int n, double Errors::*which) {
     const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
     const Net rest = cube.sphere();
@@ -80,8 +80,8 @@ TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
       most = std::max({most, element[0].errors.*which, element[1].errors.*which});
     return most;
   };
-  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // by 8 at an extraordinary point, as of the surface
-  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // of the same values, but as a load: it shows what is left out
+  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // by about 8 at an extraordinary point
+  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // with the fourth differences along the surface
 }
 
 TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {
@@ -99,7 +99,7 @@ TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {
     return sum / static_cast<double>(spline::elements(mesh).tiles.size());
   };
   const double was = errors(coarse, before, rest, &Resolution::errors);
-  EXPECT_NEAR(errors(fine, after, same, &Resolution::merged), was, 0.03 * was);  // edges in the middle of an element are looked at too
+  EXPECT_NEAR(errors(fine, after, same, &Resolution::merged), was, 0.03 * was);  // edges inside the doubled element are included too
   EXPECT_NEAR(errors(coarse, before, rest, &Resolution::merged), 16 * was, 1e-12 * was);
 }
 
@@ -113,7 +113,7 @@ TEST(Resolution, OfAPolarMeshIsNoneWhereTheShapeIsKeptAndFiniteAtThePoles) {
   const PolarSphere sphere;
   const Net net = (1.7 * sphere.net).rowwise() + Vec3(0.3, -2, 1).transpose();
   EXPECT_LT(largest_surface_error(resolution(sphere.mesh, sphere.space, sphere.net, net, {})), 1e-15);
-  // phi = x J0/J with J = 1.7^2 J0: what varies at a pole has a limit there.
+  // phi = x J0/J with J = 1.7^2 J0: the quotient has a limit at a pole.
   const Net load = 1.7 * 1.7 * sphere.net;
   const auto found = resolution(sphere.mesh, sphere.space, sphere.net, net, per_current_area(sphere.space, sphere.net, net, load));
   const auto tiles = spline::elements(sphere.mesh).tiles;
@@ -122,10 +122,10 @@ TEST(Resolution, OfAPolarMeshIsNoneWhereTheShapeIsKeptAndFiniteAtThePoles) {
     const bool at_pole = spline::is_degenerate(*sphere.mesh.lattice, tiles[e]);
     EXPECT_EQ(at_pole, e < 12 || e >= 12 * 7);
     EXPECT_GT(found[e][1].length, 0.2);
-    EXPECT_GT(found[e][0].length, at_pole ? 0.15 : 0.2);  // of the side that is not the pole
-    // sin(x) has the fourth difference 16 sin(d/2)^4 sin(x): below d^4 for d = pi/8 along a meridian, pi/6 around.
+    EXPECT_GT(found[e][0].length, at_pole ? 0.15 : 0.2);  // length of the side that is not the pole
+    // sin(x) has the fourth difference 16 sin(d/2)^4 sin(x), which is below d^4, with d = pi/8 along a meridian and pi/6 around.
     EXPECT_LT(found[e][0].errors.load, std::pow(3.15 / 6, 4) / 384);
-    EXPECT_LT(found[e][1].errors.load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not quite even
+    EXPECT_LT(found[e][1].errors.load, 1.3 * std::pow(3.15 / 8, 4) / 384);  // rows are not exactly evenly spaced
   }
 }
 

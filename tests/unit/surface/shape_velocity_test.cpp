@@ -1,4 +1,4 @@
-// The speed of a change of shape.
+// Tests of the rate of change of the shape.
 
 #include "surface/transport.hpp"
 
@@ -29,19 +29,19 @@ TEST(ShapeVelocity, OfASphereThatIsDrawnOutIsTheRootMeanSquareOfTheStrain) {
   const Body sphere(Vec3(1, 1, 1), Vec3(3, -1, 2));
   const Vec3 strain(1, -0.25, -0.75);
   const Net v = (sphere.x.rowwise() - Vec3(3, -1, 2).transpose()) * strain.asDiagonal();
-  // n.E.n on a sphere: mean square 2/15 E:E; the sphere's own error on 96 elements is 1e-3
+  // The mean square of n.E.n on a sphere is 2/15 E:E; the error of the sphere on 96 elements is 1e-3.
   EXPECT_NEAR(sphere.speed(v), std::sqrt(2. / 15) * strain.norm(), 2e-3);
 }
 
 TEST(ShapeVelocity, OfARigidTranslationIsZeroButAcrossATube) {
   const Body body(Vec3(1.2, 1, 0.7), Vec3(0, 1, 0));
   const auto translated = [&](const Vec3& u) { return Net(u.transpose().replicate(body.x.rows(), 1)); };
-  EXPECT_LT(body.speed(translated({1, -2, 3})), 1e-7);  // of 3.7, three Gauss points a direction
+  EXPECT_LT(body.speed(translated({1, -2, 3})), 1e-7);  // of a velocity of 3.7; quadrature error with three Gauss points per direction
   EXPECT_LT(body.speed(translated({1, 0, 0}), true), 1e-7);
   EXPECT_GT(body.speed(translated({0, 0.1, 0}), true), 0.03);
 }
 
-// A sphere that spins keeps its shape: what moves is the error of its net, of high degree.
+// A rotating sphere keeps its shape: only the error of its net moves, and this error is of high degree.
 TEST(ShapeVelocity, OfASphereThatSpinsIsTheErrorOfItsShape) {
   const Body sphere(Vec3(1, 1, 1), Vec3::Zero());
   Net v(sphere.x.rows(), 3);

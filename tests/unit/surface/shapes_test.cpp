@@ -17,7 +17,7 @@ namespace {
 struct Errors {
   double radial_rms, radial, normal, largest_normal;  ///< L2 norms over the surface, unless named otherwise
 };
-/// Of the image of a fitted unit sphere under x -> axes * x, against the ellipsoid; radial errors for the sphere only.
+/// Returns the errors of the image of a fitted unit sphere under x -> axes * x, compared with the ellipsoid; radial errors for the sphere only.
 Errors errors(const CubeMesh& cube, const Vec3& axes) {
   const Net net = cube.ellipsoid(axes);
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(8);
@@ -39,7 +39,7 @@ Errors errors(const CubeMesh& cube, const Vec3& axes) {
   return {std::sqrt(radial / area), std::sqrt(radial), std::sqrt(normal), largest};
 }
 
-/// At most the value of the table plus five per cent, and not so much less that something else must have been measured.
+/// Expects at most the value of the table plus five per cent, and not so much less that another quantity must have been measured.
 void expect_at_most(double value, double table) {
   EXPECT_LT(value, 1.05 * table);
   EXPECT_GT(value, 0.3 * table);
@@ -84,13 +84,13 @@ TEST(Shapes, MeshesThatAreNoSubdivisionOfTheCoarsestLieBetweenTheirNeighbours) {
 }
 
 TEST(Shapes, CubeSphereIsSmoothOverTheEdgesOfTheCube) {
-  // Directional derivatives of the map on both sides of the edge x1 = x3 = 1, seen in the same direction around it.
+  // Compares directional derivatives of the map on both sides of the edge x1 = x3 = 1, in the same direction around it.
   const CubeSphere sphere;
   const double h = 1e-3, y = 0.3;
   const Vec3 before = sphere.limit_point({1 - h, y, 1}), at = sphere.limit_point({1, y, 1}), after = sphere.limit_point({1, y, 1 - h});
   const Vec3 before2 = sphere.limit_point({1 - 2 * h, y, 1}), after2 = sphere.limit_point({1, y, 1 - 2 * h});
   const Vec3 left = (3 * at - 4 * before + before2) / (2 * h), right = (4 * after - 3 * at - after2) / (2 * h);
-  EXPECT_LT((left - right).norm(), 1e-5);  // second-order differences; the derivative is of order one
+  EXPECT_LT((left - right).norm(), 1e-5);  // error of second-order differences; the derivative is of order one
   EXPECT_GT(left.norm(), 0.3);
 }
 
@@ -99,7 +99,7 @@ TEST(Shapes, CubeSphereNetsHaveTheLimitThatTheyConvergeTo) {
   const Vec3 limit = CubeSphere(5).limit_point(on_cube);
   const double coarse = (CubeSphere(2).net_point(on_cube) - limit).norm(), fine = (CubeSphere(4).net_point(on_cube) - limit).norm();
   EXPECT_LT(fine, coarse / 10);                                           // h^2
-  EXPECT_LT((CubeSphere(3).limit_point(on_cube) - limit).norm(), 1e-12);  // subdivision does not move the surface
+  EXPECT_LT((CubeSphere(3).limit_point(on_cube) - limit).norm(), 1e-12);  // subdivision does not change the limit surface
 }
 
 TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
@@ -119,7 +119,7 @@ TEST(Shapes, RedCellHasTheVolumeOfItsOutline) {
     EXPECT_NEAR(d.lengths[0], 2, n == 6 ? 2e-2 : 2e-3);
     if (n == 24) {
       EXPECT_LT(error, 1e-5);
-      EXPECT_NEAR(d.taylor_surface, (1 - 0.105) / (1 + 0.105), 1e-4);  // rim at r = 1, dimple at half the thickness, 0.21/2
+      EXPECT_NEAR(d.taylor_surface, (1 - 0.105) / (1 + 0.105), 1e-4);  // rim at r = 1, centre at half the thickness, 0.21/2
     }
   }
 }
@@ -129,7 +129,7 @@ TEST(Shapes, StandWhereTheDeckPutsThem) {
   ParticleShape shape;
   shape.shape = "spheroid";
   shape.semi_axes = Vec3(2, 1, 1);
-  shape.orientation = Vec3(0, 0, 90);  // turns the particle's x1 into x2
+  shape.orientation = Vec3(0, 0, 90);  // rotates the particle's x1 to x2
   shape.center = Vec3(1, 2, 3);
   const Net net = cube.shape(shape);
   const Deformation d = Geometry(cube.space).deformation(net);

@@ -38,15 +38,15 @@ TEST(StressFreeSpheroid, HasTheAreaOfTheRestingShapeAndTheReducedVolumeAskedFor)
     EXPECT_NEAR(found.area / resting.area, 1, 1e-4);
     EXPECT_LT((found.centroid - shape.center).norm(), 1e-5);
     const Vec3 lengths = principal_axes(found).lengths;
-    EXPECT_NEAR(lengths[0], lengths[1], 1e-4);  // oblate
+    EXPECT_NEAR(lengths[0], lengths[1], 1e-4);  // the spheroid is oblate
     if (v < 0.9) {
-      EXPECT_NEAR(found.second_moments(1, 1), found.second_moments(2, 2), 1e-4);  // about x1
+      EXPECT_NEAR(found.second_moments(1, 1), found.second_moments(2, 2), 1e-4);  // axisymmetric about x1
       EXPECT_LT(found.second_moments(0, 0), 0.5 * found.second_moments(1, 1));
     }
   }
 }
 
-/// The fits' errors are all that is left of the area's change at a point; they fall with the mesh.
+/// Only the errors of the fits change the area at a point; they decrease with mesh refinement.
 TEST(StressFreeSpheroid, LeavesTheAreaOfEveryPieceAsItIsAtRest) {
   double before = 1;
   for (const int n : {6, 12}) {

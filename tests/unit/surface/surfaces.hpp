@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that several tests look at.
+// Surfaces shared by several tests.
 
 #include <random>
 
@@ -28,7 +28,7 @@ struct CubeMesh {
     shape.center = center;
     return initial_shape(space, mesh, shape);
   }
-  /// An ellipsoid in general position with every control point moved at random: no symmetry, no order of magnitude too small to notice.
+  /// Returns an ellipsoid in general position with every control point moved at random: no symmetry, and all effects are large enough to be seen.
   Net crumpled(double amplitude, unsigned seed = 1) const {
     Net net = ellipsoid({1.4, 1.0, 0.8}, {20, -35, 50}, {0.3, -0.2, 0.1});
     std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// Reflections of surfaces onto themselves, and fields that have them.
+// Tests of reflections that map surfaces onto themselves, and of symmetric fields.
 
 #include "surface/symmetry.hpp"
 
@@ -79,7 +79,7 @@ TEST(Symmetry, FundamentalPointsAreOneOfEachSetOfImages) {
   const CubeMesh cube(6);
   const Net net = cube.sphere();
   const Symmetry found = of(cube.space, net);
-  // 218 points; the planes hold 24 each, 2 of them on each axis: (218 + 3 24 + 3 2) / 8 orbits
+  // 218 points; each plane contains 24 points, 2 of them on each axis: (218 + 3 24 + 3 2) / 8 orbits
   EXPECT_EQ(found.fundamental().size(), 37u);
   for (const int a : found.fundamental()) EXPECT_GE(net.row(a).minCoeff(), -1e-12);
 }
@@ -88,7 +88,7 @@ TEST(Symmetry, CompletesTheFieldsThatItsSurfacesHave) {
   const CubeMesh cube(4);
   const Net net = cube.ellipsoid({1.3, 1, 0.8});
   const Net* nets[] = {&net};
-  // The symmetry of a shear flow: a field of x2 mirrored and of x1, x3 turned.
+  // The symmetry of a shear flow: mirror plane x2 and half turn about x2.
   const Symmetry found = symmetry(cube.space, nets, [](const Image& image) { return image.signs[0] == image.signs[2]; });
   EXPECT_EQ(found.order(), 4);
   EXPECT_EQ(found.description(), "mirror x2 and point symmetry");
@@ -107,7 +107,7 @@ TEST(Symmetry, CompletesTheFieldsThatItsSurfacesHave) {
 }
 
 TEST(Symmetry, FundamentalElementsFoldedGiveTheSumsOfAll) {
-  for (const int n : {4, 5}) {  // of five a side, those at the planes are images of themselves
+  for (const int n : {4, 5}) {  // with five per side, elements on the planes are images of themselves
     const CubeMesh cube(n);
     const Net net = cube.ellipsoid({1.3, 1, 0.8});
     const Symmetry found = of(cube.space, net);
@@ -130,7 +130,7 @@ TEST(Symmetry, FundamentalElementsFoldedGiveTheSumsOfAll) {
 }
 
 TEST(Symmetry, FieldsOfAllParitiesMakeUpAnyField) {
-  const CubeMesh cube(6);  // the mirror planes hold control points
+  const CubeMesh cube(6);  // the mirror planes contain control points
   const Symmetry found = of(cube.space, cube.sphere());
   const Net field = Net::Random(cube.space.n_points, 3);
   Net sum = Net::Zero(field.rows(), 3);
@@ -152,7 +152,7 @@ TEST(Symmetry, FieldsOfAllParitiesMakeUpAnyField) {
     for (Eigen::Index a = 0; a < field.rows(); ++a) scalar_sum[a] += std::abs(other.scalar_signs()[a]);
   }
   EXPECT_NEAR((sum - field).cwiseAbs().maxCoeff(), 0, 1e-14);
-  for (Eigen::Index a = 0; a < field.rows(); ++a)  // each of its images takes one of the eight numbers that tell a scalar there
+  for (Eigen::Index a = 0; a < field.rows(); ++a)  // nonzero for as many parities as its orbit has points
     EXPECT_EQ(scalar_sum[a], std::ranges::count(found.source(), found.source()[static_cast<std::size_t>(a)]));
 }
 

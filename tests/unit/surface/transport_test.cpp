@@ -12,7 +12,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Control values of U + W x (x - centre): exact.
+/// Returns the control values of U + W x (x - centre), which are exact.
 Net rigid(const Net& x, const Vec3& u, const Vec3& w, const Vec3& centre) {
   Net v(x.rows(), 3);
   for (Eigen::Index a = 0; a < x.rows(); ++a) v.row(a) = (u + w.cross(x.row(a).transpose() - centre)).transpose();
@@ -29,14 +29,14 @@ TEST(Transport, ARigidMotionCarriesTheCentroidWithIt) {
 
 TEST(Transport, TheVelocityOfTheCentroidIsItsDerivative) {
   const CubeMesh cube(3);
-  const Net x = cube.crumpled(0.1), v = cube.crumpled(0.3, 2);  // changes the volume too
+  const Net x = cube.crumpled(0.1), v = cube.crumpled(0.3, 2);  // v changes the volume too
   const Geometry geometry(cube.space);
   const double e = 1e-5;
   const Vec3 difference = (geometry.measures(x + e * v).centroid - geometry.measures(x - e * v).centroid) / (2 * e);
-  EXPECT_LT((centroid_velocity(geometry.bezier(), x, v) - difference).norm(), 1e-8);  // e^2 and round-off over e
+  EXPECT_LT((centroid_velocity(geometry.bezier(), x, v) - difference).norm(), 1e-8);  // e^2, and round-off divided by e
 }
 
-/// Material of a sphere that has become an ellipsoid and goes round it in the plane x1 x3: a cos, b sin of an angle that grows at this rate.
+/// The material of a sphere that has become an ellipsoid and circulates in the plane x1 x3: a cos, b sin of an angle that grows at this rate.
 struct TreadingEllipsoid {
   CubeMesh cube{6};
   BezierMap map{cube.space};
@@ -52,17 +52,17 @@ struct TreadingEllipsoid {
 
 TEST(Transport, TheFrequencyIsThatOfTheMaterial) {
   const TreadingEllipsoid e;
-  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // the sphere's length, on chords: (1/36)^2
-  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // the time that a point takes
+  EXPECT_NEAR(e.treading(&e.sphere).frequency / e.rate, 1, 2e-3);  // weighted by the sphere's length, on chords: (1/36)^2
+  EXPECT_NEAR(e.treading(nullptr).frequency / e.rate, 1, 2e-3);    // weighted by the time that a point needs
 }
 
 TEST(Transport, WhereAPointRestsADropDoesNotTread) {
   TreadingEllipsoid e;
-  e.v.col(2) *= -1;  // draws it out
+  e.v.col(2) *= -1;  // stretches the ellipsoid
   EXPECT_EQ(e.treading(nullptr).frequency, 0);
   const double a = e.axes[0], c = e.axes[2], perimeter = 4 * a * std::comp_ellint_2(std::sqrt(1 - c * c / (a * a)));
   const double circulation = e.rate * (a / c - c / a) * std::numbers::pi * a * c;  // by Stokes' theorem
-  EXPECT_NEAR(e.treading(nullptr).velocity / (circulation / perimeter), 1, 2e-3);  // on chords
+  EXPECT_NEAR(e.treading(nullptr).velocity / (circulation / perimeter), 1, 2e-3);  // error of the chords
 }
 
 TEST(Transport, ATurningSphereTreadsAtItsRim) {
@@ -75,7 +75,7 @@ TEST(Transport, ATurningSphereTreadsAtItsRim) {
   const Net x = cube.shape(shape);
   const BezierMap map(cube.space);
   const auto treading = [&](const Vec3& w) { return tank_treading(map, x, rigid(x, u, w, centre), &x, centre, u); };
-  // Turned about x2 the side of larger x3 moves on. Chords and flat triangles: (1/36)^2 of the rim.
+  // If rotated about x2, the side of larger x3 moves along x1. Error of chords and flat triangles: (1/36)^2 of the rim.
   EXPECT_NEAR(treading({0, spin, 0}).velocity, spin * radius, 1e-3 * spin * radius);
   EXPECT_NEAR(treading({0, -spin, 0}).velocity, -spin * radius, 1e-3 * spin * radius);
   EXPECT_NEAR(treading({0, spin, 0}).frequency, spin, 1e-3 * spin);

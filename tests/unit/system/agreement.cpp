@@ -1,4 +1,4 @@
-// What ranks agree on.
+// Agreement of ranks on outcomes and decisions.
 
 #include "system/agreement.hpp"
 

@@ -1,4 +1,4 @@
-// The coupled capsule: what fluid and membrane must do together, whatever the mesh.
+// The coupled capsule: properties of fluid and membrane together that hold on any mesh.
 
 #include <cmath>
 #include <numbers>
@@ -12,14 +12,14 @@
 namespace tanktread::coupling {
 namespace {
 
-/// A unit sphere on the coarsest mesh, in shear or at rest.
+/// A unit sphere on the coarsest mesh, in shear flow or in a quiescent fluid.
 struct Fixture : SphereInFlow {
   explicit Fixture(const char* type = "simple shear") : SphereInFlow(3, type) {
     parameters.particles.front().material.law = membrane::NeoHookean{2.5};
     parameters.viscosity = 1.7;
   }
 
-  /// Stretched, sheared and bent, with the volume of nothing in particular.
+  /// Returns a stretched, sheared and bent shape whose volume is not conserved.
   Net deformed() const {
     Net x = sphere;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -67,7 +67,7 @@ TEST(Capsule, NoFluxThroughTheSurface) {
 TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
   Fixture f;
   Capsule capsule = f.capsule();
-  Net x = f.sphere * 1.001;  // 0.3 %: more than any step leaves
+  Net x = f.sphere * 1.001;  // 0.3 %: more than the volume error of any step
   capsule.restore_volume(x);
   EXPECT_NEAR(capsule.volume_error(x), 0, std::pow(0.003, 4));  // two Newton iterations square the error twice
 }
@@ -75,7 +75,7 @@ TEST(Capsule, ExactConstraintRestoresTheVolumeToRoundOff) {
 TEST(Capsule, AVolumeThatCannotBeRestoredIsNotTakenForRestored) {
   Fixture f;
   Capsule capsule = f.capsule();
-  Net x = f.sphere * 0.05;  // from where Newton's first iteration blows it up by a hundred
+  Net x = f.sphere * 0.05;  // at this size Newton's first iteration overshoots by a factor of a hundred
   capsule.restore_volume(x);
   EXPECT_FALSE(x.allFinite());
 }
@@ -87,11 +87,11 @@ TEST(Capsule, MeasuresOfTheLoadAgreeUpToTheMesh) {
   const Net v0 = f.capsule().velocity(x);
   f.parameters.particles.front().measure = stokes::Measure::current;
   const Net v = f.capsule().velocity(x);
-  EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // two projections of the same load on a mesh of 56 points
+  EXPECT_LT((v - v0).norm(), 0.05 * v.norm());  // two projections of one load on a mesh of 56 points
   EXPECT_GT((v - v0).norm(), 0);
 }
 
-/// The defect of u is B (v - u), without v; a short implicit step corrects by what is missing.
+/// The defect of u is B (v - u), computed without v. A short implicit step corrects u by the difference v - u.
 TEST(Capsule, DefectIsWhatAVelocityIsLacking) {
   for (const double ratio : {1.0, 5.0})
     for (const double viscosity : {0.0, 0.7}) {
@@ -108,7 +108,7 @@ TEST(Capsule, DefectIsWhatAVelocityIsLacking) {
       capsule.linearise(x);
       const double shift = 1e-7;
       const Net found = capsule.correction(shift, capsule.defect(x, v - w), 1e-8, {}) / shift;
-      EXPECT_LT((found - w).norm(), 0.05 * w.norm()) << ratio << " " << viscosity;  // the frozen operator, on 56 points
+      EXPECT_LT((found - w).norm(), 0.05 * w.norm()) << ratio << " " << viscosity;  // error of the frozen operator on 56 points
     }
 }
 
@@ -130,7 +130,7 @@ TEST(Capsule, VelocityFollowsAFlowThatChangesInTime) {
   EXPECT_LT((capsule.velocity(x) - none + 0.5 * (one - none)).norm(), 1e-13 * one.norm()) << "what the flow adds is linear in it";
 }
 
-// On the unstressed surface the load vanishes, so the part of the Jacobian that is left out, (dA/dx) f, vanishes too, and what is kept is exact.
+// On the unstressed surface the load vanishes. The omitted part of the Jacobian, (dA/dx) f, vanishes too, so that the Jacobian is exact.
 struct JacobianCase {
   const char *frozen_operator, *flow;
   double tolerance;
@@ -142,7 +142,7 @@ TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   f.parameters.solvers.frozen_operator = GetParam().frozen_operator;
   f.flow.type = GetParam().flow;
   f.flow.profile = "round", f.flow.maximum_velocity = 4, f.flow.half_width = 2;
-  f.parameters.volume.constraint = "flux";  // its derivative is left out of the Jacobian: directions without flux only
+  f.parameters.volume.constraint = "flux";  // the Jacobian omits the derivative of this constraint, so that only directions without flux are tested
   Capsule capsule = f.capsule();
   Net delta(f.sphere.rows(), 3);
   for (Eigen::Index i = 0; i < delta.rows(); ++i) {
@@ -161,7 +161,7 @@ TEST_P(JacobianOf, CapsuleIsTheDerivativeOfTheVelocityAtRest) {
   EXPECT_LT((solved - delta).norm(), GetParam().tolerance * delta.norm());
 }
 
-// Entries of the assembled operator are rounded to 2^-9; one node a control point leaves some per cent out on 56 of them.
+// Entries of the assembled operator are rounded to 2^-9. The error of one node per control point is a few per cent for 56 control points.
 INSTANTIATE_TEST_SUITE_P(FrozenOperators, JacobianOf,
                          testing::Values(JacobianCase{"assembled", "simple shear", 4e-3}, JacobianCase{"nodal", "simple shear", 4e-2},
                                          JacobianCase{"assembled", "parabolic", 4e-3}));
@@ -172,7 +172,7 @@ TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays)
   f.parameters.volume.constraint = "none";
   f.parameters.quadrature.tolerance = 1e-7;
   f.parameters.solvers.tolerance = 1e-10;
-  const Net w = f.capsule().velocity(x);  // v_inf - S df: the right-hand side of (2.4)
+  const Net w = f.capsule().velocity(x);  // v_inf minus the single layer of the load: the right-hand side of (2.4)
   for (const double ratio : {0.2, 5.0})
     for (const char* way : {"assembled", "matrix-free"}) {
       f.parameters.particles.front().viscosity_ratio = ratio;
@@ -189,7 +189,7 @@ TEST(Capsule, ViscosityRatioChangesTheVelocityAsTheBoundaryIntegralEquationSays)
     }
 }
 
-// A drop that is only turned: a rigid-body motion carries no stress, whatever is inside.
+// A drop in a pure rotation: a rigid motion carries no stress, whatever the viscosity inside.
 TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
   Fixture f("linear");
   Mat3 spin = Mat3::Zero();
@@ -199,12 +199,12 @@ TEST(Capsule, RigidMotionDoesNotFeelTheViscosityInside) {
   for (const double ratio : {0.01, 100.0}) {
     f.parameters.particles.front().viscosity_ratio = ratio;
     const Net v = f.capsule().velocity(f.sphere);
-    EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // a hundred times 1e-10 over 0.01
+    EXPECT_LT((v - f.sphere * spin.transpose()).norm(), 1e-6 * v.norm()) << ratio;  // a hundred times the tolerance 1e-10, divided by 0.01
   }
 }
 
-// A unit sphere under the small strain E: the membrane's strain is P E P, P = I - n n, its energy G_s int e:e + (tr e)^2 dG = 4 pi G_s 3/5 E:E by the
-// means 7/15 and 2/15 of the two over the sphere, and the stresslet the derivative with respect to E.
+// A unit sphere under the small strain E. The strain of the membrane is P E P, P = I - n n. Its energy is G_s int e:e + (tr e)^2 dG = 4 pi G_s 3/5
+// E:E, because the means of the two terms over the sphere are 7/15 and 2/15. The stresslet is the derivative of the energy with respect to E.
 TEST(Capsule, StressletOfASmallStrainIsThatOfTheMembrane) {
   Fixture f;
   Capsule capsule = f.capsule();
@@ -218,7 +218,7 @@ TEST(Capsule, StressletOfASmallStrainIsThatOfTheMembrane) {
   };
   const Mat3 s = (stresslet(strain) - stresslet(-strain)) / (2 * strain);
   const double exact = 4 * std::numbers::pi * 1.2 * 2.5;
-  EXPECT_LT((s - exact * e).norm(), 2e-3 * exact * e.norm());  // the coarsest mesh's sphere
+  EXPECT_LT((s - exact * e).norm(), 2e-3 * exact * e.norm());  // error of the sphere on the coarsest mesh
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A capsule in a tube: the forms of the block system, the Jacobian, the moving frame.
+// A capsule in a tube: the forms of the block system, the Jacobian, and translation along the tube.
 
 #include <numbers>
 #include <optional>
@@ -15,7 +15,8 @@
 namespace tanktread::coupling {
 namespace {
 
-/// A capsule of a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube; or a drop whose control points move as `interface` says.
+/// A capsule with a = 0.6 R_T off the axis, on a coarse mesh in a coarse tube; or, if `interface` is given, a drop with this motion of the control
+/// points.
 struct Confined {
   Ranks ranks;
   Phases phases;
@@ -45,14 +46,14 @@ struct Confined {
     flow.viscosity = 1.3;
     flow.mean_velocity = 1;
     CapsuleParameters parameters;
-    parameters.solvers.frozen_operator = "assembled";  // the sum over nodes is good to 3 per cent on so few
+    parameters.solvers.frozen_operator = "assembled";  // the sum over nodes has an error of 3 per cent on so few points
     parameters.viscosity = 1.3;
     parameters.particles.front().viscosity_ratio = viscosity_ratio;
     parameters.particles.front().radius = 0.6;
     parameters.particles.front().material.law = membrane::NeoHookean{10};
     parameters.solvers.tube = form;
     parameters.solvers.tolerance = 1e-11;
-    parameters.quadrature.tolerance = 1e-7;  // differences of velocities are looked at
+    parameters.quadrature.tolerance = 1e-7;  // because differences of velocities are compared
     TubeParameters in_tube;
     if (!interface.empty()) {
       parameters.particles.front().material.law = membrane::SurfaceTension{10};
@@ -73,13 +74,13 @@ TEST(CapsuleInTube, EveryFormOfTheBlockSystemGivesTheVelocityOfTheSchurComplemen
     const Net v = schur.capsule->velocity(schur.x);
     for (const char* form : {"block triangular", "block diagonal"}) {
       Confined blocks(ratio, form);
-      EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, conditions of 1e3
+      EXPECT_LT((blocks.capsule->velocity(blocks.x) - v).norm(), 1e-8 * v.norm()) << form;  // residuals of 1e-11, condition numbers of 1e3
       EXPECT_GT(blocks.capsule->work().velocity_iterations, 0);
     }
   }
 }
 
-// The wall answers to the fluid on the interface, and what the mesh does along it is no matter.
+// The wall responds to the fluid velocity on the interface. The tangential motion of the mesh has no influence.
 TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove) {
   for (const double ratio : {0.2, 4.0}) {
     Confined material(ratio, "schur", "material");
@@ -87,7 +88,7 @@ TEST(CapsuleInTube, PressureDropOfADropIsThatOfTheFluidHoweverControlPointsMove)
     for (const char* motion : {"normal", "relaxed"}) {
       Confined sliding(ratio, "schur", motion);
       EXPECT_NEAR(sliding.capsule->evaluate(sliding.x)->response().pressure_drop, drop, 1e-8 * std::abs(drop))
-          << ratio << " " << motion;  // residuals as above
+          << ratio << " " << motion;  // residuals of 1e-11, condition numbers of 1e3
       EXPECT_GT((sliding.capsule->velocity(sliding.x) - material.capsule->velocity(material.x)).norm(), 1e-2);
     }
   }
@@ -101,7 +102,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
     const Net v = known.capsule->velocity(known.x);
     EXPECT_EQ(known.capsule->velocity(known.x), v);
     EXPECT_EQ(known.capsule->work().evaluations, 2);
-    known.capsule->freeze(elsewhere);  // takes the tube there
+    known.capsule->freeze(elsewhere);  // moves the tube's particle to the other shape
     const Tube::Response response = known.capsule->evaluate(known.x)->response();
     EXPECT_EQ(known.capsule->work().evaluations, 2);
 
@@ -117,7 +118,7 @@ TEST(CapsuleInTube, WhatIsKnownOfAPlaceIsNotEvaluatedAgainAndIsTheSame) {
 TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
   Confined plain(4, "schur"), helped(4, "schur");
   const Net v = plain.capsule->velocity(plain.x), start = v + 1e-5 * Net::Random(v.rows(), 3);
-  EXPECT_LT((helped.capsule->evaluate(helped.x, start)->velocity() - v).norm(), 1e-8 * v.norm());  // residuals as above
+  EXPECT_LT((helped.capsule->evaluate(helped.x, start)->velocity() - v).norm(), 1e-8 * v.norm());  // residuals of 1e-11, condition numbers of 1e3
   EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
 }
 
@@ -127,18 +128,18 @@ TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
   Net delta = Net::Zero(scene.x.rows(), 3);
   for (Eigen::Index a = 0; a < delta.rows(); ++a) delta(a, 1) = 0.3 * scene.unstressed(a, 2) * scene.unstressed(a, 0);
   const double e = 1e-4;
-  // Without a load the derivative of the operators does not count, and (4.3) is the whole one, but for the volume constraint.
+  // Without a load the derivative of the operators vanishes, and (4.3) is exact except for the volume constraint.
   const Net difference = (capsule.velocity(scene.unstressed + e * delta) - capsule.velocity(scene.unstressed - e * delta)) / (2 * e);
   capsule.freeze(scene.unstressed);
   const Net jacobian = capsule.derivative(scene.unstressed, Net::Zero(delta.rows(), 3), delta);
-  EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // the volume constraint is 1 per cent of it
+  EXPECT_LT((jacobian - difference).norm(), 0.01 * difference.norm());  // the volume constraint contributes 1 per cent
 }
 
 TEST(CapsuleInTube, NothingDependsOnThePlaceAlongTheTube) {
   for (const double ratio : {1.0, 4.0}) {
     Confined scene(ratio, "schur");
     const Net v = scene.capsule->velocity(scene.x), there = scene.capsule->velocity(scene.x.rowwise() + Eigen::RowVector3d(17, 0, 0));
-    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // rules of 1e-7 are chosen anew
+    EXPECT_LT((there - v).norm(), 1e-6 * v.norm());  // quadrature of tolerance 1e-7 with other rules
     Net along = Net::Zero(v.rows(), 3);
     along.col(0).setConstant(3);
     EXPECT_NEAR(scene.capsule->norm(along), 0, 1e-12);

@@ -1,5 +1,5 @@
-// The flow of an empty channel: a straight one's is that of the duct, and the same fluid passes every section of another. What a channel answers to a
-// particle: a straight one, what the tube does.
+// The flow in an empty channel: a straight channel has the flow of the duct, and the flow rate is equal in all sections of a constricted channel. The
+// response to a particle: a straight channel responds like the tube.
 
 #include <cmath>
 #include <numbers>
@@ -47,7 +47,8 @@ TEST(ChannelFlow, PassesEverySectionAlike) {
   EXPECT_GT(flow.extra_pressure_drop(), 0);
 }
 
-/// Beside the ends of the constriction, where the wall's curvature jumps, the shear stress falls to the kink and rises after it, once.
+/// Near the ends of the constriction, where the curvature of the wall jumps, the shear stress falls up to the kink and rises after it, without
+/// oscillation.
 TEST(ChannelFlow, HasAShearStressThatDoesNotRing) {
   const ChannelFlow flow(channel("constriction", 16), 1, 1, {});
   const surface::TubeWall& wall = *flow.surface();
@@ -69,7 +70,7 @@ TEST(ChannelFlow, CostsInASlenderChannelWhatLubricationSays) {
   options.channel->depth = 0.2, options.channel->half_length = 8;
   options.channel->start = -10.5, options.channel->end = 10.5;
   const ChannelFlow flow(options, 1, 1, {});
-  double lubrication = 0;  // 8 int (R^-4 - 1) ds
+  double lubrication = 0;  // lubrication theory: 8 int (R^-4 - 1) ds
   constexpr int n = 2000;
   for (int k = 0; k < n; ++k) {
     const double s = -8 + 16. * (k + 0.5) / n;
@@ -78,9 +79,9 @@ TEST(ChannelFlow, CostsInASlenderChannelWhatLubricationSays) {
   EXPECT_NEAR(flow.extra_pressure_drop() / lubrication, 1, 1e-2);
 }
 
-/// A sphere of radius 0.5 off the axis of the unit tube, or of a straight channel; a load, and a velocity that keeps its volume.
+/// A sphere of radius 0.5 off the axis of the unit tube or of a straight channel, with a load and a velocity that conserves its volume.
 struct InStraightChannel {
-  spline::TMesh mesh = spline::cube(4);  // on cube(3) a channel's flow, which is interpolated, errs by 1e-4
+  spline::TMesh mesh = spline::cube(4);  // on cube(3) the interpolated flow of the channel has an error of 1e-4
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   Phases phases;
   Net x, f, v;
@@ -114,7 +115,7 @@ TEST(Channel, AnswersAsTheTubeDoesWhereItIsStraight) {
   for (const double ratio : {1., 5.}) {
     InStraightChannel s(ratio, 20);
     const Tube::Response tube = s.tube->respond(s.f, s.v), channel = s.channel->respond(s.f, s.v);
-    EXPECT_LT((tube.velocity - channel.velocity).norm() / tube.velocity.norm(), 3e-4) << ratio;  // 1e-3 on 16 elements around, 9e-5 on 24
+    EXPECT_LT((tube.velocity - channel.velocity).norm() / tube.velocity.norm(), 3e-4) << ratio;  // 1e-3 with 16 elements around, 9e-5 with 24
     EXPECT_NEAR(channel.pressure_drop / tube.pressure_drop, 1, 1e-4) << ratio;
     const Tube::Response alone = s.tube->respond({}, s.v), of_channel = s.channel->respond({}, s.v);
     EXPECT_NEAR(of_channel.pressure_drop, alone.pressure_drop, 1e-4 * std::abs(tube.pressure_drop)) << ratio;
@@ -126,7 +127,7 @@ TEST(Channel, KeepsItsAnswerFrozen) {
   s.channel->freeze();
   const Net now = s.channel->respond(s.f, s.v).velocity;
   s.channel->place(s.x + Eigen::RowVector3d(0.2, 0, 0.1).replicate(s.x.rows(), 1));
-  EXPECT_LT((s.channel->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits an entry
+  EXPECT_LT((s.channel->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits per entry
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Forces between close particles: the complementarity problem, and that they are equal and opposite.
+// Contact forces between close particles: solution of the complementarity problem; equal and opposite forces.
 
 #include <random>
 
@@ -43,7 +43,7 @@ TEST(Contact, ForcesAreEqualAndOppositeAndTurnNothing) {
   Net x(2 * space.n_points, 3);
   x << sphere, sphere;
   const Vec3 first = surface::value(space, sphere, contact.site[0]), second = surface::value(space, sphere, contact.site[1]);
-  const Vec3 to = first + 0.1 * Vec3(1, 2, 2) / 3;  // where the second place is moved
+  const Vec3 to = first + 0.1 * Vec3(1, 2, 2) / 3;  // position to which the second point is moved
   particles[1].block.rows(x).rowwise() += (to - second).transpose();
   contact.normal = Vec3(1, 2, 2) / 3, contact.force = 7;
   const Net on = work(particles, {{contact}}, x.rows());

@@ -1,4 +1,4 @@
-// Frozen layer operators turn with the particle for which they were assembled.
+// Frozen layer operators rotate with the particle for which they were assembled.
 
 #include "system/solvers/frozen_operator.hpp"
 
@@ -15,12 +15,12 @@ namespace {
 
 Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
 
-/// A cloud of 20 points without symmetry.
+/// Returns 20 points without symmetry.
 Net cloud(double seed) {
   return Net::NullaryExpr(20, 3, [&](Eigen::Index i, Eigen::Index c) { return std::sin(seed + 3.7 * double(i) + 1.3 * double(c * c)); });
 }
 
-/// Two particles with 20 points each.
+/// Returns two particles with 20 points each.
 std::vector<Particle> two_particles() {
   std::vector<Particle> particles(2);
   particles[0].block = {0, 20, 0, 0};
@@ -61,12 +61,12 @@ TEST(Corotation, DeformationIsWhatRemainsOfAStretch) {
   const Net from = cloud(1).rowwise() - cloud(1).colwise().mean(), stretched = from * Vec3(1.2, 1, 0.9).asDiagonal();
   const Net moved = (stretched * turn(0.6, {1, 0, 2}).transpose()).rowwise() + Eigen::RowVector3d(1, 1, 1);
   const double deformation = Corotation::deformation(particles, from, moved).norm();
-  EXPECT_LE(deformation, (stretched - from).norm());  // the best rigid motion leaves no more than the known one
+  EXPECT_LE(deformation, (stretched - from).norm());  // the residual of the best rigid motion is at most that of the known motion
   EXPECT_GT(deformation, 0.5 * (stretched - from).norm());
 }
 
-// A sphere is rotated and then stretched a little. The operators assembled before are as good as those assembled on the new shape. Without the
-// rotation the result differs by a tenth.
+// A sphere is rotated and then slightly stretched. Operators assembled before the rotation are as accurate as operators assembled on the new shape.
+// Without corotation the result differs by a tenth.
 TEST(Corotation, OperatorsOfATurnedCapsuleAreThoseAssembledThere) {
   for (const char* frozen : {"nodal", "assembled"})
     for (const double ratio : {1.0, 5.0}) {

@@ -1,4 +1,4 @@
-// The operator of the Jacobian in 16 bits an entry.
+// The frozen operator of the Jacobian with 16 bits per entry.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@ namespace tanktread::coupling {
 namespace {
 
 TEST(FrozenOperator, MultipliesByItsRowsToTheRoundingOfItsEntries) {
-  const int n = 70;  // more than are assembled at a time
+  const int n = 70;  // more rows than are assembled at a time
   Eigen::MatrixXf full(3 * n, 3 * n);
   for (int i = 0; i < n; ++i)
     for (int b = 0; b < n; ++b) {
@@ -27,8 +27,9 @@ TEST(FrozenOperator, MultipliesByItsRowsToTheRoundingOfItsEntries) {
   const Eigen::VectorXd exact = full.cast<double>() * Eigen::Map<const Eigen::VectorXd>(f.data(), f.size());
   for (const int i : targets)
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(u(i, c), exact[3 * i + c], 3 * n * 2 * std::ldexp(1.0, -9));  // |entry| <= 2, |f| <= 1, half a unit in the ninth bit each
-  EXPECT_EQ(u(1, 0), 7);  // rows of others stay as they were
+      EXPECT_NEAR(u(i, c), exact[3 * i + c], 3 * n * 2 * std::ldexp(1.0, -9));  // |entry| <= 2, |f| <= 1, rounding error of half a unit in the ninth
+                                                                                // bit each
+  EXPECT_EQ(u(1, 0), 7);  // rows of other targets are unchanged
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Control points of a drop: what moves across the interface is physics, what moves along it is a choice.
+// Control points of a drop: the normal motion is determined by physics, the tangential motion is a choice.
 
 #include <cmath>
 #include <numbers>
@@ -21,7 +21,7 @@ struct Drop : SphereInFlow {
     parameters.particles.front().interface_motion = motion;
     return capsule().velocity(x);
   }
-  /// Largest normal and tangential component at the sites.
+  /// Returns the largest normal and tangential components at the sites.
   std::pair<double, double> components(const Net& x, const Net& v) const {
     double across = 0, along = 0;
     for (const auto& sites : space.collocation) {
@@ -42,7 +42,7 @@ TEST(InterfaceMotion, AllMotionsCrossTheInterfaceAlike) {
   for (const char* motion : {"normal", "relaxed"}) {
     const Net difference = drop.velocity(motion, x) - material;
     const auto [across, along] = drop.components(x, difference);
-    EXPECT_LT(across, 1e-13) << motion;  // projected and interpolated at the very sites that are looked at
+    EXPECT_LT(across, 1e-13) << motion;  // projected and interpolated at the sites that are compared
     EXPECT_GT(along, 1e-2) << motion;
   }
 }
@@ -53,10 +53,11 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   const Net v = drop.velocity("normal", drop.sphere);
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
-  EXPECT_LT(along, 1e-10);  // round-off of interpolation, and, over the 1e-3 that holds it, of a rotation that vanishes
+  EXPECT_LT(along, 1e-10);  // round-off of the interpolation, and of a vanishing rotation, divided by its regularisation 1e-3
 }
 
-// Tension alone leaves a sphere to the flow as a blob of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970, section 5.
+// The flow deforms a sphere under constant tension like a sphere of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970,
+// section 5.
 TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
   SphereInFlow drop(6, "planar hyperbolic");
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{5};
@@ -70,7 +71,7 @@ TEST(InterfaceMotion, StressletIsThatOfTheFluidHoweverControlPointsMove) {
       Capsule capsule = drop.capsule();
       const Mat3 s = capsule.evaluate(drop.sphere)->stresslet();
       const double exact = 2 * 4 * std::numbers::pi / 3 * 5 * (ratio - 1) / (2 * ratio + 3);
-      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << motion;  // the sphere's mesh
+      EXPECT_NEAR(s(0, 0) / exact, 1, 1e-4) << ratio << " " << motion;  // error of the sphere's mesh
       EXPECT_NEAR(s(2, 2) / exact, -1, 1e-4) << ratio << " " << motion;
     }
 }
@@ -85,15 +86,15 @@ TEST(InterfaceMotion, PlainPolesHaveTheNormalOfTheElementsAroundThem) {
     const Net v = drop.velocity(motion, drop.sphere);
     ASSERT_TRUE(v.allFinite()) << motion;
     for (const auto& sites : drop.space.collocation)
-      if (sites.size() > 4) {  // a pole, about which the flow is (x1, 0, -x3)
+      if (sites.size() > 4) {  // a pole, near which the flow is (x1, 0, -x3)
         const Vec3 x = surface::value(drop.space, drop.sphere, sites.front()), u = surface::value(drop.space, v, sites.front());
-        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << motion;  // round-off over the 1e-3 that holds the rotation of a sphere
+        EXPECT_LT(u.head<2>().norm(), 1e-10 * std::abs(u[2])) << motion;  // round-off divided by the regularisation 1e-3 of the rotation of a sphere
         EXPECT_LT(u[2] * x[2], -0.1) << motion;
       }
   }
 }
 
-// Where the particle is in an affine flow, and how fast the observer is, changes its velocity by that of the frame and nothing else.
+// The position of the particle in an affine flow, and the speed of the observer, only add the velocity of the frame.
 TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
@@ -107,7 +108,7 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   }
 }
 
-// An observer who turns sees the velocity of his frame on top, and nothing else.
+// A rotating observer only adds the velocity of the rotating frame.
 TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
@@ -126,17 +127,17 @@ TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
     }
 }
 
-// A velocity along the surface alone is that of a steady shape.
+// A purely tangential velocity belongs to a steady shape.
 TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
   Drop drop;
   Net x = drop.sphere;
   x.col(0) *= 1.5;
   drop.flow.type = "linear";
-  const Mat3 shear = (Mat3() << 0, 0, 2.25, 0, 0, 0, -1, 0, 0).finished();  // round and round this ellipsoid
+  const Mat3 shear = (Mat3() << 0, 0, 2.25, 0, 0, 0, -1, 0, 0).finished();  // tank-treads along the surface of this ellipsoid
   drop.flow.gradient = shear;
   drop.parameters.volume.constraint = "none";
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
-  EXPECT_LT(drop.velocity("normal", x).norm(), 0.04 * (x * shear.transpose()).norm());  // what the second term of (4.14) leaves
+  EXPECT_LT(drop.velocity("normal", x).norm(), 0.04 * (x * shear.transpose()).norm());  // residual of the second term of (4.14)
 }
 
 TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
@@ -153,7 +154,7 @@ TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
   }
 }
 
-// Flow and shape are symmetric about the axes, so that no rigid motion is shared, and without tension the fluid's own change is known.
+// Flow and shape are symmetric about the axes, so that the shared rigid motion vanishes. Without tension the change of the fluid velocity is known.
 TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
   Drop drop;
   drop.flow.type = "linear";
@@ -170,11 +171,11 @@ TEST(InterfaceMotion, TheJacobianKnowsHowNormalsTurn) {
     constexpr double aside = 1e-4;
     const Net change = (capsule.velocity(x + aside * delta) - capsule.velocity(x - aside * delta)) / (2 * aside);
     const Net v = capsule.velocity(x), known = capsule.derivative(x, v, delta);
-    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << motion;  // of the differences
+    EXPECT_LT((known - change).norm(), 1e-5 * change.norm()) << motion;  // error of the finite differences
   }
 }
 
-// A bag that is larger or smaller in equal parts is under a tension that is the same everywhere: it pulls nowhere along the interface.
+// An elastic surface that is uniformly inflated or deflated has a uniform tension, and no tangential force acts on the mesh.
 TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
   Drop drop;
   drop.flow.type = "quiescent";
@@ -183,13 +184,13 @@ TEST(InterfaceMotion, OnlyWhatPullsAlongTheInterfaceMovesTheMesh) {
   drop.sphere.col(0) *= 2;
   const Net drawn = drop.velocity("relaxed", drop.sphere * Vec3(1.25, 1, 1).asDiagonal());
   for (const double size : {0.8, 1.25})
-    EXPECT_LT(drop.velocity("relaxed", size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // the error of this coarse mesh
+    EXPECT_LT(drop.velocity("relaxed", size * drop.sphere).norm(), 0.25 * drawn.norm()) << size;  // discretisation error of this coarse mesh
 }
 
 TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
   Drop drop;
   drop.flow.type = "quiescent";
-  // Slide the control points of a sphere along it: the surface is a sphere still, and the fluid at rest but for the error of the mesh.
+  // Moves the control points of a sphere along it. The surface remains a sphere, and the fluid is at rest except for the discretisation error.
   Net x = drop.sphere;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     const double turn = 0.2 * drop.sphere(i, 2);
@@ -197,7 +198,7 @@ TEST(InterfaceMotion, RelaxedMeshGoesBackToItsShape) {
         std::sin(turn) * drop.sphere(i, 0) + std::cos(turn) * drop.sphere(i, 1), drop.sphere(i, 2);
   }
   const membrane::Membrane mesh(drop.space, drop.sphere, membrane::NeoHookean{1});
-  EXPECT_LT(mesh.load(x).cwiseProduct(drop.velocity("relaxed", x)).sum(), 0);  // the mesh's energy falls
+  EXPECT_LT(mesh.load(x).cwiseProduct(drop.velocity("relaxed", x)).sum(), 0);  // the energy of the mesh decreases
 }
 
 }  // namespace

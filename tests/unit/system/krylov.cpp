@@ -1,4 +1,4 @@
-// Belos behind one function, and replicated rows, on any number of ranks.
+// Belos through one interface, and replicated rows, on any number of ranks.
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ TEST(Krylov, SolvesANonsymmetricSystemToTheTolerance) {
       const SolveReport report = solve(Krylov(name, nullptr), apply, b, x, tolerance);
       EXPECT_TRUE(report.converged);
       EXPECT_GT(report.iterations, 0);
-      EXPECT_LT((a * x - b).norm(), 2 * tolerance * b.norm()) << name;  // Belos measures the same residual by recurrence
+      EXPECT_LT((a * x - b).norm(), 2 * tolerance * b.norm()) << name;  // Belos computes this residual by recurrence
     }
 }
 
@@ -80,7 +80,7 @@ TEST(Krylov, MultipliesOnceAnIteration) {
 
 TEST(Krylov, TellsWhenItStopsShort) {
   const int n = 40;
-  const Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before step n
+  const Apply shift = [&](const double* in, double* out) {  // a cyclic shift: GMRES makes no progress before iteration n
     for (int i = 0; i < n; ++i) out[i] = in[(i + 1) % n];
   };
   Eigen::VectorXd b = Eigen::VectorXd::Unit(n, 0), x = Eigen::VectorXd::Zero(n);
@@ -118,7 +118,7 @@ TEST(Krylov, TellsTheResidualOfEachBlockWhereItStopsShort) {
   }
 }
 
-// Blocks are but names of parts of the array.
+// Blocks only name parts of the array, so that they do not change the solution.
 TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n);
@@ -127,7 +127,8 @@ TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
   };
   const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
   for (const std::string& name : Krylov::names()) {
-    if (name.find("CG") != std::string::npos || name == "MINRES" || name == "FIXED POINT") continue;  // for symmetric systems, or small ones
+    if (name.find("CG") != std::string::npos || name == "MINRES" || name == "FIXED POINT") continue;  // methods for symmetric systems, or for small
+                                                                                                      // ones
     Eigen::VectorXd x = Eigen::VectorXd::Zero(n), y = x;
     const Krylov krylov(name, nullptr);
     EXPECT_TRUE(krylov.solve({{{"all", n}}, apply, {}}, b, x, 1e-10).converged) << name;
@@ -137,7 +138,7 @@ TEST(Krylov, SolvesTheSameInOneBlockAndInSeveral) {
   }
 }
 
-// A preconditioner changes the way to the solution, not the solution.
+// A preconditioner changes the iterations, but not the solution.
 TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
   const int n = 60;
   Eigen::MatrixXd a = nonsymmetric(n);
@@ -160,7 +161,7 @@ TEST(Krylov, EveryPreconditionerLeadsToTheSolution) {
     }
     EXPECT_EQ(iterations["own"], iterations["none"]) << name;
     EXPECT_LT(iterations["neumann"], iterations["none"]) << name;
-    EXPECT_LE(iterations["recycled"], 1) << name;  // the solution is a sum of what was multiplied before
+    EXPECT_LE(iterations["recycled"], 1) << name;  // the solution is a linear combination of recorded products
   }
 }
 
@@ -175,7 +176,7 @@ TEST(Krylov, NumbersThatAreNotFiniteAreASolveThatStoppedShort) {
   }
 }
 
-// Ranks whose products differ by more than round-off still end in the same iteration.
+// Ranks stop in one iteration even if their products differ by more than round-off.
 TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
   const int n = 60;
   const Ranks ranks;
@@ -190,7 +191,7 @@ TEST(Krylov, EndsInTheSameIterationOnAllRanks) {
   }
 }
 
-// The residual is one of the right-hand side, not of the start, which may leave nothing but rounding.
+// The residual is relative to the right-hand side, not to the initial residual, which may be round-off only.
 TEST(Krylov, AStartThatIsTheSolutionIsLeftAsItIs) {
   const int n = 60;
   const Eigen::MatrixXd a = nonsymmetric(n);
@@ -252,7 +253,7 @@ TEST(Ranks, EveryItemIsDoneByOneRankAndNumbersAddUp) {
   std::vector<double> mine(7, 0);
   for (const int k : ranks.share(7)) mine[static_cast<std::size_t>(k)] = 0.1 * k;
   const auto [done, weight] = ranks.of_all(std::array{mine, std::vector<double>(3, 1)});
-  for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(done[k], 0.1 * static_cast<double>(k));  // one number and zeros
+  for (std::size_t k = 0; k < done.size(); ++k) EXPECT_EQ(done[k], 0.1 * static_cast<double>(k));  // sums of one value and zeros are exact
   for (const double w : weight) EXPECT_EQ(w, ranks.size());
 }
 

@@ -1,4 +1,4 @@
-// Rotations of the unstressed surface in itself: what relabels a membrane and costs no energy.
+// Rotations of the unstressed surface onto itself: they move the material points of a membrane at no cost of energy.
 
 #include <cmath>
 #include <numeric>
@@ -22,7 +22,7 @@ struct Ball : SphereInFlow {
     const spline::Block all = spline::blocks(std::vector<const spline::Space*>{&space}).front();
     return label_rotation(space, all, unstressed, x, axis, collocation);
   }
-  /// Energy that a membrane of this shape gains on the way D x, over the most that any way of this length could gain.
+  /// Returns the rate of change of the energy of a membrane of this shape along D x, divided by its maximum over all displacements of this norm.
   double gain(const Net& x, int axis) const {
     const membrane::Membrane membrane(space, sphere, membrane::NeoHookean{1});
     std::vector<int> elements(space.elements.size());

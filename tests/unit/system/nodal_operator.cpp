@@ -1,4 +1,4 @@
-// The frozen operator by one node a control point.
+// The frozen operator by one node per control point.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ struct Fixture {
     return u;
   }
 
-  /// Relative error for a field of a few waves over the surface.
+  /// Returns the relative error for a field with a few waves over the surface.
   double error(double reach) {
     Net f(space.n_points, 3), exact(space.n_points, 3);
     for (Eigen::Index i = 0; i < f.rows(); ++i)
@@ -53,27 +53,27 @@ struct Fixture {
 };
 
 TEST(NodalOperator, IsTheSingleLayerToSinglePrecisionWhereEveryPointIsNear) {
-  EXPECT_LT(Fixture().error(1e3), 3e-5);  // of a sum of 218 terms
+  EXPECT_LT(Fixture().error(1e3), 3e-5);  // sum of 218 terms
 }
 
 TEST(NodalOperator, IsCloseToTheSingleLayerWhereAFewElementsAreNear) {
-  EXPECT_LT(Fixture().error(3), 0.01);  // beside what the Jacobian leaves out, a tenth
-  EXPECT_GT(Fixture().error(0), 0.02);  // and without any correction
+  EXPECT_LT(Fixture().error(3), 0.01);  // small compared with the error of the Jacobian itself, about a tenth
+  EXPECT_GT(Fixture().error(0), 0.02);  // without any correction
 }
 
 TEST(NodalOperator, RowsDoNotDependOnTheOtherRowsAskedFor) {
   Fixture f;
   const Net force = Net::Random(f.space.n_points, 3), whole = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
   for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), whole.row(i));
-  EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of others stay as they were
+  EXPECT_EQ(part.row(0), Net::Zero(1, 3));  // rows of other targets are unchanged
 }
 
 TEST(NodalOperator, IsTheSameByClustersToATenthOfWhatItLeavesOut) {
-  Fixture f(12);  // more points than a leaf holds
+  Fixture f(12);  // more points than a leaf can hold
   const Net force = Net::Random(f.space.n_points, 3), dense = f.nodal(3, force, f.targets);
   f.far_sum = "tree";
   const Net clusters = f.nodal(3, force, f.targets), part = f.nodal(3, force, {3, 70, 111, 200, 217});
-  EXPECT_LT((clusters - dense).norm() / dense.norm(), 1e-3);  // asked of every row
+  EXPECT_LT((clusters - dense).norm() / dense.norm(), 1e-3);  // all rows computed
   EXPECT_GT((clusters - dense).norm(), 0);
   for (const int i : {3, 70, 111, 200, 217}) EXPECT_EQ(part.row(i), clusters.row(i));
 }

@@ -1,4 +1,4 @@
-// Fixed points by NOX.
+// Fixed-point iterations by NOX.
 
 #include <cmath>
 #include <limits>
@@ -14,7 +14,7 @@ namespace {
 
 double norm(const Net& x) { return x.norm(); }
 
-/// Ten points; g stretches by up to 1.5, so that plain iteration runs away from the fixed point.
+/// Map of ten points that stretches by up to 1.5, so that the plain iteration diverges.
 Net stretched(const Net& x) {
   Net y = x;
   for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -1,4 +1,4 @@
-// The rigid surface: tractions, forces and their null space, held against exact solutions.
+// The rigid surface: tractions, forces and the null space, compared with exact solutions.
 
 #include <cmath>
 #include <functional>
@@ -22,7 +22,7 @@ namespace resistance_test {
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
 
-/// A rigid body on the cube mesh of six elements a side: the fit of the surface errs by 1e-5 in place and 1e-4 in the normal.
+/// A rigid body on the cube mesh of six elements per side. The fitted surface has errors of 1e-5 in position and 1e-4 in the normal.
 struct Fixture {
   spline::TMesh mesh = spline::cube(6);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -37,20 +37,20 @@ struct Fixture {
     shape.shape = "ellipsoid";
     shape.semi_axes = semi_axes;
     surface = surface::initial_shape(space, mesh, shape);
-    solvers.tolerance = 1e-12;  // symmetry and balance hold as far as the system is solved
+    solvers.tolerance = 1e-12;  // symmetry and balance hold up to the residual of the solve
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
     body = std::make_unique<Resistance>(space, surface, viscosity, quadrature, solvers, ranks, phases);
   }
 
-  /// Control values of an affine velocity field: the basis sums to one, so they are the field's at the control points.
+  /// Returns the control values of an affine velocity field. They equal the values of the field at the control points, because the basis sums to one.
   Net field(const std::function<Vec3(const Vec3&)>& velocity) const {
     Net u(surface.rows(), 3);
     for (Eigen::Index a = 0; a < u.rows(); ++a) u.row(a) = velocity(surface.row(a).transpose()).transpose();
     return u;
   }
 
-  /// Largest difference of a density from an exact one over the collocation sites, relative to `scale`.
+  /// Returns the largest difference between a density and an exact density over the collocation sites, relative to `scale`.
   double difference(const Net& f, const std::function<Vec3(const Vec3& x, const Vec3& n)>& exact, double scale) const {
     double largest = 0;
     for (const auto& sites : space.collocation) {
@@ -73,7 +73,7 @@ TEST(Resistance, OfASphereIsStokes) {
   const Vec3 exact = 6 * pi * viscosity * a * u;
   EXPECT_LT((s.body->force(f) - exact).norm() / exact.norm(), 1.5e-5);  // fourth order: 8e-6
   const Vec3 density = 3 * viscosity * u / (2 * a);
-  EXPECT_LT(s.difference(f, [&](const Vec3&, const Vec3&) { return density; }, density.norm()), 3e-3);  // as the normal
+  EXPECT_LT(s.difference(f, [&](const Vec3&, const Vec3&) { return density; }, density.norm()), 3e-3);  // error of the normal
   EXPECT_LT(s.body->torque(f, Vec3::Zero()).norm() / exact.norm(), 1e-9);                               // the mesh is symmetric
 }
 
@@ -120,7 +120,7 @@ TEST(Resistance, LacksWhatTheReciprocalTheoremGives) {
   const double plain = (s.body->force(f) - force).norm() / force.norm();
   const auto uniform = [&](const Net& x) -> Net { return u.transpose().replicate(x.rows(), 1); };
   const double corrected = (s.body->force(f) + s.body->residual_work(uniform, f, z) - force).norm() / force.norm();
-  EXPECT_LT(corrected, 2e-7);  // the volume of the fitted surface: 2e-7 of it
+  EXPECT_LT(corrected, 2e-7);  // relative volume error of the fitted surface: 2e-7
   EXPECT_LT(corrected, plain / 20);
 }
 
@@ -128,24 +128,24 @@ TEST(Resistance, KnowsNothingOfAUniformPressure) {
   const Fixture s = spheroid();
   const Net u = s.field([](const Vec3& x) -> Vec3 { return Vec3(1, 0, 0) + Vec3(0, 0, 1).cross(x); });
   const Net f = s.body->force_density(u);
-  // int f.n dG = 0 is chosen; a multiple of n added to f exerts neither force nor torque.
+  // The condition int f.n dG = 0 is a choice. Adding a multiple of n to f changes neither force nor torque.
   const Net b = surface::Geometry(s.space).volume_gradient(s.surface);
   EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-10 * b.norm() * f.norm());  // the residual is 1e-12
   const Net n = s.body->normal();
   EXPECT_LT((s.body->force(f + 100 * n) - s.body->force(f)).norm(), 1e-10 * s.body->force(f).norm());  // int n dG = 0 holds to round-off
-  EXPECT_LT((s.body->torque(f + 100 * n, Vec3::Zero()) - s.body->torque(f, Vec3::Zero())).norm(), 1e-3);  // int x x N_A n_A dG: as the fit of n
+  EXPECT_LT((s.body->torque(f + 100 * n, Vec3::Zero()) - s.body->torque(f, Vec3::Zero())).norm(), 1e-3);  // int x x N_A n_A dG: error of the fitted n
 }
 
 TEST(Resistance, TakesUpTheFluxThatNoFluidCanCarry) {
   const Fixture s = sphere();
-  // A body that grows cannot be told from one at rest by f, up to the pressure inside.
+  // The density f of a growing body equals that of a body at rest, up to the pressure inside.
   const Net f = s.body->force_density(s.field([](const Vec3& x) { return x; }));
   EXPECT_LT(s.body->force(f).norm(), 1e-9);
   EXPECT_LT(s.body->stresslet(f, Vec3::Zero()).norm(), 1e-3);
 }
 
 TEST(Resistance, MatrixIsSymmetric) {
-  // Six rigid motions of an ellipsoid out of its principal axes, about a point that is not its centre: a full matrix.
+  // Six rigid motions of an ellipsoid in its principal axes about a point other than its centre: a full matrix.
   Fixture s(Vec3(0.7, 0.9, 1.1));
   const Vec3 about(0.3, -0.2, 0.4);
   Eigen::Matrix<double, 6, 6> matrix;
@@ -155,7 +155,7 @@ TEST(Resistance, MatrixIsSymmetric) {
     matrix.col(k) << s.body->force(push), s.body->torque(push, about);
     matrix.col(3 + k) << s.body->force(turn), s.body->torque(turn, about);
   }
-  EXPECT_LT((matrix - matrix.transpose()).norm() / matrix.norm(), 1e-5);  // collocation is not symmetric: as the fit
+  EXPECT_LT((matrix - matrix.transpose()).norm() / matrix.norm(), 1e-5);  // collocation is not symmetric; error of the fitted surface
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues().minCoeff(), 0);
 }
 

@@ -1,4 +1,4 @@
-// Free rigid bodies in affine flows: Jeffery's motion, and what every body must do.
+// Free rigid bodies in affine flows: Jeffery's motion, and properties of every free body.
 
 #include <cmath>
 #include <memory>
@@ -25,7 +25,7 @@ Mat3 some_gradient() {
   return l;
 }
 
-/// A free body on the cube mesh of six elements a side, in the linear flow above.
+/// A free body on the cube mesh of six elements per side, in the linear flow above.
 struct Fixture {
   spline::TMesh mesh = spline::cube(6);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -42,7 +42,7 @@ struct Fixture {
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
     SolverOptions solvers;
-    solvers.tolerance = 1e-12;  // symmetry and balance hold as far as the system is solved
+    solvers.tolerance = 1e-12;  // symmetry and balance hold up to the residual of the solve
     resistance =
         std::make_unique<Resistance>(space, surface::initial_shape(space, mesh, shape), viscosity, quadrature, solvers, ranks, phases);
     stokes::FlowOptions flow;
@@ -64,7 +64,7 @@ TEST(FreeBody, SphereGoesWithTheFlow) {
   const Fixture f(Vec3::Constant(0.8));
   const RigidMotion motion = f.body->motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Mat3 l = some_gradient();
-  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, its system is solved to 1e-12
+  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, and the system is solved to 1e-12
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-9);
   const Mat3 strain = 0.5 * (l + l.transpose()), exact = 20 * pi / 3 * viscosity * 0.8 * 0.8 * 0.8 * strain;  // Einstein 1906
   EXPECT_LT((f.body->stresslet(placed(f.shape.center)) - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
@@ -77,7 +77,7 @@ TEST(FreeBody, SpheroidTurnsAsJefferyFound) {
   for (const Net& place : {placed(f.shape.center), f.turned(0.7, Vec3(1, 2, 3)), f.turned(2.5, Vec3(0, 1, -1))}) {
     const Vec3 p = rotation_of(place) * Vec3(0, 0, 1);
     const Vec3 exact = w * p + b * (e * p - p * p.dot(e * p));
-    EXPECT_LT((f.body->motion(place).angular_velocity.cross(p) - exact).norm(), 1e-5);  // the fit of the surface at six elements a side
+    EXPECT_LT((f.body->motion(place).angular_velocity.cross(p) - exact).norm(), 1e-5);  // error of the fitted surface with six elements per side
   }
 }
 
@@ -94,11 +94,12 @@ TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
   const RigidMotion motion = body.motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Vec3 c = f.shape.center, laplacian(2 * flow.curvature().trace(), 0, 0);
   const Mat3 l = flow.gradient(c);
-  EXPECT_LT((motion.velocity - flow.velocity(c) - 0.64 / 6 * laplacian).norm() / motion.velocity.norm(), 2e-5);  // the mesh of six elements a side
+  EXPECT_LT((motion.velocity - flow.velocity(c) - 0.64 / 6 * laplacian).norm() / motion.velocity.norm(), 2e-5);  // error of the mesh of six elements
+                                                                                                                 // per side
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-5);
 }
 
-// At one place the modes must give what a solve there gives, which FreeBodyInTube does without a tube just as well.
+// At one position the combination of modes must equal a direct solve, which FreeBodyInTube also computes without a tube.
 TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
   stokes::FlowOptions options = parabolic();
@@ -112,7 +113,8 @@ TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
     modes.at(time, 0);
     solve.at(time, 0);
     const RigidMotion one = modes.motion(place), other = solve.motion(place);
-    EXPECT_LT((one.velocity - other.velocity).norm(), 1e-6 * other.velocity.norm());  // solves to 1e-8; a quadratic field turns between its sites
+    EXPECT_LT((one.velocity - other.velocity).norm(), 1e-6 * other.velocity.norm());  // solves to 1e-8; a rotated quadratic field is interpolated at
+                                                                                      // other sites
     EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 1e-6 * other.angular_velocity.norm());
     EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-5 * solve.stresslet(place).norm());
   }
@@ -122,7 +124,7 @@ TEST(FreeBody, IsFreeOfForceAndTorque) {
   const Fixture f(Vec3(0.7, 0.9, 1.2));
   const Net f0 = f.body->force_density(placed(f.shape.center));
   const double scale = viscosity * some_gradient().norm();
-  EXPECT_LT(f.resistance->force(f0).norm(), 1e-9 * scale);  // residuals of 1e-12, conditions of 1e2
+  EXPECT_LT(f.resistance->force(f0).norm(), 1e-9 * scale);  // residuals of 1e-12, condition numbers of 1e2
   EXPECT_LT(f.resistance->torque(f0, f.shape.center).norm(), 1e-9 * scale);
 }
 
@@ -134,7 +136,7 @@ TEST(FreeBody, MovesAsItsSurfaceDoes) {
   const Net slope = f.body->velocity(place);
   const Net rate = (f.body->surface(place + h * slope) - f.body->surface(place - h * slope)) / (2 * h);
   const Net exact = rigid_velocity(f.body->surface(place), motion, centre_of(place));
-  EXPECT_LT((rate - exact).norm() / exact.norm(), 1e-8);  // h^2 and round-off over h
+  EXPECT_LT((rate - exact).norm() / exact.norm(), 1e-8);  // truncation error h^2, and round-off divided by h
 }
 
 TEST(FreeBody, KeepsItsQuaternionOfUnitLength) {

@@ -1,4 +1,5 @@
-// Rigid bodies among others, by the second-kind equation: against the first-kind one, exact pairs, and very viscous drops.
+// Rigid bodies among other particles by the second-kind equation, compared with the first-kind equation, exact solutions for pairs, and very viscous
+// drops.
 
 #include <cmath>
 #include <numbers>
@@ -72,7 +73,7 @@ Mat3 some_gradient() {
   return l;
 }
 
-/// Two equations of different kinds have nothing in common but the body.
+/// The two equations are of different kinds and share only the body.
 TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   const Vec3 centre(0.3, -0.1, 0.2), axes(1.3, 0.8, 1);
   const Rigid driven{false, {}, Vec3(1, -2, 3), Vec3(2, 1, -1)};
@@ -88,7 +89,7 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   place.row(1) = q.vec().transpose(), place(2, 0) = q.w();
   const RigidMotion expected = body.motion(place);
   const RigidParticles found = system.evaluate(x)->rigid();
-  EXPECT_LT((found.motion(0).velocity - expected.velocity).norm(), 2e-5);  // n = 6: collocation errs by 1e-5 of the velocity
+  EXPECT_LT((found.motion(0).velocity - expected.velocity).norm(), 2e-5);  // n = 6: the collocation error is 1e-5 of the velocity
   EXPECT_LT((found.motion(0).angular_velocity - expected.angular_velocity).norm(), 5e-5);
   EXPECT_LT((system.evaluate(x)->stresslet() - body.stresslet(place)).norm(), 1e-4 * body.stresslet(place).norm());
 }
@@ -103,20 +104,20 @@ TEST(RigidParticles, ForcesThatAreNeededDriveTheSameMotion) {
                {away, Vec3::Ones(), Rigid{false, {}, forced.force(1), forced.torque(1)}}}, 4, some_gradient());
   Capsule other = free.system();
   const RigidParticles moved = other.evaluate(free.rest)->rigid();
-  // What both leave over between the collocation sites is not the same.
+  // The residuals of both problems between the collocation sites differ.
   EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 5e-4);
   EXPECT_LT((moved.motion(0).angular_velocity - told.motion.angular_velocity).norm(), 5e-4);
   EXPECT_LT(moved.motion(1).velocity.norm() + moved.motion(1).angular_velocity.norm(), 1e-3);
 }
 
-/// ../shared: multipole solution of two spheres, distance of centres 3 (Jeffrey & Onishi's functions).
+/// Compared with the multipole solution for two spheres whose centres are 3 apart (functions of Jeffrey & Onishi).
 TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   const Rigid pulled{true, {Vec3(1, 0, 0), Vec3::Zero()}}, held{true, {}};
   Bodies pair({{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), held}}, 4, Mat3::Zero());
   Capsule system = pair.system();
   const RigidParticles along = system.evaluate(pair.rest)->rigid();
   const double unit = 6 * pi * viscosity;
-  EXPECT_NEAR(along.force(0)[0] / unit, 1.3684796, 2e-4);  // n = 4; order four in the element size
+  EXPECT_NEAR(along.force(0)[0] / unit, 1.3684796, 2e-4);  // n = 4; fourth order in the element size
   EXPECT_NEAR(along.force(1)[0] / unit, -0.670175042, 2e-4);
   EXPECT_LT(along.torque(0).norm() + along.torque(1).norm(), 1e-6);
   Bodies free({{Vec3::Zero(), Vec3::Ones(), Rigid{}}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
@@ -126,22 +127,22 @@ TEST(RigidParticles, PairsOfSpheresHaveTheirResistance) {
   EXPECT_NEAR(in_strain.evaluate(free.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1.17172019, 2e-4);  // S0
 }
 
-/// The surface is a hair higher where it is collocated than between, which made 1.3e-4 of the torque.
+/// The surface is slightly higher at its collocation sites than between them. Without correction the error of the torque is 1.3e-4.
 TEST(RigidParticles, ALoadDrivesItsOwnBodyBetweenSitesToo) {
   const Rigid turned{true, {Vec3::Zero(), Vec3(0, 0, 1)}};
   Bodies one({{Vec3::Zero(), Vec3::Ones(), turned}}, 4, Mat3::Zero());
   Capsule system = one.system();
-  EXPECT_NEAR(system.evaluate(one.rest)->rigid().torque(0)[2] / (8 * pi * viscosity), 1, 1e-5);  // the volume is a sphere's to 1e-6
+  EXPECT_NEAR(system.evaluate(one.rest)->rigid().torque(0)[2] / (8 * pi * viscosity), 1, 1e-5);  // the volume equals that of the sphere to 1e-6
 }
 
-/// So does its density; collocated, the stresslet errs by 1.4e-4.
+/// The density needs a correction too. Without it the error of the stresslet is 1.4e-4.
 TEST(RigidParticles, ADensityDrivesItsOwnBodyBetweenSitesToo) {
   Bodies one({{Vec3::Zero(), Vec3::Ones(), Rigid{}}}, 4, Mat3(Vec3(1, -0.5, -0.5).asDiagonal()));
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->stresslet()(0, 0) / (20 * pi * viscosity / 3), 1, 1e-5);
 }
 
-/// What each is alone takes 41 iterations at the narrower gap.
+/// With the inverses of isolated bodies only, the narrower gap takes 41 iterations.
 TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
   const Rigid pulled{true, {Vec3(1, 0.5, 0), Vec3(0, 1, 2)}}, held{true, {}};
   std::vector<long> iterations;
@@ -156,7 +157,7 @@ TEST(RigidParticles, IterationsDoNotGrowAsAFilmThins) {
   EXPECT_LE(iterations[1], 20);
 }
 
-/// The limit is approached like 1/lambda.
+/// The limit of infinite viscosity is approached like 1/lambda.
 TEST(RigidParticles, VeryViscousDropsMoveAlike) {
   const auto velocity = [](double viscosity_ratio) {
     const std::optional<Rigid> rigid = viscosity_ratio > 0 ? std::nullopt : std::optional(Rigid{});
@@ -168,10 +169,10 @@ TEST(RigidParticles, VeryViscousDropsMoveAlike) {
   const Net rigid = velocity(0);
   const auto difference = [&](double viscosity_ratio) { return (velocity(viscosity_ratio) - rigid).norm() / rigid.norm(); };
   EXPECT_NEAR(difference(1e2) / difference(1e3), 10, 0.5);
-  EXPECT_LT(difference(1e4), 3e-4);  // with what collocation lacks of the drops
+  EXPECT_LT(difference(1e4), 3e-4);  // includes the collocation error of the drops
 }
 
-/// A stage of a time step is no rigid image; what it stands for is.
+/// The net of a stage of a time step is not a rigid image of the body; it represents the nearest rigid image.
 TEST(RigidParticles, StayAsTheyAre) {
   Bodies pair({{Vec3::Zero(), Vec3(1.2, 1, 0.8)}, {Vec3(3, 0.2, 0), Vec3::Ones()}}, 3, some_gradient());
   Capsule system = pair.system();
@@ -183,7 +184,7 @@ TEST(RigidParticles, StayAsTheyAre) {
     const Net now = pair.parameters.particles[p].block.rows(x);
     const Eigen::RowVector3d mean = now.colwise().mean(), mean_at_rest = pair.nets[p].colwise().mean();
     const Eigen::MatrixXd y = now.rowwise() - mean, r = pair.nets[p].rowwise() - mean_at_rest;
-    EXPECT_LT((y * y.transpose() - r * r.transpose()).norm(), 1e-12 * r.squaredNorm()) << p;  // all distances
+    EXPECT_LT((y * y.transpose() - r * r.transpose()).norm(), 1e-12 * r.squaredNorm()) << p;  // all distances between points
   }
   EXPECT_LT((system.velocity(stage) - system.velocity(x)).norm(), 1e-9);
 }
@@ -194,7 +195,7 @@ struct ByTractions : Bodies {
   }
 };
 
-/// The force on spheres that come towards each other, by the multipoles of before.
+/// The force on spheres that approach each other, compared with the multipole solution above.
 TEST(RigidTractions, ErrLessThanDoubleLayers) {
   const Rigid one{true, {Vec3(1, 0, 0), Vec3::Zero()}}, other{true, {Vec3(-1, 0, 0), Vec3::Zero()}};
   const auto error = [&](auto pair) {
@@ -224,12 +225,12 @@ TEST(RigidTractions, ForcesThatAreNeededDriveTheSameMotion) {
   ByTractions free({{Vec3::Zero(), Vec3(1.2, 1, 0.8), driven}, {away, Vec3::Ones(), Rigid{}}}, 4, some_gradient());
   Capsule other = free.system();
   const RigidParticles moved = other.evaluate(free.rest)->rigid();
-  // What is left is what collocation lacks of the correction itself.
+  // The remaining difference is the collocation error of the correction itself.
   EXPECT_LT((moved.motion(0).velocity - told.motion.velocity).norm(), 1e-5);
   EXPECT_LT((moved.motion(1).velocity - forced.motion(1).velocity).norm(), 1e-5);
 }
 
-/// Drag along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
+/// Drag of a sphere that moves along a plane wall at a gap of one radius: Goldman, Cox & Brenner 1967.
 TEST(RigidTractions, AWallResists) {
   ByTractions one({{Vec3(0.2, 0, 2), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.wall = stokes::PlaneWall(Vec3::Zero(), Vec3(0, 0, 1));
@@ -237,7 +238,7 @@ TEST(RigidTractions, AWallResists) {
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity), 1.38275238, 1e-5);
 }
 
-/// Drag of a simple cubic array at the volume fraction 0.2: multipoles with Ewald sums.
+/// Drag of a simple cubic array of spheres at the volume fraction 0.2: multipoles with Ewald sums.
 TEST(RigidTractions, AnArrayResists) {
   ByTractions one({{Vec3::Zero(), Vec3::Ones(), Rigid{true, {Vec3(1, 0, 0), Vec3::Zero()}}}}, 4, Mat3::Zero());
   one.parameters.cell = stokes::PeriodicCell(2.7564674676 * Mat3::Identity(), 3);

@@ -15,7 +15,7 @@ TEST(Secants, KnowNothingAtFirst) { EXPECT_EQ(Secants()(net(1)).norm(), 0); }
 TEST(Secants, GiveBackWhatWasLearntInWhateverSize) {
   Secants secants;
   for (unsigned k : {1u, 2u, 3u}) secants.add(1e-3 * net(k), 1e-3 * net(10 + k), 3);
-  for (unsigned k : {1u, 2u, 3u})  // within twice the regularisation of the fit, 1e-2
+  for (unsigned k : {1u, 2u, 3u})  // twice the regularisation of the fit, 1e-2
     EXPECT_LT((secants(net(k)) - net(10 + k)).norm(), 2e-2 * net(10 + k).norm());
 }
 
@@ -38,7 +38,7 @@ TEST(Secants, KeepTheLastOnes) {
 TEST(Secants, StayBoundedWhereCorrectionsAreParallel) {
   Secants secants;
   secants.add(net(1), net(2), 2);
-  secants.add(net(1), net(3), 2);  // the same correction missed by another vector: the mean of both
+  secants.add(net(1), net(3), 2);  // an equal correction with another error: the result is the mean of both
   EXPECT_LT((secants(net(1)) - 0.5 * (net(2) + net(3))).norm(), 2e-2 * net(2).norm());
 }
 

@@ -1,4 +1,4 @@
-// Several capsules and drops in one system: what they do to each other, and what they leave each other.
+// Several capsules and drops in one system: their interactions, and properties that each particle keeps.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 namespace tanktread::coupling {
 namespace {
 
-/// A stretched ellipsoid at a place, of some material.
+/// Kind of a particle: a stretched ellipsoid with its centre and material.
 struct Kind {
   int elements_per_side;
   Vec3 centre;
@@ -21,7 +21,7 @@ struct Kind {
   std::string motion = "material";
 };
 
-/// Particles of these kinds, in this order.
+/// Particles of the given kinds, in the given order.
 struct Several {
   std::vector<spline::Space> spaces;
   spline::Space space;
@@ -74,7 +74,8 @@ TEST(SeveralParticles, FarAwayEachMovesAsAlone) {
   const Net v = both.system().velocity(both.x);
   for (size_t p = 0; p < 2; ++p) {
     Several one({p == 0 ? capsule : drop});
-    EXPECT_LT((both.velocity_of(p, v) - one.system().velocity(one.x)).lpNorm<Eigen::Infinity>(), 1e-7) << p;  // falls with the square of the distance
+    EXPECT_LT((both.velocity_of(p, v) - one.system().velocity(one.x)).lpNorm<Eigen::Infinity>(), 1e-7) << p;  // decreases with the square of the
+                                                                                                              // distance
   }
 }
 
@@ -98,7 +99,7 @@ TEST(SeveralParticles, EachKeepsItsVolume) {
   }
 }
 
-/// Two alike at r and -r move point-symmetrically; the pair knows nothing of that.
+/// Two equal particles at r and -r move point-symmetrically, although the system does not use this symmetry.
 TEST(SeveralParticles, EqualOnesMoveAlike) {
   const Vec3 r(1.1, 0.2, 0.3);
   Several pair({{3, r, 5, soft}, {3, -r, 5, soft}});
@@ -110,7 +111,7 @@ TEST(SeveralParticles, EqualOnesMoveAlike) {
     (x1.rowwise() + x0.row(i)).rowwise().squaredNorm().minCoeff(&j);
     largest = std::max(largest, (first.row(i) + second.row(j)).norm());
   }
-  EXPECT_LT(largest, 1e-6);  // the tolerance of the quadrature
+  EXPECT_LT(largest, 1e-6);  // tolerance of the quadrature
 }
 
 
@@ -135,7 +136,7 @@ TEST(SeveralParticles, JacobianIsTheDerivative) {
   system.freeze(pair.x);
   system.linearise(pair.x);
   const Net told = system.derivative(pair.x, v, delta), found = system.velocity(pair.x + delta) - v;
-  EXPECT_LT((told - found).norm(), 0.3 * found.norm());  // what the change of the frozen layer operator makes up
+  EXPECT_LT((told - found).norm(), 0.3 * found.norm());  // contribution of the change of the frozen layer operator
 }
 
 }  // namespace

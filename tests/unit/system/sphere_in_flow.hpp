@@ -1,5 +1,5 @@
 #pragma once
-// A unit sphere in an unbounded flow, with all that a Capsule is made of.
+// A unit sphere in an unbounded flow, with everything needed to construct a Capsule.
 
 #include "spline/extraction.hpp"
 #include "spline/t_mesh.hpp"

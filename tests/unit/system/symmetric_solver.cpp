@@ -1,4 +1,4 @@
-// The fundamental part of a system gives what the whole one does.
+// The solver of the fundamental part of a symmetric system gives the solution of the whole system.
 
 #include "membrane/symmetric_solver.hpp"
 
@@ -41,7 +41,7 @@ struct Surface {
   }
 };
 
-/// Cut around both poles of x1, whose elements are images of each other under every reflection.
+/// Returns a mesh refined around both poles of x1, whose elements are images of each other under every reflection.
 spline::TMesh refined() {
   const Surface coarse(spline::cube(6, 1));
   std::vector<spline::Mark> marks;
@@ -61,7 +61,7 @@ void expect_the_same(const Surface& s, const Keeps& keeps, const std::string& de
     whole.factor(a);
     const Net b = a * field, x = whole.solve(b);
     EXPECT_LT((reduced.solve(b) - x).norm(), 1e-13 * x.norm()) << description;
-    Net other_rows = b;  // which only the fundamental ones tell
+    Net other_rows = b;  // only fundamental rows of the right-hand side are used
     symmetry.complete(other_rows);
     EXPECT_EQ((reduced.solve(other_rows) - reduced.solve(b)).norm(), 0);
   }

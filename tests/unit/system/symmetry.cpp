@@ -1,4 +1,4 @@
-// Only the fundamental part of a symmetric scene is evaluated and solved for, and the answer is the same.
+// Only the fundamental part of a symmetric scene is evaluated and solved for, and the result is that of the whole scene.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@ namespace symmetry_test {
 struct Fixture : SphereInFlow {
   Fixture() : SphereInFlow(4, "simple shear") {
     parameters.particles.front().material.law = membrane::NeoHookean{2.5};
-    parameters.quadrature.tolerance = 1e-9;  // what rules leave of the integrals need not be symmetric
+    parameters.quadrature.tolerance = 1e-9;  // quadrature errors need not be symmetric
   }
 
   surface::Symmetry symmetry() const {
@@ -24,7 +24,7 @@ struct Fixture : SphereInFlow {
     return SphereInFlow::capsule();
   }
 
-  /// An ellipsoid turned in the plane of shear: of that flow's symmetry.
+  /// Returns an ellipsoid rotated in the plane of shear, which has the symmetry of the flow.
   Net deformed() const {
     Net x = sphere;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -58,7 +58,7 @@ TEST(Symmetry, IsThatOfTheSameSceneInOtherUnits) {
   for (const double unit : {1.0, 1e-9}) {
     surface::ParticleShape shape;
     shape.radius = unit;
-    shape.center = {0.01 * unit, 0, 0};  // off the point of rest
+    shape.center = {0.01 * unit, 0, 0};  // off the stagnation point
     f.sphere = surface::initial_shape(f.space, f.mesh, shape);
     EXPECT_EQ(f.symmetry().description(), "mirror x2 and mirror x3") << unit;
   }
@@ -68,7 +68,7 @@ TEST(Symmetry, OfAParticleOffTheMiddleOfAShearFlowIsTheMirrorPlaneAlone) {
   Fixture f;
   surface::ParticleShape shape;
   shape.radius = 1;
-  shape.center = {0.3, 0.2, 0.4};  // the flow carries it along x1
+  shape.center = {0.3, 0.2, 0.4};  // the flow convects it along x1
   f.sphere = surface::initial_shape(f.space, f.mesh, shape);
   EXPECT_EQ(f.symmetry().description(), "mirror x2");
 }
@@ -81,7 +81,7 @@ TEST(Symmetry, GivesTheVelocityOfTheWholeSurface) {
     const Net x = f.deformed();
     const Net whole = f.capsule(false).velocity(x);
     Capsule reduced = f.capsule(true);
-    EXPECT_NEAR((reduced.velocity(x) - whole).cwiseAbs().maxCoeff(), 0, 1e-8 * whole.cwiseAbs().maxCoeff());  // rules of 1e-9
+    EXPECT_NEAR((reduced.velocity(x) - whole).cwiseAbs().maxCoeff(), 0, 1e-8 * whole.cwiseAbs().maxCoeff());  // quadrature tolerance 1e-9
   }
 }
 
@@ -96,7 +96,7 @@ TEST(Symmetry, GivesTheImplicitStepOfTheWholeSurface) {
     capsule.linearise(x);
     steps[reduced] = capsule.solve(0.2, 0.2 * v, 1e-10, {});
   }
-  EXPECT_NEAR((steps[1] - steps[0]).norm(), 0, 1e-4 * steps[0].norm());  // entries of the frozen operator are rounded to 2^-9, 294 of them a row
+  EXPECT_NEAR((steps[1] - steps[0]).norm(), 0, 1e-4 * steps[0].norm());  // entries of the frozen operator are rounded to 2^-9, 294 entries per row
 }
 
 }  // namespace symmetry_test

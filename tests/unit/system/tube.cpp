@@ -1,4 +1,5 @@
-// What a tube answers: linear, the same wherever along it the particle is, consistent with its parts, with its frozen copy and with its checks.
+// The response of a tube is linear, independent of the particle's position along the tube, and consistent with the block system, with its frozen copy
+// and with its checks.
 
 #include <cmath>
 #include <memory>
@@ -20,7 +21,7 @@ namespace tube_test {
 using std::numbers::pi;
 constexpr double viscosity = 1.7;
 
-/// A sphere of radius 0.5 off the axis of the unit tube, coarse all over.
+/// A sphere of radius 0.5 off the axis of a tube of radius 1, both with coarse meshes.
 struct Fixture {
   spline::TMesh mesh = spline::cube(3);
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
@@ -77,14 +78,15 @@ TEST(Tube, HasThePressureDropOfTheFlowOnTheSurfaceHoweverCoarse) {
   const Net along = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
   const auto& rule = quadrature::tensor_gauss(12);
   constexpr double h = 1e-4;
-  double work = 0;  // of this force and the tube's flow
+  double work = 0;  // work of this force in the tube's flow
   for (int e = 0; e < static_cast<int>(s.space.elements.size()); ++e)
     for (int q = 0; q < rule.size(); ++q) {
       const auto at = [&](double du, double dv) -> Vec3 { return surface::value(s.space, s.x, {e, rule.s[q] + du, rule.t[q] + dv}); };
       const double area = (at(h, 0) - at(-h, 0)).cross(at(0, h) - at(0, -h)).norm() / (4 * h * h);
       work += rule.weights[q] * area * s.flow->velocity(at(0, 0))[0];
     }
-  EXPECT_NEAR(s.tube->pressure_of(along) * s.flow->flow_rate() / work, 1, 1e-7);  // differences over h; 1.1e-4 where the flow is interpolated
+  EXPECT_NEAR(s.tube->pressure_of(along) * s.flow->flow_rate() / work, 1, 1e-7);  // finite differences with step h; the error would be 1.1e-4 if the
+                                                                                  // flow were interpolated
 }
 
 TEST(Tube, TakesNoAccountOfVelocitiesWhenTheViscositiesAreEqual) {
@@ -98,13 +100,13 @@ TEST(Tube, IsTheSameEverywhereAlongItsAxis) {
   const Net here = s.tube->respond(s.f, s.v).velocity;
   const double gap = s.tube->gap();
   s.tube->place(s.x.rowwise() + Eigen::RowVector3d(123, 0, 0));
-  EXPECT_LT((s.tube->respond(s.f, s.v).velocity - here).norm() / here.norm(), 1e-9);  // round-off of 123
+  EXPECT_LT((s.tube->respond(s.f, s.v).velocity - here).norm() / here.norm(), 1e-9);  // round-off at a distance of 123
   EXPECT_NEAR(s.tube->gap(), gap, 1e-10);
 }
 
 TEST(Tube, MeasuresTheGap) {
   Fixture s(1);
-  EXPECT_NEAR(s.tube->gap(), 1 - 0.5 - std::hypot(0.1, 0.05), 2e-3);  // the fits of sphere and circle
+  EXPECT_NEAR(s.tube->gap(), 1 - 0.5 - std::hypot(0.1, 0.05), 2e-3);  // errors of the fitted sphere and circle
 }
 
 TEST(Tube, KeepsItsAnswerFrozen) {
@@ -112,7 +114,7 @@ TEST(Tube, KeepsItsAnswerFrozen) {
   s.tube->freeze();
   const Net now = s.tube->respond(s.f, s.v).velocity;
   s.tube->place(0.8 * s.x);
-  EXPECT_LT((s.tube->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits an entry
+  EXPECT_LT((s.tube->frozen_response(s.f, s.v) - now).norm() / now.norm(), 1e-2);  // nine bits per entry
   EXPECT_GT((s.tube->respond(s.f, s.v).velocity - now).norm() / now.norm(), 0.1);
 }
 
@@ -124,7 +126,7 @@ TEST(Tube, ServesAnotherMeshOfTheParticle) {
   Tube other(*s.tube, space);
   other.set_reference(x);
   other.place(x);
-  const auto work = [](Tube& tube, const Net& net) {  // of a constant load and a rigid velocity: mesh-independent
+  const auto work = [](Tube& tube, const Net& net) {  // for a constant load and a rigid velocity; independent of the mesh
     const Net load = Eigen::RowVector3d(1, 0.5, 0).replicate(net.rows(), 1);
     return tube.respond(load, net).pressure_drop;
   };
@@ -147,17 +149,17 @@ TEST(Tube, GivesItsAnswerAnywhere) {
 }
 
 TEST(Tube, HasChecksThatAgreeForAForceFreeFlow) {
-  // A load that exerts no force and a rigid velocity: both a small share of what they are made of.
+  // A load without net force, and a rigid velocity: both results are small differences of large terms.
   Fixture s(5);
   const Net v = Eigen::RowVector3d(1, 0, 0).replicate(s.x.rows(), 1);
   const Tube::Response r = s.tube->respond({}, v);
   const Tube::Checks c = s.tube->checks({}, v, r);
-  EXPECT_NEAR(r.pressure_drop, 0, 1e-12);  // f_inf has no force on what is closed, however coarse
+  EXPECT_NEAR(r.pressure_drop, 0, 1e-12);  // f_inf exerts no force on a closed surface, even on a coarse mesh
   EXPECT_NEAR(c.flux, 0, 1e-3);
   EXPECT_NEAR(c.force, 0, 1e-3);
   const Tube::Response pushed = s.tube->respond(s.f);
   const Tube::Checks routes = s.tube->checks(s.f, {}, pushed);
-  EXPECT_NEAR(routes.pressure_by_flux / pushed.pressure_drop, 1, 0.02);  // a coarse wall
+  EXPECT_NEAR(routes.pressure_by_flux / pushed.pressure_drop, 1, 0.02);  // coarse mesh of the wall
   EXPECT_NEAR(routes.pressure_by_force / pushed.pressure_drop, 1, 0.02);
 }
 
@@ -175,15 +177,15 @@ TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
   const RigidMotion motion = body.motion(here);
   const double drop = body.pressure_drop(here);
   EXPECT_GT(motion.velocity[0], 1.3);
-  EXPECT_NEAR(motion.angular_velocity.dot(s.shape.center), 0, 1e-4);  // turns as the profile shears
+  EXPECT_NEAR(motion.angular_velocity.dot(s.shape.center), 0, 1e-4);  // rotation by the shear of the profile
   Net there = here;
   there.row(0) += Eigen::RowVector3d(-4, 0, 0);
-  there(2, 0) = std::cos(pi / 4), there(1, 0) = std::sin(pi / 4);  // a quarter about x1: the cube's mesh looks the same
-  const double rules = 1e-5;  // of 1e-6, chosen anew; other meshes differ by 1e-3
+  there(2, 0) = std::cos(pi / 4), there(1, 0) = std::sin(pi / 4);  // rotation by 90 degrees about x1, which maps the cube mesh onto itself
+  const double rules = 1e-5;  // quadrature of tolerance 1e-6 with other rules; a change of mesh would give 1e-3
   EXPECT_LT((body.motion(there).velocity - motion.velocity).norm(), rules);
   EXPECT_LT((body.motion(there).angular_velocity - motion.angular_velocity).norm(), rules);
   EXPECT_NEAR(body.pressure_drop(there) / drop, 1, rules);
-  there(0, 1) = 0.6;  // a trial of a step that would take it into the wall
+  there(0, 1) = 0.6;  // trial position of a step that intersects the wall
   EXPECT_FALSE(body.motion(there).velocity.allFinite());
   EXPECT_TRUE(body.motion(here).velocity.allFinite());
 }

@@ -128,7 +128,7 @@ TEST(NewestCheckpoint, PassesOverDamagedFiles) {
   EXPECT_FALSE(newest->damaged[1].reason.empty());
 }
 
-/// /proc/self/mem is a file that opens and whose first byte cannot be read (EIO).
+/// /proc/self/mem is a file that can be opened, but whose first byte cannot be read (EIO).
 TEST(NewestCheckpoint, IsNotLookedForBehindAFileThatTheSystemDoesNotRead) {
   const Scratch scratch;
   const Scene scene;
@@ -152,7 +152,7 @@ TEST(SetAside, NeverTakesTheNameOfAnotherFile) {
   EXPECT_EQ(contents(scratch / "a.damaged"), "a.damaged");
 }
 
-/// Not where HDF5 leaves room, nor in the picture.
+/// Changed bytes in unused parts of the file or in the snapshot's fields leave the checkpoint the same; others are detected.
 TEST(Checkpoint, IsRefusedOrTheSameWhateverByteOfTheFileChanged) {
   const Scratch scratch;
   const Scene scene;
@@ -234,7 +234,7 @@ TEST(Snapshot, KilledWhileWritingLeavesOnlyWholeFiles) {
   }
 }
 
-/// The layout as another reader of HDF5 sees it.
+/// Checks the layout with another reader of HDF5.
 TEST(Snapshot, HoldsTheLayoutOfVtkhdf) {
   const Scratch scratch;
   const Scene scene;

@@ -14,7 +14,7 @@ Vec3 sheet_normal(double x, double y) {
   return Vec3(-(3 * x * x * y * y - 2 * y * y * y), -(2 * x * x * x * y - 6 * x * y * y), 1).normalized();
 }
 
-/// Three patches of one bicubic sheet side by side: degrees 3, 3, 4.
+/// Three adjacent patches of one bicubic sheet, of degrees 3, 3, 4.
 struct Sheet {
   spline::Space space;
   Net net;
@@ -51,7 +51,7 @@ TEST(LagrangeMesh, NodesLieOnTheSurfaceWithItsExactNormals) {
   const LagrangeMesh mesh = lagrange_mesh(sheet_.space, sheet_.net);
   const Eigen::MatrixXd points = Nodes(surface::BezierMap(sheet_.space), mesh).values(sheet_.net);
   const Net normals = Nodes(surface::BezierMap(sheet_.space), mesh).normals(sheet_.net);
-  // Round-off of interpolating heights up to 27.
+  // The tolerances allow for round-off of the interpolation of heights up to 27.
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     EXPECT_NEAR((points.row(k).transpose() - sheet(points(k, 0), points(k, 1))).norm(), 0, 1e-12);
     EXPECT_NEAR((normals.row(k).transpose() - sheet_normal(points(k, 0), points(k, 1))).norm(), 0, 1e-11);
@@ -86,7 +86,7 @@ TEST(LagrangeMesh, DerivativesAtTheNodesAreThoseOfTheElementThatTheirSitesName) 
 TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   spline::Space space;
   Net net;
-  // Two halves of a paraboloid x3 = -(x1^2 + x2^2) over a square, each collapsed at t = 0 into the pole.
+  // The surface is a paraboloid x3 = -(x1^2 + x2^2) over a square, in two halves that are collapsed at t = 0 into the pole.
   for (const double side : {1., -1.}) {
     add_patch(space, net, 3, [side](double s, double t) {
       const double x = side * t, y = side * t * (2 * s - 1);
@@ -99,7 +99,7 @@ TEST(LagrangeMesh, APoleIsOneNodeWithANormal) {
   const Net normals = Nodes(surface::BezierMap(space), mesh).normals(net);
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
     const Vec3 exact = -Vec3(2 * points(k, 0), 2 * points(k, 1), 1).normalized();
-    // At the pole the normal is taken 1e-4 of the patch inside; the curvature is 2.
+    // At the pole the normal is evaluated 1e-4 of the patch inside; the curvature is 2.
     EXPECT_NEAR((normals.row(k).transpose() - exact).norm(), 0, points.row(k).norm() < 1e-12 ? 5e-4 : 1e-12);
   }
 }

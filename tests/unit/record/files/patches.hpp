@@ -1,5 +1,5 @@
 #pragma once
-// Small open surfaces of separate Bezier patches, each with control points of its own, through given functions.
+// Small open surfaces of separate Bezier patches, each with its own control points, that interpolate given functions.
 
 #include <functional>
 
@@ -11,9 +11,9 @@
 
 namespace tanktread::output {
 
-using Map = std::function<Vec3(double, double)>;  ///< (s, t) -> place, a polynomial of the element's degree in each
+using Map = std::function<Vec3(double, double)>;  ///< position as a function of (s, t), a polynomial of the element's degree in each variable
 
-/// Adds an element of degree p that is `map`, which is interpolated at the uniform (p + 1)^2 places.
+/// Adds an element of degree p that represents `map`, by interpolation at (p + 1)^2 uniform points.
 inline void add_patch(spline::Space& space, Net& net, int p, const Map& map) {
   const int n = p + 1;
   Eigen::MatrixXd line(n, n);

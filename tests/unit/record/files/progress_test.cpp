@@ -18,7 +18,7 @@ TEST(Progress, AResumedRunCountsFromItsOwnBegin) {
   EXPECT_NE(progress_line({6, 1, 1, 0}, 5, 7, 10, 0).find("10 s left"), std::string::npos);
 }
 
-/// What a run of many short steps leaves in a file.
+/// Returns the text that a run of many short steps writes to a file.
 std::string said(bool quiet) {
   const Scratch scratch;
   std::FILE* file = std::fopen((scratch / "log").c_str(), "w");

@@ -85,7 +85,7 @@ TEST(RunRecord, ItsChecksumIsOfItsFirstRowsInAnyOrderOfTheSeries) {
   RunRecord record = three_series(scratch / "run.h5");
   for (int k = 0; k < 4; ++k) record.append(std::array{0.1 * k, -1. * k, std::sin(k)});
   record.write();
-  RunRecord back = RunRecord::load(scratch / "run.h5");  // in alphabetical order
+  RunRecord back = RunRecord::load(scratch / "run.h5");  // its series are in alphabetical order
   const std::string of_three = back.checksum(3);
   EXPECT_EQ(of_three, record.checksum(3));
   EXPECT_NE(of_three, record.checksum(4));
@@ -112,7 +112,7 @@ TEST(RunRecord, SaysThatADamagedFileIsOne) {
 
 TEST(RunRecord, ADiskThatRefusesIsARunFailure) { EXPECT_THROW(three_series("/proc/none/run.h5").write(), RunFailure); }
 
-/// Writes rows (k, k^2, 1/k) for ever, and says through the pipe how many are done.
+/// Writes rows (k, k^2, 1/k) without end, and sends through the pipe the number of the latest row written.
 [[noreturn]] void append_until_killed(const std::filesystem::path& path, int pipe) {
   RunRecord record = three_series(path);
   for (std::uint32_t k = 0;; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// A directory of its own for every test, gone afterwards.
+// Temporary directory of a test, deleted at its end.
 
 #include <cstdlib>
 #include <filesystem>
@@ -36,7 +36,7 @@ inline std::string contents(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// What the shell command prints on standard output; its exit code must be zero.
+/// Returns the standard output of a shell command. Throws std::runtime_error if its exit code is not zero.
 inline std::string printed_by(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");
   std::string text;
