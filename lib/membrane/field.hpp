@@ -69,8 +69,8 @@ class Field {
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
-  /// Returns a function that evaluates the field at a site of its space, scaled to order 1, in the state set last. Refinement reduces the interpolation
-  /// error (1.5) of these values. If the function is empty, refinement ignores the field.
+  /// Returns a function that evaluates the field at a site of its space, scaled to order 1, in the state set last. Refinement reduces the
+  /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
   /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown, and

@@ -54,12 +54,12 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 /// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
 /// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the current surface, and the
 /// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
-/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no error for
-/// the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
+/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no
+/// error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
 struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
-  double fields = 0;   ///< of the fields on the surface, which are scaled to order 1; 0 without any
+  double fields = 0;   ///< e(q), 1; 0 without fields
 
   Errors operator+(const Errors& other) const { return {surface + other.surface, load + other.load, fields + other.fields}; }
   Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
