@@ -10,6 +10,9 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "app/provenance.hpp"
 #include "app/signals.hpp"
@@ -294,7 +297,20 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
 
 }  // namespace
 
+namespace {
+
+/// Keeps freed memory for the next step and snapshot instead of returning it to the system, which clears every page that it hands out again.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);
+  mallopt(M_TRIM_THRESHOLD, 1 << 28);
+#endif
+}
+
+}  // namespace
+
 int main(int argc, char** argv, const Registry& registry) {
+  keep_freed_memory();
   catch_signals();
   const coupling::Session session(&argc, &argv);
   std::string message;

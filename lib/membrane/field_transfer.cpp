@@ -10,6 +10,7 @@
 #include "membrane/surfactant.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::membrane {
 
@@ -26,12 +27,7 @@ Eigen::VectorXd Surfactant::transferred(const Field& field, const Net& x, const 
         s += here.s[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
         t += here.t[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
       }
-      const spline::Site there = site({static_cast<int>(e), rule.s[q], rule.t[q]});
-      const spline::Element& other = from.space_.elements[static_cast<std::size_t>(there.element)];
-      const spline::Basis basis = spline::basis(other, there.s, there.t);
-      double c = 0;
-      for (std::size_t a = 0; a < other.points.size(); ++a) c += basis.value[static_cast<Eigen::Index>(a)] * from.concentration_[other.points[a]];
-      const double content = rule.weights[q] * s.cross(t).norm() * c;
+      const double c = from.concentration_at(site({static_cast<int>(e), rule.s[q], rule.t[q]})), content = rule.weights[q] * s.cross(t).norm() * c;
       for (std::size_t a = 0; a < element.points.size(); ++a) contents[element.points[a]] += content * here.value[static_cast<Eigen::Index>(a)];
     }
   }
@@ -98,6 +94,28 @@ Eigen::MatrixX3d MaxwellElement::logarithms() const {
   return all;
 }
 
+/// Interpolates `logarithms`, given at the Gauss points, to a site.
+Eigen::Vector3d MaxwellElement::interpolated(const Eigen::MatrixX3d& logarithms, const spline::Site& site) const {
+  const auto element = static_cast<std::size_t>(site.element);
+  const int n = order(element);
+  const Eigen::VectorXd nodes = quadrature::tensor_gauss(n).s.head(n);
+  const Eigen::VectorXd by_s = lagrange(nodes, site.s), by_t = lagrange(nodes, site.t);
+  Symmetric sum = Symmetric::Zero();
+  for (int k = 0; k < n * n; ++k) sum += by_s[k % n] * by_t[k / n] * logarithms.row(first_[element] + k).transpose();
+  return sum;
+}
+
+surface::FieldsAt MaxwellElement::values_at() const {
+  return [this, known = logarithms()](const spline::Site& site) -> Eigen::VectorXd {
+    const surface::Point at = surface::point(space_, x_, site);
+    Eigen::Matrix<double, 3, 2> tangents;
+    tangents << at.a1, at.a2;
+    const Eigen::Matrix2d l = (tangents.transpose() * tangents).llt().matrixL();
+    const Eigen::Matrix<double, 3, 2> axes = tangents * l.transpose().inverse();
+    return (axes * matrix(interpolated(known, site)) * axes.transpose()).reshaped();
+  };
+}
+
 Eigen::VectorXd MaxwellElement::transferred(const Field& field, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const {
   const auto& from = static_cast<const MaxwellElement&>(field);
   const Eigen::MatrixX3d known = from.logarithms();
@@ -105,14 +123,7 @@ Eigen::VectorXd MaxwellElement::transferred(const Field& field, const Net& x, co
   for (std::size_t e = 0; e < first_.size(); ++e) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(order(e));
     for (Eigen::Index q = 0; q < rule.size(); ++q) {
-      const spline::Site there = site({static_cast<int>(e), rule.s[q], rule.t[q]});
-      const auto other = static_cast<std::size_t>(there.element);
-      const int n = from.order(other);
-      const Eigen::VectorXd nodes = quadrature::tensor_gauss(n).s.head(n);
-      const Eigen::VectorXd by_s = lagrange(nodes, there.s), by_t = lagrange(nodes, there.t);
-      Symmetric sum = Symmetric::Zero();
-      for (int k = 0; k < n * n; ++k) sum += by_s[k % n] * by_t[k / n] * known.row(from.first_[other] + k).transpose();
-      here.row(first_[e] + q) = sum;
+      here.row(first_[e] + q) = from.interpolated(known, site({static_cast<int>(e), rule.s[q], rule.t[q]}));
     }
   }
   Eigen::VectorXd result(size());

@@ -46,6 +46,7 @@ class MaxwellElement : public Field {
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
+  surface::FieldsAt values_at() const override;  ///< logarithm of the tensor C^ab x_a x_b in space, nine components
   /// Interpolates the logarithm of C in orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
@@ -55,6 +56,7 @@ class MaxwellElement : public Field {
   int order(std::size_t element) const;
   Eigen::MatrixX3d raised_metric(const Net& x) const;
   Eigen::MatrixX3d logarithms() const;
+  Eigen::Vector3d interpolated(const Eigen::MatrixX3d& logarithms, const spline::Site& site) const;
   template <class Use>
   void each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const;
   template <class Use>

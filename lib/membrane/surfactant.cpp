@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -125,6 +126,17 @@ surface::Range Surfactant::extremes() const {
   Net values = Net::Zero(space_.n_points, 3);
   values.col(0) = concentration_;
   return surface::coordinate_range(surface::Patches(bezier_, values), 0);
+}
+
+double Surfactant::concentration_at(const spline::Site& site) const {
+  const spline::Element& element = space_.elements[static_cast<std::size_t>(site.element)];
+  return concentration_(element.points).dot(spline::basis(element, site.s, site.t).value);
+}
+
+surface::FieldsAt Surfactant::values_at() const {
+  double area = 0;
+  for (const ElementPoints& at : elements_) area += std::accumulate(at.area(), at.area() + at.n, 0.);
+  return [this, mean = mass(q_) / area](const spline::Site& site) { return Eigen::VectorXd::Constant(1, concentration_at(site) / mean); };
 }
 
 double Surfactant::energy() const {

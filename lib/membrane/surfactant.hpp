@@ -57,6 +57,7 @@ class Surfactant : public Field {
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
+  surface::FieldsAt values_at() const override;  ///< c divided by its mean
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
 
   /// Samples the concentration at the Gauss points and scales it to the same mass.
@@ -86,6 +87,7 @@ class Surfactant : public Field {
     constexpr int n = Sums::ColsAtCompileTime;
     for (const int a : space_.elements[element].points) sums.row(a) += Eigen::Map<const Eigen::Matrix<double, 1, n>>(rows), rows += n;
   }
+  double concentration_at(const spline::Site& site) const;
   Eigen::VectorXd transport(const Net& slip, double diffusivity) const;
   Eigen::SparseMatrix<double> stiffness() const;
 

@@ -18,7 +18,8 @@ void AdaptationOptions::declare(deck::Section& section) {
   for (double* length : {&surface_tolerance, &minimum_length, &coarsening_tolerance}) *length *= radius;
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
-              "`error`: largest estimated error of the surface on an element; the default is in R_C");
+              "`error`: largest estimated error of the surface on an element; the default is in R_C. Divided by R_C, it also limits the error of the "
+              "surfactant concentration, per mean concentration, and of the Maxwell strain");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
               "`error`: largest estimated error of the load per present area; if not given, the load is not looked at");
   section.key("reference length", reference_length, deck::positive(), "length",
@@ -93,8 +94,8 @@ double allowed_length(const surface::MidLine& line, const AdaptationOptions& opt
 
 /// Returns the largest ratio of an estimated error to its tolerance.
 double excess(const surface::Errors& errors, const AdaptationOptions& options) {
-  const double surface = errors.surface / options.surface_tolerance;
-  return options.load_tolerance ? std::max(surface, errors.load / *options.load_tolerance) : surface;
+  const double load = options.load_tolerance ? errors.load / *options.load_tolerance : 0;
+  return std::max({errors.surface / options.surface_tolerance, errors.fields * options.radius / options.surface_tolerance, load});
 }
 
 /// Returns the largest length of an element next to a film of this width.

@@ -267,6 +267,7 @@ void Results::save(output::Checkpoint checkpoint, const motion::State& state, co
     output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, picture.mesh, picture.fields, durable());
     if (durable() == output::Durable::yes) output::sync(directory_);
     series_->add(totals.step, picture.time);
+    if (durable() == output::Durable::yes) series_->write();
   });
   last_saved_ = totals.step;
 }
@@ -325,6 +326,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.modes = account.modes;
   summary.warnings = warnings_;
   output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
+  series_->write();
   if (durable() == output::Durable::yes)
     for (const char* name : {"summary.yaml", "run.hdf.series", "."}) output::sync(directory_ / name);
   return missed;

@@ -69,7 +69,7 @@ void check_vacant(const RunRequest& request);
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// When a run has lasted a second, every snapshot and `run.h5` up to it are flushed to the disk before `run.hdf.series` names the snapshot. At the
-/// end of such a run, all its files are flushed.
+/// end of such a run, all its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);

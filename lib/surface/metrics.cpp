@@ -104,6 +104,7 @@ using spline::Ray;
 
 struct Sample {
   Vec3 rest, now, load;
+  Eigen::VectorXd fields;
 };
 
 /// Returns whether a vertex is at a pole, where sides of elements have zero length.
@@ -116,20 +117,21 @@ bool on_pole(const Lattice& lattice, int vertex) {
 /// Returns whether a ray cannot be continued: at the border of an open face, or at a pole.
 bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
-/// Evaluates both surfaces and the load at lattice vertices, each once.
+/// Evaluates both surfaces, the load and the fields at lattice vertices, each once.
 class Samples {
  public:
-  Samples(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net, const FieldAt& load)
-      : lattice_(*mesh.lattice), locate_(space), map_(space), rest_(map_, rest), now_(map_, net), load_(load) {}
+  Samples(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net, const FieldAt& load, const FieldsAt& fields)
+      : lattice_(*mesh.lattice), locate_(space), map_(space), rest_(map_, rest), now_(map_, net), load_(load), fields_(fields) {}
 
   const Sample& at(int vertex) {
     const auto [found, fresh] = known_.try_emplace(vertex);
     if (fresh) {
       spline::Site site = locate_(spline::place(lattice_, vertex));
       const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
-      found->second = {on(rest_), on(now_), Vec3::Zero()};
+      found->second = {on(rest_), on(now_), Vec3::Zero(), {}};
       if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);  // at the pole itself, a load per area has only a limit
       if (load_) found->second.load = load_(site);
+      if (fields_) found->second.fields = fields_(site);
     }
     return found->second;
   }
@@ -154,6 +156,7 @@ class Samples {
   BezierMap map_;
   Patches rest_, now_;
   const FieldAt& load_;
+  const FieldsAt& fields_;
   std::unordered_map<int, Sample> known_;
 };
 
@@ -193,17 +196,36 @@ EdgeLine line(const Lattice& lattice, Ray edge, int length) {
 
 Sample fourth_difference(Samples& samples, const EdgeLine& line, int first) {
   static constexpr double weight[5] = {1, -4, 6, -4, 1};
-  Sample sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  Sample sum{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Eigen::VectorXd::Zero(samples.at(line.vertices[first]).fields.size())};
   for (int k = 0; k < 5; ++k) {
     const Sample& s = samples.at(line.vertices[first + k]);
     sum.rest += weight[k] * s.rest;
     sum.now += weight[k] * s.now;
     sum.load += weight[k] * s.load;
+    sum.fields += weight[k] * s.fields;
   }
   return sum;
 }
 
-Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int length, const Mat3& f) {
+/// Returns the gradient of the fields along the surface on a tile, shape (m, 3), from differences between the corners.
+Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
+  const auto differences = [&](auto Sample::*what) {
+    const auto at = [&](int k) -> const auto& { return samples.at(side[k].vertex).*what; };
+    Eigen::MatrixX2d along(at(0).size(), 2);
+    along << at(1) + at(2) - at(0) - at(3), at(2) + at(3) - at(0) - at(1);
+    return along;
+  };
+  const Eigen::MatrixX2d x = differences(&Sample::now);
+  return differences(&Sample::fields) * (x.transpose() * x).inverse() * x.transpose();
+}
+
+/// Deformation gradient and gradient of the fields at a tile.
+struct Gradients {
+  Mat3 f;
+  Eigen::MatrixX3d fields;
+};
+
+Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int length, const Gradients& g) {
   const EdgeLine found = line(lattice, edge, length);
   Resolution result;
   if (static_cast<int>(found.vertices.size()) > found.start + 1)
@@ -218,14 +240,14 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
       if (first >= 0 && first <= last) windows.push_back(first);
   for (const int first : windows) {
     const Sample d4 = fourth_difference(samples, found, first);
-    result.errors.surface += (d4.now - f * d4.rest).norm() / 384 / static_cast<double>(windows.size());
-    result.errors.load += d4.load.norm() / 384 / static_cast<double>(windows.size());
+    const Errors norms{(d4.now - g.f * d4.rest).norm(), d4.load.norm(), (d4.fields - g.fields * d4.now).norm()};
+    result.errors = result.errors + norms * (1 / 384. / static_cast<double>(windows.size()));
   }
   return result;
 }
 
 Resolution mean(const Resolution& a, const Resolution& b) {
-  return {(a.length + b.length) / 2, {(a.errors.surface + b.errors.surface) / 2, (a.errors.load + b.errors.load) / 2}, {}};
+  return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
 /// Returns the tile of twice the width (or height) that contains this tile on the grid of the initial mesh; the same tile if there is none.
@@ -240,9 +262,10 @@ spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bo
 
 /// Returns the resolution along s and t of a tile.
 std::array<Resolution, 2> on_tile(const Lattice& l, Samples& samples, const spline::Rectangle& r) {
-  const Mat3 f = samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)});
   const std::array<Ray, 4> side = spline::sides(l, r);
-  const auto edge = [&](int k) { return along_edge(l, samples, side[k], k % 2 == 0 ? r.width : r.height, f); };
+  const Gradients g{samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)}),
+                    slopes(samples, side)};
+  const auto edge = [&](int k) { return along_edge(l, samples, side[k], k % 2 == 0 ? r.width : r.height, g); };
   const auto along_s = [&] {
     if (on_pole(l, side[0].vertex)) return edge(2);
     return on_pole(l, side[3].vertex) ? edge(0) : mean(edge(0), edge(2));
@@ -253,17 +276,16 @@ std::array<Resolution, 2> on_tile(const Lattice& l, Samples& samples, const spli
 }  // namespace
 
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
-                                                  const FieldAt& load) {
+                                                  const FieldAt& load, const FieldsAt& fields) {
   const Lattice& l = *mesh.lattice;
-  Samples samples(mesh, space, rest, net, load);
+  Samples samples(mesh, space, rest, net, load, fields);
   std::vector<std::array<Resolution, 2>> result;
   for (const spline::Rectangle& r : spline::elements(mesh).tiles) {
     auto own = on_tile(l, samples, r);
     for (const bool along_t : {false, true}) {
       const spline::Rectangle whole = doubled(l, r, along_t);
-      const auto& [surface, traction] = own[along_t].errors;
       const bool larger = whole.width != r.width || whole.height != r.height;
-      own[along_t].merged = larger ? on_tile(l, samples, whole)[along_t].errors : Errors{16 * surface, 16 * traction};
+      own[along_t].merged = larger ? on_tile(l, samples, whole)[along_t].errors : own[along_t].errors * 16;
     }
     result.push_back(own);
   }

@@ -27,6 +27,7 @@ struct ElementMetrics {
 
 /// A field on the surface as a function of a site of the space. If it is empty, its variation is 0.
 using FieldAt = std::function<Vec3(const spline::Site&)>;
+using FieldsAt = std::function<Eigen::VectorXd(const spline::Site&)>;
 
 struct MetricFields {
   FieldAt traction, velocity;
@@ -48,15 +49,20 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 /// Errors of an element along one direction. They estimate the distance between the exact surface or load and cubics on elements of this length,
 ///
 ///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per present area                       (1.5)
+///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
 /// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
 /// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the current surface, and the
 /// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
-/// not count as errors where the particle has kept its shape. On smooth surfaces, halving an element divides both errors by 16; next to an
-/// extraordinary point by about 8.
+/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no
+/// error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
 struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
+  double fields = 0;   ///< e(q), 1; 0 without fields
+
+  Errors operator+(const Errors& other) const { return {surface + other.surface, load + other.load, fields + other.fields}; }
+  Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
 };
 struct Resolution {
   double length = 0;  ///< mean length of the edges
@@ -67,6 +73,6 @@ struct Resolution {
 /// Returns the resolution of elements(mesh), in its order, along s and t. A line of sample points ends at an extraordinary point or a pole; if it has
 /// fewer than five points, the estimate is 0. A side that is a pole is ignored.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
-                                                  const FieldAt& load);
+                                                  const FieldAt& load, const FieldsAt& fields = {});
 
 }  // namespace tanktread::surface

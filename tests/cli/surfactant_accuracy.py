@@ -80,10 +80,11 @@ def branches_pass_through_what_searches_find():
 
 
 def a_mesh_that_adapts_does_what_a_finer_one_does_with_fewer_points():
-    """Until D = 0.41. The mesh goes with the fluid, which gathers it where the surfactant gathers: one that slides is too coarse at the tips."""
+    """Until D = 0.41, on a mesh that slides. The finer mesh goes with the fluid, which gathers it where the surfactant gathers. The estimate
+    is of one interpolation, 3e-5 of the mean; measured errors of the largest concentration, which add up in time, are up to 1.8e-4."""
     case = {"Flow": {"type": "uniaxial extension"}, "Membrane": {"capillary number": 0.15}, "Time": {"tolerance": 1e-6, "final time": 1.1},
-            "Interface": {"motion": "material", "surfactant": {"elasticity number": 0.2}}, "Output": {"interval": 0.1}}
-    uniform = _run("uniform", _merged(case, {"Surface": {"elements per side": 12}}))
+            "Interface": {"surfactant": {"elasticity number": 0.2}}, "Output": {"interval": 0.1}}
+    uniform = _run("uniform", _merged(case, {"Interface": {"motion": "material"}, "Surface": {"elements per side": 18}}))
     adapted = _run("adapted", _merged(case, {"Adaptation": {"enabled": True, "surface tolerance": 3e-5}}))
     points = series(adapted, "n_control_points")
     check(points[0] < points[-1] < series(uniform, "n_control_points")[-1], f"{points[-1]} control points")

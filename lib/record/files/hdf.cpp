@@ -64,6 +64,7 @@ Id::Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), clo
 Id new_file() {
   silence();
   static int files = 0;  // HDF5 distinguishes open files by their names, also in memory
+  if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // HDF5 reuses the cache of a closed file, half a megabyte
   const std::string name = "memory " + std::to_string(++files);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");

@@ -73,6 +73,9 @@ SnapshotSeries SnapshotSeries::resumed(fs::path directory, int step, const std::
 void SnapshotSeries::add(int step, double time) {
   std::erase_if(entries_, [step](const Entry& entry) { return entry.step == step; });
   entries_.push_back({step, time});
+}
+
+void SnapshotSeries::write() const {
   std::string text = "{\"file-series-version\":\"1.0\",\"files\":[";
   for (const Entry& entry : entries_) {
     text += &entry == entries_.data() ? "\n" : ",\n";

@@ -32,7 +32,7 @@ void write_snapshot(const std::filesystem::path& path, const Checkpoint& checkpo
                     std::span<const Field> fields, Durable durable = Durable::no);
 
 /// The list `run.hdf.series`, with which ParaView opens all snapshots of a run as one time series:
-/// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}. It is written again after every snapshot.
+/// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}.
 class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
@@ -40,8 +40,8 @@ class SnapshotSeries {
   /// Returns the list for a resumed run: the readable snapshots up to `step` whose identifier is `run` (Picture).
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
-  /// Adds the snapshot of a step, whose file exists already, and writes the list.
-  void add(int step, double time);
+  void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already
+  void write() const;               ///< writes the list
 
  private:
   struct Entry {

@@ -128,7 +128,7 @@ std::vector<double> widths_of_mesh(const Body& body, std::span<const double> fil
   return widths;
 }
 
-Findings findings(const Subject& particle, const surface::FieldAt& traction) {
+Findings findings(const Subject& particle, const surface::FieldAt& traction, const surface::FieldsAt& fields_at) {
   const auto& [scene, body, block, state, x, films] = particle;
   const motion::AdaptationOptions& options = scene.adaptation;
   const std::vector<double> widths = widths_of_mesh(body, films);
@@ -149,7 +149,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction) {
                     std::move(merges)};
   };
   if (options.indicator == "error")
-    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt()));
+    return of(surface::resolution(body.mesh, body.nested(), body.unstressed, x, options.load_tolerance ? traction : surface::FieldAt(),
+                                  fields_at));
   surface::MetricFields fields;
   if (options.reference_traction_variation) fields.traction = traction;
   if (options.reference_velocity_variation && !state.history.empty())
@@ -230,11 +231,11 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
 }  // namespace
 
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area, std::span<const double> films) {
+                bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields) {
   const Subject particle{scene, body, block, state, block.rows(state.x), films};
   const surface::FieldAt traction = per_unstressed_area ? surface::per_current_area(body.nested(), body.unstressed, particle.x, load)
                                                         : surface::field_of_net(body.nested(), load);
-  const Findings found = findings(particle, traction);
+  const Findings found = findings(particle, traction, fields);
   Adapted finer = refined(particle, found);
   if (finer.body || !scene.adaptation.coarsen) return finer;
   Adapted coarser = coarsened(particle, found.merges);

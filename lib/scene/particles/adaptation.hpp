@@ -27,9 +27,9 @@ struct Adapted {
 /// Refines the elements that the indicator marks; if none is refined, merges elements that it allows to be longer. Transfers every field of the
 /// state: both surfaces, the slopes of the time scheme, and the geometry of the frozen operator. Rows of other particles than `block` do not change.
 /// `load`: control values of this particle's load at state.x, per area of the unstressed surface if `per_unstressed_area`. `films`: film width at
-/// each element of body.nested(), or empty. Returns the same on every rank.
+/// each element of body.nested(), or empty. `fields`: values of the fields on the surface, scaled to order 1. Returns the same on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
-                bool per_unstressed_area, std::span<const double> films);
+                bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
 /// Returns warnings about limits of Adaptation that prevented cuts at this time, and about a surface that refinement has moved.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);

@@ -324,7 +324,8 @@ class Deforming : public ParticleSystem {
     std::vector<double> widths;
     if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), {}, &tube->wall());
     else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
-    Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths);
+    Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
+                             fields_->values_at(p));
     std::ranges::move(adaptation_remarks(member, change, state.time), std::back_inserter(remarks_));
     if (!change.body) return;
     const int more = change.body->space.n_points - member.block.n_points;

@@ -95,6 +95,23 @@ void SurfactantRow::add_columns(Columns& to) const {
   to.add(largest, {"largest_concentration", "1", "the same", {}, of});
 }
 
+surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
+  std::vector<surface::FieldsAt> of;
+  for (const One& one : all_)
+    if (one.particle == p)
+      if (auto values = one.field->values_at()) of.push_back(std::move(values));
+  if (of.empty()) return {};
+  return [of = std::move(of)](const spline::Site& site) {
+    Eigen::VectorXd all;
+    for (const surface::FieldsAt& values : of) {
+      const Eigen::VectorXd more = values(site);
+      all.conservativeResize(all.size() + more.size());
+      all.tail(more.size()) = more;
+    }
+    return all;
+  };
+}
+
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   const auto& loads = capsule_.particles()[p].loads;
   const auto& parts = members_[p].scene.loads;  // registered parts, which made the last ones of `loads`

@@ -51,6 +51,9 @@ class SurfaceFields {
   /// Passes the state to the capsule and the fields; only to the fields if the capsule was evaluated within `distance` of it.
   void set_state(const Net& y, double distance = 0);
 
+  /// Returns a function that evaluates all fields of particle p in the state set last, scaled to order 1. It is empty if there are none.
+  surface::FieldsAt values_at(std::size_t p) const;
+
   /// Adds the contributions of the fields of particle p to its row, and the columns of its fields and loads. `y` is the state set last.
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of the loads of all fields if the material moves by v.

@@ -1,9 +1,12 @@
 #include "membrane/maxwell_element.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "capsules.hpp"
 #include "membrane/membrane.hpp"
+#include "quadrature/gauss.hpp"
+#include "surface/geometry.hpp"
 
 namespace tanktread::membrane {
 namespace {
@@ -23,6 +26,24 @@ TEST(MaxwellElement, HasNoStressInTheShapeThatItStartsWith) {
   EXPECT_LT(springs.load().norm(), 1e-13 * shear * x.norm());
   EXPECT_NEAR(springs.energy(), 0, 1e-13);
   EXPECT_LT(springs.rate({}).norm(), 1e-12 * springs.start(x).norm());
+}
+
+/// The strain is F P F^T with the deformation gradient F and P = 1 - N N^T. Its eigenvalue 0, along the normal, has no logarithm and is left out.
+TEST(MaxwellElement, GivesRefinementTheLogarithmOfItsStrainInSpace) {
+  const Sphere& s = sphere(3);
+  MaxwellElement springs = element(s);
+  springs.set_state(stretched(s.net), springs.start(s.net));
+  const auto values = springs.values_at();
+  const Eigen::VectorXd& nodes = quadrature::tensor_gauss(4).s;  // nodes of elements at the centre of a face; values between nodes are interpolated
+  for (const spline::Site& site : {spline::Site{4, nodes[0], nodes[2]}, {31, nodes[1], nodes[1]}, {49, nodes[3], nodes[0]}}) {
+    const Vec3 n = surface::point(s.space, s.net, site).n, stretch(1.2, 0.9, 1.05);
+    const Mat3 strain = stretch.asDiagonal() * (Mat3::Identity() - n * n.transpose()) * stretch.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Mat3> pairs(strain);
+    Mat3 expected = Mat3::Zero();
+    for (int k = 1; k < 3; ++k) expected += std::log(pairs.eigenvalues()[k]) * pairs.eigenvectors().col(k) * pairs.eigenvectors().col(k).transpose();
+    ASSERT_EQ(values(site).size(), 9);
+    EXPECT_LT((values(site) - expected.reshaped()).norm(), 1e-12);
+  }
 }
 
 /// At small strains its law has the energy E = int (G |dev e|^2 + K/2 (tr e)^2) dG, like every law with the same moduli.

@@ -37,6 +37,19 @@ TEST(Surfactant, OfAnEvenConcentrationLowersTheTensionOfTheInterface) {
   EXPECT_LT(surfactant.rate(Net::Zero(s.net.rows(), 3)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(Surfactant, GivesRefinementItsConcentrationPerMean) {
+  const Sphere& s = sphere(3);
+  Surfactant surfactant(s.space, s.net, linear(0.2), 1, 0);
+  const Net x = 1.5 * s.net;
+  const Eigen::VectorXd c = Eigen::VectorXd::Constant(s.net.rows(), 0.3) + 0.1 * s.net.col(0);  // has the mean 0.3
+  surfactant.set_state(x, surfactant.contents(x, c));
+  const auto values = surfactant.values_at();
+  for (const spline::Site& site : {spline::Site{0, 0.2, 0.7}, {30, 0.9, 0.4}, {53, 0, 1}}) {
+    ASSERT_EQ(values(site).size(), 1);
+    EXPECT_NEAR(values(site)[0], 1 + surface::value(s.space, s.net, site)[0] / 3, 1e-12);
+  }
+}
+
 /// c = 1 + 0.3 Y(n) with Y = a x^2 + b y^2 - (a + b) z^2, whose axes pass through no control or Gauss point. The extremes of Y are -(a + b) and a.
 /// Sampling at points of spacing h would have an error h^2; the interpolation has the order 4.
 TEST(Surfactant, HasTheExtremesOfTheSplineSurface) {

@@ -77,6 +77,18 @@ TEST(Adaptation, AnErrorAboveItsToleranceCutsItsOwnDirection) {
   EXPECT_EQ(marks(std::vector<Resolved>{{along(0.2, 0, 0.5), along(0.2, 0)}}, o).size(), 1u);
 }
 
+TEST(Adaptation, TheErrorOfFieldsIsComparedWithTheSurfaceToleranceOverTheRadius) {
+  AdaptationOptions o;
+  o.radius = 5;
+  o.surface_tolerance = 1e-3;
+  const auto with = [](double error) { return std::vector<Resolved>{{surface::Resolution{1, {0, 0, error}, {0, 0, error}}, along(1, 0)}}; };
+  EXPECT_EQ(marks(with(1.9e-4), o).size(), 0u);
+  ASSERT_EQ(marks(with(2.1e-4), o).size(), 1u);
+  EXPECT_FALSE(marks(with(2.1e-4), o)[0].t);
+  EXPECT_TRUE(merges(with(1.3e-4), o)[0].s);   // below 0.7 of the tolerance
+  EXPECT_FALSE(merges(with(1.5e-4), o)[0].s);
+}
+
 TEST(Adaptation, WhatIsMergedByItsErrorIsNotCutAgain) {
   AdaptationOptions o;
   o.surface_tolerance = 1e-3;

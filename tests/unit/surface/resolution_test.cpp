@@ -52,18 +52,36 @@ TEST(Resolution, AFourthPowerHasItsFourthDifferenceAlongOneDirectionOnly) {
 }
 
 TEST(Resolution, HalvingElementsDividesTheErrorBySixteen) {
-  const auto error = [](int n) {
+  const auto errors = [](int n) {
     const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
     const Net rest = cube.sphere();
     const FieldAt bump = [&](const spline::Site& site) { return Vec3(std::sin(2 * value(cube.space, rest, site)[0]), 0, 0); };
-    double sum = 0;
-    const auto found = resolution(cube.mesh, cube.space, rest, rest, bump);
-    for (const auto& element : found) sum += element[0].errors.load + element[1].errors.load;
-    return sum / static_cast<double>(found.size());
+    const FieldsAt fields = [&](const spline::Site& site) { return Eigen::VectorXd(Eigen::Vector2d(3, -4) * bump(site)[0]); };
+    Errors sum;
+    const auto found = resolution(cube.mesh, cube.space, rest, rest, bump, fields);
+    for (const auto& element : found) sum = sum + element[0].errors + element[1].errors;
+    return sum * (1 / static_cast<double>(found.size()));
   };
-  const double order = std::log2(error(12) / error(24));
-  EXPECT_GT(order, 3.5);  // lines at extraordinary points, a fraction 1/n of all lines, have a lower order
-  EXPECT_LT(order, 4.1);
+  const Errors coarse = errors(12), fine = errors(24);
+  for (const double order : {std::log2(coarse.load / fine.load), std::log2(coarse.fields / fine.fields)}) {
+    EXPECT_GT(order, 3.5);  // lines at extraordinary points, a fraction 1/n of all lines, have a lower order
+    EXPECT_LT(order, 4.1);
+  }
+}
+
+TEST(Resolution, AFieldThatVariesLikeThePlaceHasNoErrorAtExtraordinaryPoints) {
+  // The field is q = x. Its fourth differences along the surface come from the parametrisation, which is not smooth at extraordinary points.
+  const auto largest = [](int n, double Errors::*which) {
+    const CubeMesh cube(n, spline::ExtraordinaryRule::catmull_clark);
+    const Net rest = cube.sphere();
+    const FieldAt place = field_of_net(cube.space, rest);
+    double most = 0;
+    for (const auto& element : resolution(cube.mesh, cube.space, rest, rest, place, [&](const spline::Site& site) { return place(site); }))
+      most = std::max({most, element[0].errors.*which, element[1].errors.*which});
+    return most;
+  };
+  EXPECT_LT(largest(16, &Errors::fields), largest(8, &Errors::fields) / 6);  // by about 8 at an extraordinary point
+  EXPECT_GT(largest(16, &Errors::load), largest(8, &Errors::load) / 3);      // with the fourth differences along the surface
 }
 
 TEST(Resolution, WhatMergingWouldLeaveIsTheErrorOfTheMeshBefore) {

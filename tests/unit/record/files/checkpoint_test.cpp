@@ -187,6 +187,7 @@ TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndIsOfTheRun) {
     scene.write(scratch / snapshot_name(step), {{}, {{"time", 0.25 * step}}, {{"run", "this"}}});
     series.add(step, 0.25 * step);
   }
+  series.write();
   const std::string whole = contents(scratch / "run.hdf.series");
   EXPECT_EQ(whole,
             "{\"file-series-version\":\"1.0\",\"files\":[\n"
@@ -198,6 +199,7 @@ TEST(SnapshotSeries, OfAResumedRunHoldsWhatCanBeReadAndIsOfTheRun) {
   SnapshotSeries resumed = SnapshotSeries::resumed(scratch.path(), 4, "this");
   EXPECT_TRUE(exists(scratch / snapshot_name(9)));
   resumed.add(9, 2.25);
+  resumed.write();
   EXPECT_EQ(contents(scratch / "run.hdf.series"), whole);
 }
 
