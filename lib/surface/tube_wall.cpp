@@ -310,7 +310,7 @@ int elements_per_period(const TubeOptions& options, double radius, double period
   if (options.axial_elements) return *options.axial_elements;
   const double width = std::max(radius, half_length), usual = tube_length({}, radius, 0);
   const auto share = count(period / (2 * width), options.grading) / count(usual / (2 * radius), options.grading) * width / radius;
-  return std::max(4, static_cast<int>(std::ceil(TubeOptions::default_axial_elements * share - 1e-9)));
+  return static_cast<int>(std::clamp(std::ceil(TubeOptions::default_axial_elements * share - 1e-9), 4., 1e9));
 }
 
 void check_length(const TubeWall& wall, double first, double last) {
