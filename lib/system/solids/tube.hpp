@@ -41,8 +41,8 @@ struct TubeParameters {
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G are single layers divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is the disturbance of the traction on the wall,
-/// and dp that of the pressure drop between the ends. v_inf is the duct's flow, of any mean velocity, in the frame in which the walls are at rest. Q
-/// is its flow rate.
+/// and dp that of the pressure drop between the ends. v_inf is here the duct's flow with any mean velocity, whatever the actual
+/// ambient flow is. Q is its flow rate.
 ///
 /// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
 /// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the

@@ -67,7 +67,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   const double area = wall_->surface().outline.area();
   weigh_flow();
   double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
-  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // in a period the wall carries the force of the pressure drop
+  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // dp of a period acts on the wall
   std::vector<double> value[3];
   if (f.size() > 0) {
     particle.single.values(f, value);
