@@ -251,7 +251,7 @@ TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, 
 
 namespace {
 
-/// Returns the control points of the spline through a value of a channel's sections, with the exact slopes at the ends and at triple knots.
+/// Returns the control points of the spline through a value of a channel's sections, with the slopes of this value at the ends and at triple knots.
 std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
   const double step = 1e-6 * (knots.back() - knots.front());
@@ -288,7 +288,7 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // in a straight channel the elements at the ends are coarser
+    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // ends of a straight channel are coarser
     narrowest = at.factor.minCoeff();
   }
   const auto centre = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.centre.head<2>(); });

@@ -25,12 +25,12 @@ struct TubeWall {
   Outline outline;  ///< outline of the wall (of a channel: at its inlet), with cubic sides
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
-  double widest = 0;  ///< approximate longest side of the elements at x1 = 0, in a channel at its narrowest section
+  double widest = 0;                       ///< approximate longest side of the elements at x1 = 0, in a channel at its narrowest section
   std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
-  std::vector<std::vector<spline::Site>> sites;  ///< collocation points of densities; in an open wall those of the space
-  std::vector<spline::Site> middles;             ///< midpoints of the elements of densities
-  std::vector<int> middle_of;                    ///< index in `middles` for each element of the space
-  double period = 0;                             ///< period L along x1; 0 for an open wall with two ends
+  std::vector<std::vector<spline::Site>> sites;    ///< collocation points of densities; in an open wall those of the space
+  std::vector<spline::Site> middles;               ///< midpoints of the elements of densities
+  std::vector<int> middle_of;                      ///< index in `middles` for each element of the space
+  double period = 0;                               ///< period L along x1; 0 for an open wall with two ends
   Eigen::SparseMatrix<double> open_from_periodic;  ///< E: maps control values of a periodic density to those on the space; else empty
 
   double length() const { return end - start; }

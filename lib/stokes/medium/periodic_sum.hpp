@@ -55,7 +55,7 @@ class PeriodicSum {
   std::vector<Vec3> images_;
   std::array<std::vector<int>, 3> difference_;  // index of the difference of nodes a, b of one direction, at n a + b
   std::array<std::size_t, 3> differences_;      // number of differences
-  std::vector<double> table_;                   // the rest: components_ values of difference (i, j, k) from components_ ((n_1 i + j) n_2 + k) on
+  std::vector<double> table_;  // the rest: components_ values of difference (i, j, k) from components_ ((n_1 i + j) n_2 + k) on
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

@@ -25,9 +25,9 @@ class Wall;
 struct BetweenSites;
 
 struct TubeParameters {
-  double viscosity = 1;                                  ///< mu of the outer fluid
-  double viscosity_ratio = 1;                            ///< lambda, if all particles have the same
-  surface::Symmetry symmetry;  ///< symmetry of the channel, the particle and all fields; without points: none
+  double viscosity = 1;              ///< mu of the outer fluid
+  double viscosity_ratio = 1;        ///< lambda, if all particles have the same
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points: none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
@@ -102,13 +102,13 @@ class Tube {
   Net frozen_response(const Net& f, const Net& v = {});
 
   /// Parts of the block system, at the collocation points of the wall and the particle.
-  Net load_on_wall(const Net& f);             ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);         ///< (1 - lambda) (1 / 8 pi) int T v n
-  Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
-  Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
+  Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
+  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int T v n
+  Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
+  Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
-  const Net& inlet_on_particle() const;       ///< c; in a duct that repeats, the empty duct's flow per unit pressure drop of a period
-  const Net& ambient() const;                 ///< v_inf at the collocation points, with amplitude 1
+  const Net& inlet_on_particle() const;  ///< c; in a duct that repeats, the empty duct's flow per unit pressure drop of a period
+  const Net& ambient() const;            ///< v_inf at the collocation points, with amplitude 1
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
 
@@ -116,13 +116,13 @@ class Tube {
   /// the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the points of
   /// `between` (2.41).
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
-  Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs
+  Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
   /// Independent checks: errors of a response in conditions that it must satisfy (2.14).
   struct Checks {
-    double flux = 0;                                     ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;                                    ///< A dp minus the axial forces on wall and particle, divided by the duct's A G R_T
-    double cap_velocity = 0;                             ///< largest disturbance velocity on the caps, divided by the mean velocity
+    double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
+    double force = 0;         ///< A dp minus the axial forces on wall and particle, divided by the duct's A G R_T
+    double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops for which `flux` or `force` would vanish
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
@@ -174,7 +174,7 @@ class Tube {
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
   Net flow_weights_, force_weights_;  // weights of the wall's traction; these and the next two lines are computed at first use
-  Net flow_of_wall_;                  // weights of a velocity on the wall, for the flow rate through the inlet of the traction that cancels it
+  Net flow_of_wall_;  // weights of a velocity on the wall, for the flow rate through the inlet of the traction that cancels it
   double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of c times mu; with the wall's response
 };
 

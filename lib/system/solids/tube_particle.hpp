@@ -32,8 +32,8 @@ struct Tube::Particle {
   /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
-  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of the velocity on the wall in dp, or empty. The
-  /// weights of v in dp are computed from it in higher precision, because low-precision rows are too inaccurate for them.
+  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of the velocity on the wall in dp, or empty. If
+  /// given, the weights of v in dp are computed from them before rows are rounded to low precision, which would be too inaccurate for these weights.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
@@ -63,7 +63,7 @@ struct Tube::Particle {
   const spline::Space& space;
   TubeParameters parameters;
   stokes::Measure measure = stokes::Measure::reference;  // area to which loads refer
-  std::vector<int> own;  ///< rank-owned points
+  std::vector<int> own;                                  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
   Eigen::SparseMatrix<double> collocation;  ///< R
@@ -71,15 +71,15 @@ struct Tube::Particle {
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
   std::optional<Period> period;       ///< set in a duct that repeats
-  Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
+  Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
-  Net shape;                                                            ///< in the wall's frame
-  double centroid = 0;                                                  ///< position along x1 of the origin of that frame
-  Net sites;                                                            ///< collocation points, in the wall's frame
-  Net inlet;                                                            ///< (1/mu) c at the sites
-  Net ambient, interpolated_ambient;                                    ///< duct flow at the sites; in a channel also its control values
-  Net pressure_of_load, pressure_of_velocity;                           ///< weights of f and v in (2.7); those of v are empty if lambda = 1
-  std::vector<int> nearest;                                             ///< nearest site for each target on the wall
+  Net shape;                                                       ///< in the wall's frame
+  double centroid = 0;                                             ///< position along x1 of the origin of that frame
+  Net sites;                                                       ///< collocation points, in the wall's frame
+  Net inlet;                                                       ///< (1/mu) c at the sites
+  Net ambient, interpolated_ambient;                               ///< duct flow at the sites; in a channel also its control values
+  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); those of v are empty if lambda = 1
+  std::vector<int> nearest;                                        ///< nearest site for each target on the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
 
   struct Frozen {

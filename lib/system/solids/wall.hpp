@@ -88,8 +88,8 @@ class Wall {
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
-  const Ranks& ranks() const { return ranks_; }  ///< division of the fundamental rows; other rows are their images
-  stokes::Layer& layer() { return layer_; }  ///< layer of the wall at points off it, for control values on its space
+  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
+  stokes::Layer& layer() { return layer_; }             ///< layer of the wall at points off it, for control values on its space
   const stokes::Cap& inlet() const { return *inlet_; }  ///< only of an open wall
 
   /// Returns the lattice of a wall that repeats; not set for an open wall.
@@ -105,7 +105,7 @@ class Wall {
 
   Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, in the means of `collocated`
   Net solve(const Net& rhs) const;  ///< A^-1 rhs
-  void forget_recycled() const;                 ///< discards the data that the preconditioner keeps from earlier solves
+  void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
   /// Returns A^-T weights: its product with any rhs equals the product of `weights` with solve(rhs). Only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
@@ -153,7 +153,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // only of a wall that repeats: w n at the sites with a weight w, and int N_A n dG
+  Net pressure_, flux_;                       // only of a wall that repeats: w n at the sites with a weight w, and int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // layer of the wall at the targets
   DenseFactors factors_;                      // LU factors of A; if not set, the next two solve by iteration
   std::optional<WallPatches> patches_of_rows_;

@@ -1,4 +1,4 @@
-// Sums over lattices, compared with independent multipole solutions (lib/README.md, section on lattices) and with identities.
+// Sums over lattices, compared with our own multipole solutions (lib/README.md, section on lattices) and with identities.
 
 #include <gtest/gtest.h>
 
