@@ -59,10 +59,10 @@ struct Repetition {
 /// f(x0) is a constant given by the caller, by default 0. If the target is outside a closed surface, this constant does not change the result (2.3).
 ///
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
-/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces this sum. Its tolerance is relative to the surface of
-/// the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only the Gauss nodes. It
-/// subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0 and the boundary integral identity of the flow
-/// (n0.r) f_t. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012; the choice of the flow is ours.
+/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's part of this sum. Its tolerance is
+/// relative to the surface of the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only
+/// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0 and the boundary integral
+/// identity of the flow (n0.r) f_t. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012; the choice of the flow is ours.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
