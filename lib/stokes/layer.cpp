@@ -13,7 +13,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Rules are chosen for int G f dG; the double layer, steeper by one order, errs up to five times as much under them (tests/verify/layers.cpp).
+/// Returns options with a smaller tolerance for the double layer. Rules are chosen for int G f dG; under equal rules the error of the double layer,
+/// whose kernel is steeper by one order, is up to five times as large (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
@@ -23,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  const double of_tree = single() ? options.tolerance : options.tolerance / 2;  // measured: it errs by half of its share
+  const double of_tree = single() ? options.tolerance : options.tolerance / 2;  // measured: the error is half of this tolerance
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
   std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
@@ -65,7 +66,7 @@ void Layer::place(const Net& x, Measure measure) {
   if (images_) images_->place(surface_.node);
 }
 
-/// By the factors of the panels.
+/// Multiplies values at the far nodes by the factors k of the panels.
 void Layer::scale(std::span<std::vector<double>> at_nodes) const {
   for (int e = 0; e < surface_.panels.size(); ++e)
     for (std::vector<double>& values : at_nodes)
@@ -77,7 +78,7 @@ void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
   node_values(surface_.panels, bezier_f_, value);
 }
 
-/// The density at the far nodes.
+/// Evaluates the density at the far nodes, times the weights in a single layer.
 void Layer::set_density(const Net& f) {
   const auto clock = phases_.time("setup");
   values(f, density_);
@@ -121,7 +122,8 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
   integrate({targets, targets, at, f0, all, false, kept}, u);
 }
 
-/// The far sum over all panels, and in its place better rules for those that are close to a target or that it lies on.
+/// Evaluates the potential at the targets: the far-field sum over all panels, corrected by near-singular and singular quadrature on panels that are
+/// close to a target or contain it.
 void Layer::integrate(const Targets& targets, Net& u) {
   add_far(targets, u);
   if (lattice_.cell) subtract_itself(targets, u);
@@ -154,7 +156,7 @@ void Layer::integrate(const Targets& targets, Net& u) {
   for (const int i : targets.far_rows) u.row(i) *= over_8_pi;
 }
 
-/// What the rule `table` for panel e gives a target beyond the far sum.
+/// Returns the integral over panel e by the rule `table` minus the contribution of the panel to the far sum.
 Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
   const Panel& panel = surface_.panels[e];
   const double *x = &surface_.bezier[panel.first_bezier], *f = &bezier_f_[panel.first_bezier];
@@ -186,8 +188,8 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// The tree of this shape and these targets, and of a double layer sum_q T_ijk n_k at them: Krylov solvers ask for one shape many times. Row
-/// k + g n of its sums is that of image g of target k of n.
+/// Sets the positions of the tree, and for a double layer computes sum_q T_ijk n_k at the targets. Both are reused if nothing has changed, because
+/// Krylov solvers apply one shape many times. Row k + g n of the sums belongs to image g of target k of n.
 void Layer::place_tree(const Targets& targets) {
   std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
@@ -221,7 +223,7 @@ void Layer::add_by_clusters(const Targets& targets, Net& u) {
   evaluations_.far += tree_->interactions();
 }
 
-/// (2.19)
+/// Evaluates (2.19).
 void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
   const auto& [fundamental, weight] = surface_.fundamental();
   const std::vector<surface::Reflection>& images = surface_.reflections();
@@ -248,7 +250,7 @@ Vec3 Layer::mean_density() const {
   return mean;
 }
 
-/// (f n + n f)/2 at the far nodes k, for f(k, component).
+/// Computes (f n + n f)/2 at the far nodes k, where f(k, component) is the density.
 template <class Values>
 void Layer::take_moments_of(const Values& f) {
   for (int c = 0; c < 6; ++c) {
@@ -258,17 +260,17 @@ void Layer::take_moments_of(const Values& f) {
   }
 }
 
-/// Of the density less its mean.
+/// Computes these moments for the density minus its mean.
 void Layer::take_moments(const Vec3& mean) {
   take_moments_of([&](int k, int i) { return density_[i][k] - mean[i]; });
 }
 
-/// Of the unit density of one component.
+/// Computes these moments for a constant unit density along one axis.
 void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
-/// sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives 0 exactly.
+/// Evaluates sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives exactly 0.
 void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   const Vec3 mean = mean_density();
   take_moments(mean);
@@ -285,7 +287,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Weights of a rule on panel e, area included. On a panel that the target lies on those of the unstressed surface are kept.
+/// Returns the weights of a rule on panel e, including area. If the panel contains the target and the area is that of the unstressed surface, the
+/// weights are cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
@@ -295,7 +298,7 @@ const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pai
   return weights.data();
 }
 
-/// Bernstein moments of panel e by a rule, without k.
+/// Computes the Bernstein moments of panel e by a rule, including the factor k.
 void Layer::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const double* bezier = &surface_.bezier[surface_.panels[e].first_bezier];
   scratch_.resize(static_cast<std::size_t>(6) * table.packs());
@@ -328,7 +331,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   return kept;
 }
 
-/// Bernstein moments of panel e by a rule, less those of its far nodes.
+/// Computes the Bernstein moments of panel e by a rule minus the moments of its far nodes.
 void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const Panel& panel = surface_.panels[e];
   const NodeTable& t = *panel.table;

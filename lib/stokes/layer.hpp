@@ -1,5 +1,5 @@
 #pragma once
-// Layer potentials of spline surfaces: what they do to the fluid on them and off them.
+// Layer potentials of spline surfaces, at targets on and off the surfaces.
 
 #include <array>
 #include <limits>
@@ -21,169 +21,176 @@
 
 namespace tanktread::stokes {
 
-/// Area to which the density of a single layer refers: unstressed area (3.7), present area (3.6), or one of them for each element (`set_reference`).
+/// Area to which the density of a single layer refers: unstressed area (3.7), current area (3.6), or one of the two for each element
+/// (`set_reference`).
 enum class Measure { reference, current, by_element };
 
-/// Rows of a dense operator: of doubles where systems are solved with them, of floats where the Jacobian keeps them in fewer bits still.
+/// Rows of a dense operator. Linear systems use double precision. The Jacobian converts rows from single precision to a smaller format.
 template <class Real>
 using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Control points, some a target: point[first[k]] .. point[first[k + 1] - 1] are those of target k.
+/// List of control points for each target: target k has point[first[k]] .. point[first[k + 1] - 1].
 struct NearPoints {
   std::vector<std::size_t> first{0};
   std::vector<int> point;
 };
 
-/// Rows of a net as vectors.
+/// Returns rows of a net as vectors.
 inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
   std::vector<Vec3> all;
   for (const int i : rows) all.push_back(net.row(i).transpose());
   return all;
 }
 
-/// How images of surfaces that repeat count.
+/// Treatment of the images of surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< assembled rows hold the images too, but for the smooth rest (PeriodicSum), which `assemble_rest` adds
-  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest coordinates of targets, in the cell's axes
+  bool assembled = false;  ///< assembled rows include the near images; `assemble_rest` adds the smooth rest (PeriodicSum)
+  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest cell coordinates of targets off the surfaces
 };
 
-/// One layer of spline surfaces p, open or closed, at targets x0 on or off them, without the viscosity, of a density with control values f_B:
+/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density.
+/// The viscosity is not included.
 ///
 ///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
 ///
-/// In the double layer f(x0) is the density at a target on the surface, so that no principal value is taken: of its own surface this is k times the
-/// principal value plus f/2, and rigid motions of all give 0. A target off the surfaces takes away what it is given, by default nothing: of a closed
-/// surface that it is outside of, a constant gives nothing (2.3).
+/// For a target on a surface, f(x0) is the density there, so that no principal value is needed. The contribution of the surface that contains the
+/// target equals k times the sum of the principal value and f/2. A rigid motion of all surfaces together gives 0. For a target off the surfaces,
+/// f(x0) is a constant given by the caller, by default 0. If the target is outside a closed surface, this constant does not change the result (2.3).
 ///
-/// A far sum over Gauss nodes is taken of all panels, one by one or by clusters (TreeSum), to the tolerance. Panels that a target is close to or lies
-/// on then get rules of their own (NearField, SelfField) in its place, to the tolerance relative to the surface they belong to. A row depends on the
-/// shape only, not on the other rows asked for. Under the rule `desingularised` Gauss nodes are all there is: what is singular in the single layer is
-/// subtracted by two identities of a closed surface, int G n dG = 0 and that of the flow (n0.r) f_t, after Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012 (our choice of the flow).
+/// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
+/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's part of this sum. Its tolerance is
+/// relative to the surface of the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only
+/// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0 and the boundary integral
+/// identity of the flow (n0.r) f_t. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012; the choice of the flow is ours.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
 
-  /// `sites`: all targets are on the surfaces, as the space's `collocation` is; none: all are off them. `factor`: k of each element; 1
-  /// where there are none.
+  /// `sites`: targets on the surfaces, for example the space's `collocation`; if empty, all targets are off the surfaces. `factor`: k of each
+  /// element; if empty, k = 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// Sets the unstressed surface, which Measure::reference needs. Its areas are kept at all far nodes and self points. `present`: for each element,
-  /// whether Measure::by_element means the present area there; otherwise it means the unstressed one.
+  /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and self points. `present`: for each
+  /// element, whether Measure::by_element means the current area rather than the unstressed area.
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
-  /// States that all shapes and densities to come are of this symmetry, and all targets fundamental sites. Where far sums of a single layer are
-  /// taken by clusters, those are made of fundamental panels F only, for the others do to a target what these do to its images:
+  /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
+  /// clusters, only the fundamental panels F are clustered, because the effect of the other panels on a target equals the effect of F on images of
+  /// the target:
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// States that the surfaces repeat as `cell` says, so that G and T are those of PeriodicKernel. A double layer of three periods has the pressure
-  /// that grows along with them beside, by which it leaves the mean velocity over the cell, that inside of the surfaces included, as it is,
+  /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
+  /// deforms. With three periods, a double layer includes an additional pressure linear in x, so that it leaves the mean velocity over the cell
+  /// unchanged, where the volume inside the surfaces counts as part of the cell:
   ///
-  ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p,                                              (2.28)
+  ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p.                                              (2.28)
   ///
-  /// and int T n is that of (2.3). Again for each cell of one that deforms. What is assembled leaves images out unless `how` says otherwise.
+  /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Sets which of the points off the surfaces to come, rows from `first` on, see the images of a lattice without the surfaces themselves.
+  /// Makes later targets off the surfaces, from row `first` on, see only the images of the surfaces on the lattice and not the surfaces themselves.
   void see_images_only(int first) { lattice_.images_only = first; }
 
-  /// States that there is a plane wall, which all shapes to come are in front of: G and T are those that vanish on it, (2.35) and (2.36). Not on a
-  /// lattice. What is assembled of near control points alone leaves the wall out.
+  /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
+  /// on a lattice. The blocks assembled for near control points do not include the wall.
   void set_wall(const PlaneWall& wall);
 
-  /// Shares the far sums of the sites `everybody`, where they are taken by clusters, among callers 0 .. parts - 1: from now on `apply` fills these
-  /// rows with what adds up to the layer over all callers; near and singular panels are counted by the caller whose targets they concern.
+  /// If far sums use clusters, shares those at the sites `everybody` among callers 0 .. parts - 1. `apply` then fills these rows with a part of the
+  /// layer; the sum over all callers is the layer. Near-singular and singular quadrature is included only by the caller that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 
-  /// Whether far sums are taken by clusters, so that applying is faster than assembling for a few products.
+  /// Returns whether far sums use clusters, so that a few products are faster by `apply` than by assembling.
   bool by_clusters() const { return tree_.has_value(); }
 
-  /// Takes the shape, good for any number of densities, and what those of a single layer are measured on.
+  /// Sets the shape, for any number of densities, and the area to which the density of a single layer refers.
   void place(const Net& x, Measure measure = Measure::current);
 
-  /// Rows `sites` of u, shape (number of sites, 3), for the density with control values f.
+  /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
-  /// What the near rules of points off the surfaces give beyond the far sum, for any density: 6 Bernstein moments for each point and close panel.
+  /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
+  /// panel, 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< of target k, in `panels`
+    std::vector<std::size_t> first;  ///< index in `panels` of the first panel of target k
     std::vector<int> panels;
     std::vector<double> moments;
   };
 
-  /// For densities that are many, at the same points, in the same order, of the shape that is placed.
+  /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
   Near near(const Net& at, std::span<const int> targets);
 
-  /// Rows `targets` of u, shape of `at`, at points off the surfaces with rows `at`. `kept`: near(at, targets), or nothing.
+  /// Computes rows `targets` of u, shape of `at`, at points off the surfaces, given by the rows of `at`. `kept`: near(at, targets), or null.
   void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// The same with constants `f0` (a row a point) taken from f: with the density nearby the answer outside of a closed surface is the same (2.3), and
-  /// the integrand is smaller. Double layer.
+  /// Computes the double layer with constants `f0`, one row per point, subtracted from f. Outside a closed surface the result does not change (2.3),
+  /// but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// A of u_i = sum_B A_iB f_B: three rows a target, in the order of `sites` or `targets`; shape (3 targets, 3 N).
+  /// Assembles A of u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 targets, 3 N).
   void assemble(std::span<const int> sites, Rows<float>& a);
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
-  /// Adds to rows of a single layer, at sites or at points, what the images that are not near do.
+  /// Adds the contribution of the images that are not near to assembled rows of a single layer at sites.
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
-  /// The same of what the wall adds alone.
+  /// Assembles only the contribution of the images in the plane wall at sites.
   void assemble_images(std::span<const int> sites, Rows<double>& a);
 
-  /// Of A only the blocks A_iB of near control points: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j]. Single layer. Targets side
-  /// by side should be neighbours: sixteen of them share the panels that carry their near points.
+  /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
+  /// Consecutive targets should be neighbours, because each group of sixteen evaluates the panels of all its near points.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
 
-  /// The shape at its far nodes: places, weights with areas (of the measure; single layer) and normals times areas (double layer).
+  /// Far nodes of the current shape: positions, weights including area and k (single layer), normals times area and k (double layer).
   int n_nodes() const { return surface_.panels.n_nodes(); }
   const std::vector<double> (&nodes() const)[3] { return surface_.node; }
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// A field at the far nodes, and the transpose: int N_A g dG for every A, from what g times area is at the far nodes.
+  /// Computes the values of a field at the far nodes, and the transpose: int N_A g dG for every A, where `g` is the product of g and the area at each
+  /// far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Kernel evaluations of all calls so far, and where their time went: `setup`, `far`, `near`, `self`, `assembly`.
+  /// Number of kernel evaluations and times of all calls so far. Times are divided into `setup`, `far`, `near`, `self` and `assembly`, and further
+  /// phases for a lattice or a wall.
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }
 
  private:
-  /// Targets of one call, and where they are.
+  /// Targets of one call and their positions.
   struct Targets {
-    std::span<const int> rows, far_rows;  ///< rows of u with near rules, and with far sums
-    const Net& at;                        ///< places
-    const Net& f0;                        ///< what is taken from the density of a double layer
-    std::span<const int> in_tree;         ///< all targets that clusters are made of, ascending
-    bool sites;                           ///< they are sites of the surfaces
+    std::span<const int> rows, far_rows;  ///< rows of u that need near rules, and rows that need far sums
+    const Net& at;                        ///< positions
+    const Net& f0;                        ///< constants subtracted from the density of a double layer
+    std::span<const int> in_tree;         ///< all targets that are clustered, ascending
+    bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
   template <class Real>
   class RowSums;
 
-  /// Images of the surfaces; without a cell there are none.
+  /// Images of the surfaces on a lattice; unused without a cell.
   struct Lattice {
     std::optional<PeriodicCell> cell;
     Repetition how;
-    int images_only = std::numeric_limits<int>::max();  // first of the targets that see images only
+    int images_only = std::numeric_limits<int>::max();  // first target that sees only images
     std::optional<PeriodicSum> sum;
     std::vector<double> node[3];                // far nodes, moved into the cell
-    std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors to panels that a target may be close to
-    std::vector<Vec3> rest_at;                  // targets in the cell
-    std::vector<Mat3> rest_stress;              // response of the rest of the lattice to constant densities there
+    std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
+    std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
+    std::vector<Mat3> rest_stress;              // contribution of the rest of the lattice for constant densities there
   };
 
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
-    std::vector<bool> present;           // elements that Measure::by_element does not measure on it
+    std::vector<bool> present;           // elements for which Measure::by_element means the current area instead
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }
@@ -240,20 +247,20 @@ class Layer {
   Kernel kernel_;
   LayerSurface surface_;
   std::vector<double> factor_;
-  std::optional<Measure> measure_;                                 // of the weights that are there
+  std::optional<Measure> measure_;                                 // area of the current weight_
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
-  std::vector<double> weight_;                                     // of the far nodes, areas included
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times the weight in a single layer; normal times area and k
-  std::optional<TreeSum> tree_;                                    // where clusters are faster
+  std::vector<double> weight_;                                     // weights of the far nodes, including area and k
+  std::vector<double> density_[3], normal_[3];                     // at far nodes: f (single layer: times weight); normal times area and k
+  std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
-  std::optional<ImageSum> images_;                                 // in a plane wall
-  std::vector<Mat3> image_stress_;                                 // what they take from values at the targets
-  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows that far sums are shared of; empty: they are not
+  std::optional<ImageSum> images_;                                 // images in a plane wall
+  std::vector<Mat3> image_stress_;                                 // image sums for constant unit densities at the targets
+  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
   std::vector<Vec3> tree_at_;                                      // targets of the tree
-  std::vector<int> tree_rows_;                                     // rows wanted of it; none: it is to be placed
-  std::vector<double> stress_;                                     // 8 pi times the solid angle of the far nodes at the targets, six numbers each
-  std::vector<double> moment_[6];                                  // of the far nodes: symmetric part of density times normal
+  std::vector<int> tree_rows_;                                     // rows the tree computes; empty: its positions are not set
+  std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each
+  std::vector<double> moment_[6];                                  // symmetric part of density times normal at the far nodes
   std::vector<Pack> point_weights_, scratch_;
   Evaluations evaluations_;
   Phases phases_;

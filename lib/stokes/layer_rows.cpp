@@ -1,4 +1,5 @@
-// Assembled rows of a layer: far moments sixteen targets at a time, own rules target by target. Whole rows, or what near control points add to them.
+// Assembly of rows of a layer: far moments for sixteen targets at a time, near-singular and singular quadrature for one target at a time. Assembles
+// complete rows, or only the blocks of near control points.
 
 #include <algorithm>
 #include <cassert>
@@ -15,11 +16,11 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Basis functions of some panels at their far nodes, and the row of the sums that each adds to. Padded to whole tiles; padded functions and those
-/// of other control points add to a spare row.
+/// Basis functions of some panels at their far nodes, and the row of the sums to which each function adds. Functions are padded to whole tiles.
+/// Padded functions and functions of control points that are not requested add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< the panels; of each panel of the surface its number among them, -1: it is not there
+  std::vector<int> panels, index;  ///< the panels; index among them of each panel of the surface, or -1
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -37,7 +38,7 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m; ++a)  // a sum per entry in one order, wherever the arrays lie
+    for (int a = 0; a < m; ++a)  // each entry is summed in a fixed order, independent of memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
@@ -47,7 +48,7 @@ struct FarBasis {
     for (int a = 0; a < padded; ++a) rows.push_back(a < m ? row_of_point[all.points(e)[a]] : spare_row);
   }
 
-  /// What the far nodes of the k-th panel need but for weights or normals.
+  /// Returns the far nodes of the k-th panel, without weights and normals.
   PanelNodes<Real> nodes(const LayerSurface& surface, const std::vector<double> (&x)[3], std::size_t k) const {
     const Panel& p = surface.panels[panels[k]];
     PanelNodes<Real> nodes;
@@ -71,7 +72,7 @@ void add_moments(const Panels& panels, int e, const int* rows, const double* mom
   }
 }
 
-/// Three rows of the operator from the sums 11, 12, 13, 22, 23, 33 of one target with every control point, over 8 pi.
+/// Writes three rows of the operator from the sums 11, 12, 13, 22, 23, 33 of one target with every control point, divided by 8 pi.
 template <class Real>
 void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -95,7 +96,7 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
 template <class Real>
 class Layer::RowSums {
  public:
-  /// `at`: places of the targets by their rows, off the surfaces; nothing: they are sites.
+  /// `at`: positions of targets off the surfaces, one row per target; if null, the targets are sites.
   RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
 
   FarBasis<Real> basis;
@@ -120,7 +121,7 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Those that need a rule of their own for the target, number l of its block.
+  /// Adds the panels that need near-singular or singular quadrature for the target with index l in its block.
   void add_close_panels(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     const Vec3 x0 = place_of(target);
@@ -131,7 +132,7 @@ class Layer::RowSums {
       if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
   }
 
-  /// The same on a lattice, where all nodes are in the far sum, each with the images that are near in the cell.
+  /// Adds near-singular and singular quadrature on a lattice, for the near images in the cell. It corrects the far sum, which includes all nodes.
   void add_close_images(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     for (const Vec3& image : layer_.lattice_.near) {
@@ -177,7 +178,8 @@ class Layer::RowSums {
   std::vector<std::uint32_t> skip_;
 };
 
-/// - N_B(x_i) sum_C A_iC in the sums of a site: what a double layer takes from its density, by the same rules.
+/// Subtracts N_B(x_i) sum_C A_iC from the sums of a site: the term with f(x_i) in the double layer (2.2), integrated by the same rules as the term
+/// with f(x).
 template <class Real>
 void Layer::subtract_density_at_site(int site, Real* sums) const {
   double total[6] = {};
@@ -273,9 +275,9 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   if (surface_.options.rule == "desingularised") subtract_identities(sites, near, entries);
 }
 
-/// M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,
-///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n],
-/// which is 0 for an exact rule. f is measured as the density is.
+/// Returns M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,
+///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n].
+/// If the rule is exact, M = 0. M refers to the area to which the density refers.
 Mat3 Layer::identities(int site) const {
   const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
     const auto [a1, a2] = surface_.self_field.tangents(site, surface_.panels, bezier);

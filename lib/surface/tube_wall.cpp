@@ -18,7 +18,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Cubic splines along a line: pieces with four functions each, and collocation points with every piece that holds them.
+/// Cubic splines in one variable: pieces with four functions each, and collocation points, each with all pieces that contain it.
 struct Line {
   struct Piece {
     std::array<int, 4> functions;
@@ -46,7 +46,7 @@ struct Line {
     sites.push_back(std::move(at));
   }
 
-  /// Adds pieces between the knots; function j of the extended knots has the number number(j).
+  /// Adds the pieces between the knots. Function j of the extended knots has the index number(j).
   template <class Number>
   void add_pieces(const std::vector<double>& extended, int m, const Number& number) {
     for (int e = 0; e < m; ++e) {
@@ -64,7 +64,8 @@ struct Line {
   }
 };
 
-/// Closed: function i has its middle knot at knots[i]. Open: end knots fourfold; `inwards`: sites at the ends go half of the way to the next ones.
+/// Adds the splines on these knots to a line. Closed: function i has its middle knot at knots[i]. Open: end knots have multiplicity four. If
+/// `inwards`, the sites at the ends are moved halfway to their neighbours.
 void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards) {
   const int m = static_cast<int>(knots.size()) - 1, n = closed ? m : m + 3, first = static_cast<int>(line.pieces.size()), offset = line.n;
   const double period = knots[m] - knots[0];
@@ -84,7 +85,7 @@ void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards
   line.n += n;
 }
 
-/// Integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x.
+/// Returns the integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x, g = `grading`.
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -140,8 +141,8 @@ spline::Space product(const Line& along, const Line& around) {
   return space;
 }
 
-/// Makes densities periodic on a wall whose elements along `open` are those of the periodic splines between `knots`, with the last of these cut at
-/// the seam: open.pieces[0] is the rest of it.
+/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. The elements along `open` are those between these knots, but the
+/// seam cuts the last one in two; open.pieces[0] is its second part.
 void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<double>& knots) {
   const double period = wall.end - wall.start;
   std::vector<double> ends{wall.start}, cycle = knots;
@@ -150,14 +151,14 @@ void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<dou
   Line closed;
   add(closed, cycle, true, false);
   open.sites.clear();
-  for (int i = 0; i < closed.n; ++i) {  // Greville points, as add() has them
+  for (int i = 0; i < closed.n; ++i) {  // Greville points, as in add()
     const auto knot = [&](int k) { return cycle[static_cast<std::size_t>((k + closed.n) % closed.n)] + period * std::floor(1. * k / closed.n); };
     const double u = (knot(i - 1) + knot(i) + knot(i + 1)) / 3;
     open.add_site(u < wall.start ? u + period : u >= wall.end ? u - period : u, ends, 0, false);
   }
   wall.sites = sites_of(open, around);
   const int last = static_cast<int>(closed.pieces.size()) - 1, m = static_cast<int>(around.pieces.size());
-  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());  // share of the last element before the end
+  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());  // fraction of the last element that lies before the seam
   const auto fill = [&](int piece, int of_closed, double from, double to) {
     const Line::Piece &here = open.pieces[static_cast<std::size_t>(piece)], &there = closed.pieces[static_cast<std::size_t>(of_closed)];
     const Eigen::Matrix4d values = there.extraction * spline::restriction(3, from, to).transpose();
@@ -183,8 +184,8 @@ void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<dou
   wall.period = period;
 }
 
-/// A wall with everything but its control points; the control points of the outline. `periodic`: knots of densities that repeat, between those of the
-/// two ends, or none.
+/// Returns a wall without its control points, and the control points of the outline. `periodic`: knots of periodic densities, between the first and
+/// the last of `knots`, or empty.
 std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
                                              const std::vector<double>& periodic = {}) {
   Line along, around;
@@ -221,7 +222,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // the control points of x1 itself
+    const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // control points of the function x1
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
   }
@@ -250,7 +251,7 @@ TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, 
 
 namespace {
 
-/// Control points of the spline through a channel's sections, with its slopes at the ends and where a knot is there three times.
+/// Returns the control points of the spline through a value of a channel's sections, with the slopes of this value at the ends and at triple knots.
 std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
   const double step = 1e-6 * (knots.back() - knots.front());
@@ -280,14 +281,14 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
   }
   auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements, periodic);
   wall.space.description = "channel, " + wall.space.description;
-  const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // the spline's area is that of the section
+  const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // gives the spline's outline the area of the section
   for (Vec2& point : ring) point *= wider;
   double narrowest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // the ends of a straight one are coarser
+    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // ends of a straight channel are coarser
     narrowest = at.factor.minCoeff();
   }
   const auto centre = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.centre.head<2>(); });

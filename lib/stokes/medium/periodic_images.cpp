@@ -16,11 +16,11 @@ namespace tanktread::stokes {
 namespace {
 
 using std::numbers::pi;
-constexpr int pairs[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};  // of the Stokeslet's components
+constexpr int pairs[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};  // index pairs of the Stokeslet's components
 
 double delta(int i, int j) { return i == j ? 1 : 0; }
 
-/// Takes multiples of the other vectors from each as long as that makes it shorter.
+/// Reduces a lattice basis: adds multiples of the other vectors to each vector while that makes it shorter.
 void reduce(Mat3& vectors, int n) {
   for (bool changed = true; changed;) {
     changed = false;
@@ -37,7 +37,7 @@ void reduce(Mat3& vectors, int n) {
   }
 }
 
-/// e^{-k^2/4 xi^2} and what is in front of I and r r of the smooth Stokeslet G - A, and of its derivative.
+/// Coefficients of I and r r of the smooth part G - A of the Stokeslet, and of its derivative. g is that of (2.25).
 struct Smooth {
   double a, b, g, slope;  // G - A = a I + b r r;   T = -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k
 
@@ -49,7 +49,7 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // of m + 1, with 1/m! for (m + 1)/(m + 1)!
+        second -= power * 4 / (2 * m + 5);  // term m + 1 of the series, (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);
@@ -65,7 +65,7 @@ struct Smooth {
   }
 };
 
-/// A rotation of the first index of an array behind all others, and from its m numbers to n by a matrix (n, m).
+/// Multiplies an array by a matrix (n, m) along its first index, which has length m, and moves that index to the end.
 template <class Number>
 void contract(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& by, std::vector<Number>& array) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
@@ -108,13 +108,13 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // the modes along decay like |k| z e^{-|k| z}
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // modes with an in-plane wave number k != 0 decay like |k| z e^{-|k| z}
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
 }
 
-/// The sum over k != 0.
+/// Returns the sum over k != 0 in (2.25), or its stresslet (2.26).
 std::vector<double> PeriodicKernel::waves(const std::array<std::vector<double>, 3>& s) const {
   using Complex = std::complex<double>;
   using Matrix = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic>;
@@ -170,7 +170,7 @@ void PeriodicKernel::add_smooth_images(const Vec3& r0, double* values) const {
   }
 }
 
-/// (2.27)
+/// Adds the correction (2.27) for two periods.
 void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const Vec3 e = cell_.vectors().col(2);
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());
@@ -198,8 +198,8 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// All images of a row beyond those near, two by two, less what their Stokeslets tend to: `direct` of them one by one, those after by an integral
-/// over 1/n and the first term of Euler and Maclaurin's formula.
+/// Adds all images of one period beyond the near ones, in pairs +n and -n, minus the limits of their Stokeslets far along the row. The next `direct`
+/// pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
   const Vec3 h = cell_.vectors().col(0), e = h.normalized();
@@ -219,7 +219,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
-/// The constant of (2.43), less the limits of the images that are near.
+/// Adds the constant of (2.43) minus the limits of the near images.
 void PeriodicKernel::add_constant(double* values) const {
   if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
   const double h = cell_.vectors().col(0).norm();

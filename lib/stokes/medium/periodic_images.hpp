@@ -1,5 +1,5 @@
 #pragma once
-// A lattice of points after which everything repeats, and what its far images do.
+// Lattices of periodic images, and the contribution of the images that are not near.
 
 #include <array>
 #include <vector>
@@ -8,28 +8,29 @@
 
 namespace tanktread::stokes {
 
-/// n = 1, 2 or 3 vectors after which everything repeats, the shortest of their lattice, and unit vectors across for the other directions.
+/// Periodic cell with n = 1, 2 or 3 lattice vectors, reduced to the shortest ones of the lattice. The other directions have unit vectors normal to
+/// them.
 class PeriodicCell {
  public:
-  /// The first n columns of `vectors` are the lattice's, linearly independent. `reference`: of one period the distance across at which the axial
-  /// velocity of a row of unit forces changes its sign (2.43), which fixes the constant of the Stokeslet; 0: the constant is left open.
+  /// The first n columns of `vectors` are linearly independent lattice vectors. `reference`, for one period: distance from the row at which the axial
+  /// velocity of a row of unit forces changes sign (2.43), which fixes the constant of the Stokeslet; 0 leaves the constant undefined.
   PeriodicCell(const Mat3& vectors, int n, double reference = 0);
 
   int n() const { return n_; }
   const Mat3& vectors() const { return vectors_; }  ///< columns
-  double volume() const { return volume_; }         ///< area of two, length of one
+  double volume() const { return volume_; }         ///< for two periods the area, for one the length
   double reference() const { return reference_; }
 
-  /// Lattice coordinates of a place: of directions across lengths.
+  /// Returns the lattice coordinates of a position. In directions that do not repeat they are lengths.
   Vec3 coordinates(const Vec3& x) const { return inverse_ * x; }
 
-  /// The lattice vector to take from x so that it is in the cell around the origin.
+  /// Returns the lattice vector that must be subtracted from x to move it into the cell around the origin.
   Vec3 shift(const Vec3& x) const;
 
-  /// Distance between neighbouring planes of the lattice that hold all vectors but number d; of n vectors.
+  /// Returns the distance between neighbouring lattice planes that contain all vectors except vector d, d < n.
   double spacing(int d) const { return 1 / inverse_.row(d).norm(); }
 
-  /// The lattice vectors with up to `most[d]` steps along vector d, either way.
+  /// Returns the lattice vectors with up to `most[d]` steps along vector d in both directions.
   std::vector<Vec3> around(const std::array<int, 3>& most) const;
 
   bool operator==(const PeriodicCell& other) const {
@@ -42,21 +43,21 @@ class PeriodicCell {
   double volume_ = 0, reference_;
 };
 
-/// What images of the Stokeslet G or the stresslet T do that are not near: the sum over the lattice, less those of `near`, at places r = x - x0 in a
-/// box. Of three periods the mean over the cell is zero (Hasimoto 1959; a uniform pressure gradient balances the force), in Ewald's form with
-/// Hasimoto's splitting (Lindbo & Tornberg 2010; Beenakker's for G - A):
+/// Sum of the Stokeslet G or the stresslet T over the images of a lattice without the images in `near`, at positions r = x - x0 in a box. With three
+/// periods the mean over the cell is zero, and a uniform pressure gradient balances the force (Hasimoto 1959). The sum has Ewald's form with
+/// Hasimoto's splitting (Lindbo & Tornberg 2010); G - A is Beenakker's:
 ///
 ///   G^P(r) = sum_n A(xi, r + Hn) + (8 pi/V) sum_{k != 0} (1 + k^2/4 xi^2) e^{-k^2/4 xi^2} (k^2 I - k k)/k^4 cos k.r             (2.25)
 ///   A = I (erfc(xi r)/r - g) + r r (erfc(xi r)/r^3 + g/r^2),   g = (2 xi/sqrt(pi)) e^{-xi^2 r^2}
 ///   T_ijk = -delta_jk p_i + dG_ij/dx_k + dG_ik/dx_j,   p the pressure of G                                                      (2.26)
 ///
-/// xi is so small that all A beyond those near vanish. Two periods are three, of which the third is so long that nothing but the mode k = 0 reaches
-/// across it, which is taken back: with z across and the area S, length L3,
+/// xi is just large enough that A is negligible for all images that are not near. Two periods are computed as three with a third period so long that
+/// only the mode k = 0 reaches across it. This mode is subtracted. With z across, area S and third period L3,
 ///
 ///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
 ///
-/// One period h e is a sum to its end, by Euler and Maclaurin's formula. Of one and two periods G is known up to a constant; that of one period is
-/// fixed by the reference distance l of the cell, so that far from the row with rho the distance across
+/// The sum for one period h e is completed by the Euler-Maclaurin formula. For one and two periods G is defined up to a constant. For one period the
+/// reference distance l of the cell fixes it, so that far from the row the axial velocity depends on the distance rho from the row like -ln(rho/l):
 ///
 ///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
 ///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.43)
@@ -64,19 +65,20 @@ class PeriodicKernel {
  public:
   enum class Kind { stokeslet, stresslet };
 
-  /// Places are box s, |s_d| <= 1. `box`: columns, the vectors of the cell and for directions across multiples of its. `tolerance`: of the sum, times
-  /// a length of the cell, or its square.
+  /// Positions are r = box s with |s_d| <= 1. `box`: columns are the vectors of the cell, or multiples of them in directions that do not repeat.
+  /// `tolerance`: error of the sum times a length of the cell (stresslet: its square).
   PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& box, const std::array<int, 3>& near, double tolerance);
 
-  /// Stokeslet: 11, 12, 13, 22, 23, 33. Stresslet: T_ijk, jk in the order 11, 22, 33, 2 x 12, 2 x 13, 2 x 23, number 6 i + jk.
+  /// Returns the number of components. Stokeslet: 11, 12, 13, 22, 23, 33. Stresslet: T_ijk at index 6 i + jk, where jk = 11, 22, 33, 12, 13, 23, and
+  /// components with j != k are doubled.
   int components() const { return kind_ == Kind::stokeslet ? 6 : 18; }
 
-  /// values[((n_0 n_1 n_2) c + (n_1 n_2) k_0 + n_2 k_1 + k_2] at the places s = (s[0][k_0], s[1][k_1], s[2][k_2]).
+  /// Returns values[(n_0 n_1 n_2) c + (n_1 n_2) k_0 + n_2 k_1 + k_2] at the positions s = (s[0][k_0], s[1][k_1], s[2][k_2]).
   std::vector<double> values(const std::array<std::vector<double>, 3>& s) const;
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // A - G of those near
+  void add_smooth_images(const Vec3& r, double* values) const;  // A - G of the near images
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

@@ -10,8 +10,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Rounds the extent across outwards, to steps of between an eighth and a quarter of its length, so that a shape that moves seldom asks for another
-/// table, and the box depends on the shape only.
+/// Rounds the extent in directions that do not repeat outwards, to steps between an eighth and a quarter of its length. A moving shape then seldom
+/// needs a new table, and the box depends on the shape only.
 std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent) {
   for (int d = cell.n(); d < 3; ++d) {
     const double step = std::exp2(std::floor(std::log2(extent[1][d] - extent[0][d]))) / 4;
@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Numbers of steps to images that are near, so that the nearest of the others is about `far` lengths of the box away from every pair in it; and how
-/// near.
+/// Returns the numbers of steps to near images for which every other image is about `far` lengths of the box away from any pair of points in the box,
+/// and that distance.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -35,10 +35,11 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
   return {steps, distance};
 }
 
-/// The stresslet's rest, steeper by one order, errs up to three times as much; measured on cubes, tilted and oblong cells.
+/// Returns a smaller tolerance for the stresslet. Its kernel is steeper by one order, and its error is up to three times as large; measured on cubic,
+/// tilted and oblong cells.
 double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
-/// Nodes on [-1, 1] that interpolate what has its nearest pole y half-lengths away.
+/// Returns the number of Chebyshev nodes on [-1, 1] for a function whose nearest pole is y half-lengths away.
 int order_for(double tolerance, double y) { return static_cast<int>(std::ceil(-std::log(tolerance) / std::asinh(y))); }
 
 std::vector<double> chebyshev(int n) {
@@ -47,7 +48,7 @@ std::vector<double> chebyshev(int n) {
   return nodes;
 }
 
-/// Values at places from those at Chebyshev nodes, by the barycentric formula.
+/// Returns the matrix that maps values at Chebyshev nodes to values at other positions, by the barycentric formula.
 Eigen::MatrixXd interpolation(const std::vector<double>& places, const std::vector<double>& nodes) {
   const auto n = static_cast<Eigen::Index>(nodes.size());
   Eigen::MatrixXd result(static_cast<Eigen::Index>(places.size()), n);
@@ -67,7 +68,7 @@ Eigen::MatrixXd interpolation(const std::vector<double>& places, const std::vect
   return result;
 }
 
-/// The differences of nodes, each once, and which that of a and b is.
+/// Returns the distinct differences of nodes. `number`: for each pair of nodes a, b, the index of its difference b - a.
 std::vector<double> differences(const std::vector<double>& nodes, std::vector<int>& number) {
   std::vector<double> all;
   for (const double a : nodes)
@@ -80,9 +81,9 @@ std::vector<double> differences(const std::vector<double>& nodes, std::vector<in
   return all;
 }
 
-/// From values [component][x][y][z] at nodes to [x][y][z][component] at places.
+/// Interpolates values [component][x][y][z] at nodes to values [x][y][z][component] at other positions.
 std::vector<double> interpolated(std::vector<double> values, const std::array<Eigen::MatrixXd, 3>& by) {
-  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // the last index goes to the front
+  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // contracts the last index and moves it to the front
     const Eigen::Index rest = static_cast<Eigen::Index>(values.size()) / matrix.cols();
     const Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(values.data(), matrix.cols(), rest).transpose() * matrix.transpose();
     values.assign(result.data(), result.data() + result.size());
@@ -91,7 +92,7 @@ std::vector<double> interpolated(std::vector<double> values, const std::array<Ei
   return values;
 }
 
-/// The three numbers that each one carried adds to, side by side, with a fourth that is idle.
+/// Returns for each component of the source strength the three components of the velocity it contributes to, contiguous and padded to four.
 std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>& components, int n) {
   constexpr int number[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
   const int in = kind == PeriodicKernel::Kind::stokeslet ? 3 : 6;
@@ -105,14 +106,14 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Where the table has the difference of two nodes.
+/// Indices of the differences of two nodes in the table.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;
   std::array<int, 3> order;
 };
 
-/// What In numbers at each node do to node a.
+/// Returns the velocity at node a due to source strengths with In components at each node.
 template <int In>
 Eigen::Array4d product(const Differences& of, const double* table, int a, const double* carried) {
   const auto& [n0, n1, n2] = of.order;
@@ -180,7 +181,7 @@ Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
   return (cell_.coordinates(wrapped) - low_).cwiseQuotient(length_) - Vec3::Constant(0.5);
 }
 
-/// Numbers at the nodes of sources to values at those of targets, in blocks.
+/// Computes the velocities at the nodes from the source strengths at the nodes, in blocks.
 void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& u) const {
   const int n = box_.n_nodes();
   const std::size_t in = static_cast<std::size_t>(components_) / 4;

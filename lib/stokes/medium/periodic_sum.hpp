@@ -1,5 +1,5 @@
 #pragma once
-// Far sums over a lattice of images: those near as sources like any other, the smooth rest between Chebyshev nodes of the cell.
+// Far sums over a lattice of images. Near images are treated like other sources; the smooth rest is evaluated between Chebyshev nodes of the cell.
 
 #include <array>
 #include <span>
@@ -12,31 +12,34 @@
 
 namespace tanktread::stokes {
 
-/// The kernel of one lattice split into images that are near, for the far sum, and a smooth rest (PeriodicKernel). Sources and targets are put into
-/// the cell one by one; the rest is interpolated on both sides in lattice coordinates, like between clusters (TreeSum): with y twice the distance of
-/// the nearest image in it over the length of the cell, p nodes along that err like rho^(-p), rho = y + sqrt(1 + y^2), cf. (2.9).
+/// Splits the kernel of a lattice into near images, for the far sum, and a smooth rest (PeriodicKernel). Each source and each target is first moved
+/// into the cell. The rest is interpolated at both sources and targets in lattice coordinates, as between clusters (TreeSum). In one direction let y
+/// be twice the distance of the nearest image in the rest divided by the length of the cell. With p nodes in this direction the error is of the order
+/// rho^(-p), rho = y + sqrt(1 + y^2), cf. (2.9).
 class PeriodicSum {
  public:
-  /// `tolerance`: of the sum, relative to one term at half a cell. `extent`: lowest and highest coordinate of all places, for directions across.
+  /// `tolerance`: error of the sum relative to one term at half a cell. `extent`: lowest and highest lattice coordinates of all positions, for
+  /// directions that do not repeat.
   PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double tolerance, const std::array<Vec3, 2>& extent);
 
   const PeriodicCell& cell() const { return cell_; }
-  const std::vector<Vec3>& images() const { return images_; }  ///< H n of those near, 0 among them
+  const std::vector<Vec3>& images() const { return images_; }  ///< lattice vectors H n of the near images, including 0
 
-  /// Returns whether a sum made for these lowest and highest coordinates would be this one.
+  /// Returns whether a sum constructed for this extent would equal this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
-  /// The place in the cell; far from the origin, near which kernels would take close points for equal ones.
+  /// Returns the position moved into the cell. The cell is far from the origin, because near the origin kernels would treat close points as
+  /// identical.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
-  /// Adds the rest at targets, in the cell: u[3 k + c]. Sources are places in the cell with 3 numbers of forces, or 6 of stresslets in the order of
-  /// StressletKernel.
+  /// Adds the rest at targets in the cell: u[3 k + c]. Sources are positions in the cell with 3 components of a force, or 6 components of a stresslet
+  /// in the order of StressletKernel.
   void add_rest(const Charges& sources, std::span<const Vec3> targets, double* u);
 
-  /// Lagrange polynomials of the nodes that the rest is interpolated between, at places in the cell: shape (number of places, n_nodes).
+  /// Returns the Lagrange polynomials of the interpolation nodes at positions in the cell, shape (number of positions, n_nodes).
   Eigen::MatrixXd lagrange(std::span<const Vec3> places) const;
 
-  /// Component c = 11, 12, 13, 22, 23, 33 of the rest of the Stokeslet between these nodes, shape (n_nodes, n_nodes).
+  /// Returns component c = 11, 12, 13, 22, 23, 33 of the rest of the Stokeslet between the interpolation nodes, shape (n_nodes, n_nodes).
   Eigen::MatrixXd between_nodes(int component) const;
   int n_nodes() const { return box_.n_nodes(); }
 
@@ -46,13 +49,13 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;  // of the box, in coordinates of the cell
-  std::array<Vec3, 2> across_;  // lowest and highest coordinates that the rest is made for, in directions that do not repeat
-  ChebyshevBox box_;          // half a unit each way
+  Vec3 away_, low_, length_;    // displacement of the cell; lowest corner and side lengths of the box, in lattice coordinates
+  std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that do not repeat
+  ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // of nodes a, b of one direction: number n a + b
-  std::array<std::size_t, 3> differences_;      // how many there are
-  std::vector<double> table_;                   // of the rest: components of difference (i, j, k) from c ((n_1 i + j) n_2 + k) on
+  std::array<std::vector<int>, 3> difference_;  // index of the difference of nodes a, b of one direction, at n a + b
+  std::array<std::size_t, 3> differences_;      // number of differences
+  std::vector<double> table_;  // the rest: components_ values of difference (i, j, k) from components_ ((n_1 i + j) n_2 + k) on
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

@@ -30,7 +30,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   ranks_.own(own_points_, space.n_points);
   sites_ = collocation_matrix(space);
   collocation_.factor(sites_);
-  mass_ = membrane::MassMatrix(space, 8).update(surface);  // eight points: the area is no polynomial
+  mass_ = membrane::MassMatrix(space, 8).update(surface);  // eight Gauss points, because the area is not a polynomial
 
   const surface::Geometry geometry(space);
   flux_ = geometry.volume_gradient(surface);
@@ -107,14 +107,14 @@ const BetweenSites& Resistance::between() {
   return *between_;
 }
 
-/// R^-1 A f + s c (b.f)/(b.c)                                                                                    (2.10)
+/// Returns R^-1 A f + s c (b.f)/(b.c) (2.10).
 Net Resistance::apply(const Net& f) const {
   const Eigen::Map<const Eigen::VectorXd> flat(f.data(), f.size());
   Net u(f.rows(), 3);
   const Net in_space = wall_ ? Net(f * turn_.transpose()) : Net();
   for (size_t k = 0; k < own_points_.size(); ++k) {
     const auto row = 3 * static_cast<Eigen::Index>(k);
-    for (int i = 0; i < 3; ++i)  // row by row: the sum of a row does not depend on how many rows this rank has
+    for (int i = 0; i < 3; ++i)  // row by row, so that the sum of a row does not depend on the number of rows of this rank
       u(own_points_[k], i) = rows_.row(row + i).dot(flat);
     if (!wall_) continue;
     Vec3 images;

@@ -65,7 +65,7 @@ double Tube::pressure_of(const Net& f, const Net& v) {
   return dot(particle_->pressure_of_load, f) + (by_flow ? pressure_of_velocity(v, velocity_on_wall(v)) : dot(particle_->pressure_of_velocity, v));
 }
 
-/// dp with which the flow rate of the disturbance that v makes vanishes; `on_wall`: its velocity there.
+/// Returns the pressure drop for which the disturbance caused by v has zero net flow rate. `on_wall`: velocity of this disturbance at the wall.
 double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
   weigh_flow();
   const double taken_away = wall_->iterates() ? dot(flow_weights_, wall_->solve(on_wall)) : dot(flow_of_wall_, on_wall);
@@ -104,7 +104,7 @@ Net Tube::images_on_particle(const Net& f, const Net& v) {
   return on_particle(particle_->cause(f, v, *wall_).at_sites);
 }
 
-/// Rows of this rank to all.
+/// Distributes the rank-owned rows to all ranks.
 Net Tube::on_particle(const Net& own) const {
   return particle_->ranks.filled(own.rows(), [&](Net& u) {
     for (const int i : particle_->own) u.row(i) = own.row(i);
@@ -144,18 +144,18 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
   return response;
 }
 
-/// Of the duct as long as it is modelled, or of a period.
+/// Returns the pressure drop of the empty duct over the modelled length, or over one period.
 double Tube::empty_pressure_drop() const {
   const auto* channel = dynamic_cast<const ChannelFlow*>(flow_.get());
   return channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length();
 }
 
-/// By what part of it the flow is slower where its pressure drop is held.
+/// Returns the fraction by which the particle reduces the flow rate if the pressure drop is prescribed, otherwise 0.
 double Tube::slowed(double pressure_drop) const {
   return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
 }
 
-/// c times mu at points in the wall's frame: what a unit pressure drop does beside the wall's own answer.
+/// Returns mu c at points in the wall's frame: mu times the velocity due to a unit pressure drop, without the response of the wall's traction.
 Net Tube::driven(const Net& at) const {
   return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Particles in a tube: the wall's traction and the pressure drop, eliminated.
+// Particles in a tube. The traction on the wall and the pressure drop are eliminated.
 
 #include <memory>
 #include <optional>
@@ -25,135 +25,138 @@ class Wall;
 struct BetweenSites;
 
 struct TubeParameters {
-  double viscosity = 1;                                  ///< mu of the outer fluid
-  double viscosity_ratio = 1;                            ///< lambda, of all particles, if they do not differ
-  surface::Symmetry symmetry;  ///< of channel, particle and all that is asked for; of no points: none
-  bool holds_pressure_drop = false;  ///< of the duct's flow, in place of its flow rate
+  double viscosity = 1;              ///< mu of the outer fluid
+  double viscosity_ratio = 1;        ///< lambda, if all particles have the same
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points: none
+  bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
 };
 
-/// What the wall and the pressure drop answer to a load f and a velocity v on the particle (control values, linear in both together):
+/// Response of the wall and the pressure drop to a load f and a velocity v on the particle. f and v are given by control values, and the response is
+/// linear in both together:
 ///
 ///   wall      (1/mu) G_W f^D - dp c = -(1/mu) G_C f + (1 - lambda) (1 / 8 pi) int_C T v n dG            at the wall      (2.6)
 ///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
-///   answer    u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
+///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
-/// G single layers over 8 pi, c = (1/mu) of the inlet's integral (2.13). f^D is the disturbance of the traction on the wall, dp that of the pressure
-/// drop between the ends, Q the flow rate of v_inf; v_inf is the duct's flow of any mean velocity here, whatever flow the walls go along with.
+/// G are single layers divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is the disturbance of the traction on the wall,
+/// and dp that of the pressure drop between the ends. v_inf is here the duct's flow with any mean velocity, whatever the actual
+/// ambient flow is. Q is its flow rate.
 ///
-/// Several particles are one surface here, C all of it. The wall is laid around the particle: it is fixed in a frame whose x1 is counted from the
-/// particle's centroid. So what depends on the wall alone is assembled and factored once. Points of the particle are true ones everywhere; nets of
-/// the wall are in the wall's frame. Nets are replicated; calls are collective but for queries.
+/// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
+/// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
+/// laboratory frame; nets of the wall are in the wall's frame. Nets are replicated on all ranks. All calls except queries are collective.
 ///
-/// Where the pressure drop dp_0 of the duct's flow is held, not its flow rate, the answer is less by dp/dp_0 of that flow; dp is what the particle
-/// adds to the empty tube of the flow rate that is left, Q (1 - dp/dp_0).
+/// If the pressure drop dp_0 of the duct flow is prescribed instead of its flow rate, dp/dp_0 times that flow is subtracted from the response. dp is
+/// then the excess over the pressure drop of the empty tube at the reduced flow rate Q (1 - dp/dp_0).
 ///
-/// A duct that repeats along x1 has one period of its wall, no ends, and the kernels of one period (Layer::repeat). c is the empty duct's flow v_inf
-/// per unit pressure drop of a period, which vanishes on the wall, so that the answer without it is that of a held pressure drop; dp is that of one
-/// period, and the answer contains what the images of the particle do to it.
+/// A duct that repeats along x1 is represented by one period of its wall, without ends and with the kernels of one period (Layer::repeat). c is then
+/// the empty duct's flow v_inf per unit pressure drop of a period. It vanishes on the wall, so that the response without it is that of a prescribed
+/// pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on the particle.
 ///
-/// The wall of a channel stays where it is, v_inf is that of ChannelFlow, and what v does to dp follows from the flow rate of the disturbance (2.14),
-/// which vanishes, in place of f_inf.
+/// The wall of a channel is fixed in the laboratory frame, and v_inf is that of ChannelFlow. The contribution of v to dp then follows, without f_inf,
+/// from the condition that the flow rate of the disturbance vanishes (2.14).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
        Phases& phases);
 
-  /// A channel, with the wall that its flow came from.
+  /// Constructs a channel with the wall of its flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// The same tube around another mesh of the particle: nothing of the wall is made again.
+  /// Constructs the same tube for another mesh of the particle. All data of the wall are shared.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed particles, and what loads are measured on, as Layer::set_reference.
+  /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// 1 - lambda of the particle that each control point is of, -1 of a rigid body, whose `v` is w of (2.23): where there are several.
+  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body it is -1, and `v` is w of (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
-  /// Takes the particle's control net, in true places; what follows belongs to this shape. `centroid`: where the frame of a straight wall has its
-  /// origin along x1; none: the particle's centroid.
+  /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
+  /// wall; by default the particle's centroid.
   void place(const Net& x, std::optional<double> centroid = {});
 
-  /// The lattice of a duct that repeats.
+  /// Returns the lattice of a duct that repeats.
   const std::optional<stokes::PeriodicCell>& cell() const;
 
   struct Response {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< f^D, control values on the wall
     double pressure_drop = 0;
-    Net load, moves;  ///< f and v of the images in a duct that repeats, else empty
+    Net load, moves;  ///< f and v, only in a duct that repeats
   };
 
-  /// Either net may be empty: then it is zero. v counts for lambda != 1 only. `lacking`: what is known to lack of the pressure drop.
+  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: known correction of the pressure drop.
   Response respond(const Net& f, const Net& v = {}, double lacking = 0);
 
-  /// Rows `rows` of the answer u of a response at the points with rows `x`, true places, on the particle or anywhere in the fluid.
+  /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
   /// Not collective.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Keeps the present shape's operators, as blocks of few bits, for `frozen_response`, which is the answer u at the particle's
-  /// collocation points; 0 where each answer of the wall takes an iteration, for it is a small and smooth part of a Jacobian.
+  /// Stores the operators of the current shape, as low-precision blocks, for `frozen_response`, which returns u at the particle's collocation points.
+  /// If the wall's system is solved by iteration, `frozen_response` returns 0, because u is a small and smooth part of a Jacobian.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
-  /// The parts of the block system, at the collocation points of wall and particle.
-  Net load_on_wall(const Net& f);             ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);         ///< (1 - lambda) (1 / 8 pi) int T v n
-  Net wall_on_particle(const Net& traction);  ///< -(1/mu) G_W f^D
-  Net wall_on_wall(const Net& traction);      ///< (1/mu) G_W f^D
-  Net images_on_particle(const Net& f, const Net& v = {});  ///< what the particle's images in a duct that repeats do
-  const Net& inlet_on_particle() const;       ///< c; in a duct that repeats the empty duct's flow per unit pressure drop of a period
-  const Net& ambient() const;                 ///< v_inf at the collocation points, of the amplitude 1
+  /// Parts of the block system, at the collocation points of the wall and the particle.
+  Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
+  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int T v n
+  Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
+  Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
+  Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
+  const Net& inlet_on_particle() const;  ///< c; in a duct that repeats, the empty duct's flow per unit pressure drop of a period
+  const Net& ambient() const;            ///< v_inf at the collocation points, with amplitude 1
   Net inlet_on_wall() const;
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
 
-  /// What `pressure_of` a force density f lacks, where `flow` is a duct's: `work`, the residual work of the density that has v_inf on the surface,
-  /// and in a channel of v_inf at the places what is left where it is interpolated (2.41).
+  /// Returns the correction of `pressure_of` for a force density f, if the ambient flow is a duct flow with this amplitude. `work`: residual work of
+  /// the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the points of
+  /// `between` (2.41).
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
-  Net solve_wall(const Net& rhs);                       ///< f^D of (1/mu) G_W f^D = rhs, by the factors
+  Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
-  /// Independent routes to what a response satisfies, and how far off they are.
+  /// Independent checks: errors of a response in conditions that it must satisfy (2.14).
   struct Checks {
-    double flux = 0;                                     ///< disturbance of the flow rate through the inlet, over Q
-    double force = 0;                                    ///< A dp less the axial forces on wall and particle, over the duct's own A G R_T
-    double cap_velocity = 0;                             ///< largest disturbance velocity left on the caps, over the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< the pressure drop with which flux or force would vanish
+    double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
+    double force = 0;         ///< A dp minus the axial forces on wall and particle, divided by the duct's A G R_T
+    double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops for which `flux` or `force` would vanish
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
-  /// What a load f leaves over where nothing should move or flow: int N_A u dG of the velocity on the wall between its collocation points, and the
-  /// flow rate through the inlet.
+  /// Residual of the response to a load f: int N_A u dG of the velocity on the wall between its collocation points, and the flow rate through the
+  /// inlet. Exactly, both are zero.
   struct Leak {
     Net velocity;
     double flow = 0;
   };
   Leak leak(const Net& f);
 
-  /// What it takes from the work of another load that wall and pressure drop answer so (2.42).
+  /// Returns the part of (2.42) that is due to the wall and the inlet: the work of the leak with the response `of` to another load.
   double work(const Leak& leak, const Response& of) const;
 
-  /// Flow rate where the particle adds this pressure drop: Q, or what is left of it.
+  /// Returns the flow rate if the particle's pressure drop has this value: Q, or the reduced flow rate if the pressure drop is prescribed.
   double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
 
-  /// Smallest distance of the particle's surface to the wall; negative where they cross.
+  /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;
 
-  /// The particle of this net where the wall is the one of `wall()`, which goes along with it in a straight tube.
+  /// Returns the particle's net in the frame of `wall()`, which moves with the particle in a straight tube.
   Net in_wall_frame(Net x) const;
 
-  /// Whether the wall stays where it is, and the way along it counts.
+  /// Returns whether the wall is fixed in the laboratory frame (a channel), so that results depend on the position along it.
   bool fixed() const { return wall().channel != nullptr; }
 
-  /// Whether these places are inside, of a channel between its ends too.
+  /// Returns whether these points are inside the duct; in a channel they must also be between its ends.
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
-  void forget_recycled() const { wall_->forget_recycled(); }  ///< of the wall's iterative solver
+  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards the data that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< of both surfaces, the assembly of the wall included
+  stokes::Evaluations kernel_evaluations() const;  ///< number for both surfaces, including the assembly of the wall
 
  private:
   struct Particle;
@@ -170,9 +173,9 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // of the wall's traction, made when first asked for, as are all of these
-  Net flow_of_wall_;                  // weights of a velocity on the wall: the flow rate through the inlet of the traction that takes it away
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // what the inlet's own pressure drives through it; with what the wall answers
+  Net flow_weights_, force_weights_;  // weights of the wall's traction; these and the next two lines are computed at first use
+  Net flow_of_wall_;  // weights of a velocity on the wall, for the flow rate through the inlet of the traction that cancels it
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of c times mu; with the wall's response
 };
 
 }  // namespace tanktread::coupling

@@ -1,4 +1,4 @@
-// Independent routes to the pressure drop, and the distance to the wall.
+// Independent checks of the pressure drop, and the distance to the wall.
 
 #include <algorithm>
 #include <limits>
@@ -12,10 +12,10 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // of the targets see the surfaces themselves
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // of integrals over the wall beside large pressures: over the tolerance, and at most
+constexpr int everything = std::numeric_limits<int>::max();  // first target that sees only images: no target
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // tolerance of integrals over the wall with large pressures: factor and upper limit
 
-/// Points of a section between its centroid and its outline, as far as they are inside; `place` takes them into space.
+/// Adds those points between the centroid and the outline of a section that are inside the outline. `place`: maps points of the section into space.
 template <class Place>
 void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
   const surface::Vec2 centre = outline.centroid();
@@ -27,7 +27,7 @@ void add_points_of_cap(const surface::Outline& outline, const Place& place, std:
       }
 }
 
-/// Of both ends.
+/// Returns points on the caps at both ends.
 std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
   std::vector<Vec3> points;
   for (const double s : {wall.start, wall.end}) {
@@ -59,14 +59,15 @@ void Tube::weigh_flow() {
   flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
 }
 
-/// The flow rate through the inlet is the transpose of c: of a force f at y it is f.c(y)/mu. So no point of the cap is needed.
+/// Returns the checks. By reciprocity the flow rate through the inlet due to a force f at y is f.c(y)/mu, so that no quadrature over the inlet is
+/// needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;
   const double area = wall_->surface().outline.area();
   weigh_flow();
   double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
-  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // of a period the wall takes that of the pressure drop
+  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // dp of a period acts on the wall
   std::vector<double> value[3];
   if (f.size() > 0) {
     particle.single.values(f, value);
@@ -148,7 +149,7 @@ double Tube::gap() const {
   const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
   if (fixed()) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may reach across the seam
+    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend across the seam
       const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
       if (beyond == 0 || wall().period > 0)
         nearest =

@@ -124,8 +124,8 @@ const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
   return flow_of_strength_;
 }
 
-/// The weights of (2.7) over Q. In a straight tube v_inf and f_inf are those at the layers' nodes, so that no load lets the flow rate of the
-/// disturbance be other than 0; that of a channel, which takes an integral over its wall, is interpolated at the collocation points.
+/// Computes the weights of (2.7) divided by Q. In a straight tube v_inf and f_inf are evaluated at the layers' nodes, so that the flow rate of the
+/// disturbance is 0 for every load. In a channel they would require integrals over the wall, so that v_inf is interpolated at the collocation points.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   const auto n = static_cast<std::size_t>(single.n_nodes());
@@ -147,7 +147,7 @@ void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight)
   for (int c = 0; c < 3; ++c) pressure_of_velocity.col(c) = contrasts.cwiseProduct(dual->moments(flow_at[c])) / -flow.flow_rate();
 }
 
-/// Of a symmetric scene at the fundamental points, and their images.
+/// Returns the duct flow at the sites. In a symmetric scene it is evaluated at the fundamental points only and completed by symmetry.
 Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   const surface::Symmetry& symmetry = parameters.symmetry;
   if (symmetry.order() == 1) return flow.velocities(sites);

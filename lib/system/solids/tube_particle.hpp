@@ -1,5 +1,5 @@
 #pragma once
-// The particle in the tube: what changes with its shape.
+// Data of the particle in a tube, which change with its shape.
 
 #include <array>
 #include <optional>
@@ -29,57 +29,58 @@ struct Tube::Particle {
   Particle(const spline::Space& space, const TubeParameters& parameters, const Wall& wall);
 
   void set_contrasts(const Eigen::VectorXd& of_points);
-  /// `origin`: of the wall's frame along x1. `pressure_drop`: of the empty duct.
+  /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
-  /// `pressure_of_wall`: weights of a velocity on the wall in dp, which those of v are made from, for rows of few bits are too coarse; or none.
+  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of the velocity on the wall in dp, or empty. If
+  /// given, the weights of v in dp are computed from them before rows are rounded to low precision, which would be too inaccurate for these weights.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
 
-  /// v at the collocation point of the particle that is nearest to each target on the wall.
+  /// Returns v at the collocation point of the particle that is nearest to each target on the wall.
   Net nearest_values(const Net& v) const;
 
-  /// (1 - lambda) v: the strength of the double layer.
+  /// Returns (1 - lambda) v: the strength of the double layer.
   Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
 
-  /// Adds to rows of u the velocity at these points, in the wall's frame, that a load f and a velocity v, if there, cause by the images of the
-  /// particle in a duct that repeats.
+  /// Adds to rows of u the velocity at these points, in the wall's frame, that a load f and a velocity v cause by the images of the particle in a
+  /// duct that repeats. Empty nets are skipped.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Velocities that f and v, if there, cause in a duct that repeats: at the wall's targets by the particle and its images, and at the collocation
-  /// points by its images. Rows of this rank.
+  /// Velocities caused by f and v in a duct that repeats, rank-owned rows only: at the wall's targets by the particle and its images, and at the
+  /// collocation points only by its images. Empty nets are skipped.
   struct Cause {
     Net at_wall, at_sites;
   };
   Cause cause(const Net& f, const Net& v, const Wall& wall);
 
-  /// Weights of (1 - lambda) v: the flow rate of its double layer along the duct. Kept for the present shape.
+  /// Returns the weights of the strength (1 - lambda) v in the flow rate of its double layer along the duct. Cached for the current shape.
   const Net& flow_of_strength(const Wall& wall);
 
   stokes::Evaluations evaluations() const;
 
   const spline::Space& space;
   TubeParameters parameters;
-  stokes::Measure measure = stokes::Measure::reference;  // of loads
-  std::vector<int> own;  ///< points of this rank
+  stokes::Measure measure = stokes::Measure::reference;  // area to which loads refer
+  std::vector<int> own;                                  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
   Eigen::SparseMatrix<double> collocation;  ///< R
   membrane::DirectSolver from_sites;        ///< R^-1
   stokes::Layer single;
-  std::optional<stokes::Layer> dual;  ///< where a lambda is not 1
-  std::optional<Period> period;       ///< of a duct that repeats
-  Eigen::VectorXd contrasts;               ///< 1 - lambda of each control point
+  std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
+  std::optional<Period> period;       ///< set in a duct that repeats
+  Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
-  Net shape;                                                            ///< in the wall's frame
-  double centroid = 0;                                                  ///< where that frame has its origin
-  Net sites;                                                            ///< collocation points, in the wall's frame
-  Net inlet;                                                            ///< (1/mu) c there
-  Net ambient, interpolated_ambient;                                    ///< the duct's flow there, and of a channel control values from it
-  Net pressure_of_load, pressure_of_velocity;                           ///< the weights of f and v in (2.7); of v empty for lambda = 1
-  std::vector<int> nearest;                                             ///< to a collocation point of the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< kept for the iterations of lambda != 1
+  Net shape;                                                       ///< in the wall's frame
+  double centroid = 0;                                             ///< position along x1 of the origin of that frame
+  Net sites;                                                       ///< collocation points, in the wall's frame
+  Net inlet;                                                       ///< (1/mu) c at the sites
+  Net ambient, interpolated_ambient;                               ///< duct flow at the sites; in a channel also its control values
+  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); those of v are empty if lambda = 1
+  std::vector<int> nearest;                                        ///< nearest site for each target on the wall
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

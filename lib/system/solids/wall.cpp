@@ -15,7 +15,7 @@ namespace {
 
 constexpr int reach = 2;
 
-/// The control points within a distance of rows and columns of one, ascending.
+/// Returns the control points within `distance` rows and columns of a control point, in ascending order.
 std::vector<int> around(const surface::TubeWall& wall, int point, int distance) {
   const int m = wall.n_around, i = point / m, k = point % m;
   std::vector<int> points;
@@ -76,10 +76,10 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-constexpr double residual = 1e-2;        // that an iteration leaves, over the tolerance of integrals
-constexpr double mean_of_wave = 0.516;  // harmonics k^-5, as of the single layer of what interpolation by cubic splines leaves
+constexpr double residual = 1e-2;        // residual of the iterative solve divided by the tolerance of integrals
+constexpr double mean_of_wave = 0.516;  // m of (2.39); harmonics k^-5, as in the single layer of the interpolation error of cubic splines
 
-/// The wall's own matrix is made once, so it can be sharper than what changes with the particle.
+/// Returns options with a smaller tolerance for the wall's own matrix, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
   return options;
@@ -92,7 +92,8 @@ Net collocation_points(const surface::TubeWall& wall) {
   return at;
 }
 
-/// The Stokeslet's constant is such that its mode vanishes well outside of the duct, for with one of about the duct's radius the wall moves nothing.
+/// Returns the lattice of a wall that repeats. The reference distance is well outside the duct, because with a distance close to the duct's radius
+/// the wall could not move the fluid along the duct.
 std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
   constexpr double far = 4;
   if (wall.period == 0) return {};
@@ -143,7 +144,7 @@ std::array<Vec3, 2> Wall::across() const {
   return extent;
 }
 
-/// To the targets.
+/// Appends the middles of elements to the targets.
 void Wall::add_middles() {
   const auto n = static_cast<int>(surface_.middles.size()), first = static_cast<int>(sites_.rows());
   targets_.conservativeResize(first + n, 3);
@@ -156,11 +157,11 @@ void Wall::add_middles() {
     if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
 }
 
-/// Of the middle of each element around a collocation point, in the mean around that: what is left of a velocity is nearly a wave, which vanishes at
-/// these points and whose mean is `mean_of_wave` times what it is in the middles.
+/// Returns the weight of each middle around a collocation point in the mean (2.39). The residual velocity is nearly a wave that vanishes at the
+/// collocation points; its mean is `mean_of_wave` times its value at the middles.
 double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
 
-/// Numbers of the elements of densities that hold a site.
+/// Returns the indices of the middles of the density elements that contain a collocation point.
 std::vector<int> Wall::middles_around(int point) const {
   std::vector<int> all;
   for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
@@ -168,7 +169,7 @@ std::vector<int> Wall::middles_around(int point) const {
   return all;
 }
 
-/// The two fields that make A regular, weighted so that a uniform pressure gives about what a tangential traction does.
+/// Computes the two fields that make A regular, weighted so that a uniform pressure produces about the velocity of a tangential traction.
 void Wall::find_pressure() {
   flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
   pressure_.resize(sites_.rows(), 3);
@@ -177,8 +178,8 @@ void Wall::find_pressure() {
   pressure_ *= surface_.radius() / dot(flux_, pressure_);
 }
 
-/// The matrix between the components of fundamental points that are not zero by the symmetry (4.12), on every rank. Rows of this one are made many at
-/// a time, for those that are neighbours take the same middles.
+/// Returns, on every rank, the matrix between the components of fundamental points that symmetry does not make zero (4.12). Many rows are assembled
+/// at a time, because neighbouring points share middles.
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();
@@ -229,7 +230,7 @@ template <class Real>
 void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
                      stokes::Rows<Real>& rows) const {
   if (!has_middles()) return assemble(sites, rows);
-  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // of middles, among the targets
+  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // index of each middle among the targets, or -1
   for (const int i : sites)
     for (const int e : middles_around(i))
       if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {
@@ -303,7 +304,7 @@ Net Wall::solve_transposed(const Net& weights) const {
   return fundamental_net(factors_.solve_transposed(fundamental(folded)));
 }
 
-/// Components of fundamental points that are not zero by the symmetry, one after the other.
+/// Returns the vector of the components of fundamental points that symmetry does not make zero.
 Eigen::VectorXd Wall::fundamental(const Net& net) const {
   std::vector<double> numbers;
   for (const int a : symmetry_.fundamental())
@@ -312,7 +313,7 @@ Eigen::VectorXd Wall::fundamental(const Net& net) const {
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 
-/// The same back, images zero.
+/// Returns the net with these components at fundamental points. Rows of image points are zero.
 Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   Net net = Net::Zero(sites_.rows(), 3);
   Eigen::Index n = 0;
@@ -322,7 +323,8 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   return net;
 }
 
-/// Along the wall with the points crowded towards the ends of each element, where the inlet's integral is steep at the rim: s = 3 q^2 - 2 q^3.
+/// Returns int N_A field dG for every A. Along the wall, the Gauss points are clustered at the ends of each element by s = 3 q^2 - 2 q^3, because the
+/// inlet's integral is steep at the rim.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);

@@ -1,5 +1,5 @@
 #pragma once
-// What depends on a tube's wall alone, made once a run.
+// Operators that depend only on the wall of a tube, constructed once per run.
 
 #include <array>
 #include <functional>
@@ -23,13 +23,14 @@
 
 namespace tanktread::coupling {
 
-/// Rows of the inverses of the wall's operator between few neighbours, five by five: what f_i is where rhs is theirs alone.
+/// Preconditioner for the wall's operator. For each control point, the operator is restricted to the 5 x 5 neighbouring points and inverted, and the
+/// rows of the point in this inverse are kept.
 class WallPatches {
  public:
-  /// Of these control points; `layer`: of the wall at its collocation points, placed.
+  /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.
   WallPatches(const surface::TubeWall& wall, stokes::Layer& layer, const std::vector<int>& points);
 
-  /// Rows of f for these points.
+  /// Computes the rows of f for these points.
   void apply(const Net& rhs, Net& f) const;
 
  private:
@@ -41,24 +42,25 @@ class WallPatches {
   std::vector<Patch> patches_;
 };
 
-/// The single layer of the wall on itself, assembled by rows and factored; the inlet. Without the viscosity; nets in the wall's frame.
-/// Making the rows is shared out, the factors are on every rank: 72 bytes a pair of control points.
+/// The single layer of the wall on itself, assembled and factored, and the integral of the inlet. The viscosity is not included. Nets are in the
+/// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
 ///
-/// With a symmetry, which all that is asked for has, only rows of fundamental points are assembled, and the others' columns added to theirs (4.12).
+/// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
+/// those of their fundamental points (4.12).
 ///
-/// Where the factors would be too large the system is solved by GMRES each time, with products by clusters, preconditioned by small patches and by
-/// what the solves before tell (2.24).
+/// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
+/// recycled from earlier solves (2.24).
 ///
-/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through. On the wall of a channel
-/// the leak would be a part of the flow rate, of a train it would grow with the pressure from copy to copy: there what vanishes is the mean around
-/// each of them, (2.39).
+/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through the wall. In a channel this
+/// leak would be a part of the flow rate, and for a train of particles it would grow with the pressure from one particle to the next. On the wall of
+/// a channel the mean velocity around each collocation point vanishes instead (2.39).
 ///
-/// One period of a wall that repeats has the kernels of one period, no ends, and periodic tractions f, control values a row per site. A constant
-/// pressure q n moves nothing: that its flux vanishes, int f.n dG = 0, is added to A.
+/// A wall that repeats is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of
+/// control values per site. A constant pressure q n produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
-  /// Collective, like apply's replication of rows, whose time counts as an exchange among `phases`, if there are any; they outlive this.
-  /// `solver`: factored, iterative, or auto, the latter where factors take more than `most_bytes`.
+  /// Collective. `phases`: if given, records the time of exchanges, including those of `apply`; must outlive this object. `solver`: "factored",
+  /// "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
        const surface::Symmetry& symmetry = surface::Symmetry(), const std::string& solver = "factored");
 
@@ -70,59 +72,61 @@ class Wall {
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
-  const std::vector<int>& own() const { return own_; }  ///< rows of this rank, among the fundamental ones
+  const std::vector<int>& own() const { return own_; }  ///< rank-owned rows among the fundamental ones
   const Net& sites() const { return sites_; }           ///< collocation points
 
-  /// Where velocities are taken that vanish on the wall: its collocation points; of a channel or a wall that repeats then the middles of elements.
+  /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the middles of elements.
   const Net& targets() const { return targets_; }
-  const std::vector<int>& own_targets() const { return own_targets_; }  ///< those that rows of this rank need
+  const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
 
-  /// Right-hand side for `solve`, a row a collocation point, from what u is at the targets; rows that no rank needs are not read. Collective.
+  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Rows of u that no rank needs are not
+  /// read. Collective.
   Net collocated(const Net& u) const;
 
-  /// The same of rows of an operator, three a collocation point of `sites`, from those that `assemble` fills for some targets.
+  /// Computes rows of an operator, three per collocation point of `sites`, by the means of `collocated`. `assemble`: fills the rows of given targets.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
-  const Ranks& ranks() const { return ranks_; }  ///< of these rows; the others are their images
-  stokes::Layer& layer() { return layer_; }  ///< of the wall, at points off it, for control values on its space
-  const stokes::Cap& inlet() const { return *inlet_; }  ///< of an open wall
+  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
+  stokes::Layer& layer() { return layer_; }             ///< layer of the wall at points off it, for control values on its space
+  const stokes::Cap& inlet() const { return *inlet_; }  ///< only of an open wall
 
-  /// The lattice of a wall that repeats; nothing of an open one.
+  /// Returns the lattice of a wall that repeats; not set for an open wall.
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
 
-  /// Lowest and highest coordinates of the wall across, in the axes of the cell.
+  /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const;
 
-  /// Control values on the space from those of a traction f, one row per site, and the transpose.
+  /// Returns control values on the space from those of a traction f, one row per site, and the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< columns of an operator, three per control value
+  void from_space(stokes::Rows<float>& rows) const;  ///< transforms the columns of an operator, three per control point
 
-  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, its means as of `collocated`
+  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, in the means of `collocated`
   Net solve(const Net& rhs) const;  ///< A^-1 rhs
-  void forget_recycled() const;                 ///< discards what the preconditioner keeps from earlier solves
+  void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
-  /// What has with every rhs the product that `weights` has with solve(rhs). Of what is factored.
+  /// Returns A^-T weights: its product with any rhs equals the product of `weights` with solve(rhs). Only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet, collocated; of a wall that repeats zero
-  const Net& pumped() const { return pumped_; }              ///< A^-1 c: the traction of the open, empty tube with a unit of pressure drop
+  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet, collocated; zero for a wall that repeats
+  const Net& pumped() const { return pumped_; }              ///< A^-1 c: traction in the open, empty tube per unit pressure drop
 
-  /// int N_A c dG and int N_A e1 dG for every A: what a traction does to the flow rate through the inlet, and to the axial force.
+  /// Returns int N_A c dG and int N_A e1 dG for every A. Their products with a traction are its contribution to the flow rate through the inlet,
+  /// times mu, and to the axial force.
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Flow rate along the duct, times mu, of a unit force along each axis at these points: c of the inlet (2.13); of a wall that repeats, for forces
-  /// whose sum vanishes, -rho^2/(4 L) e1 with rho the distance from the axis x1                                                    (2.44)
+  /// Returns the flow rate along the duct, times mu, due to a unit force along each axis at these points. In an open wall it is c of the inlet
+  /// (2.13). In a wall that repeats, for forces whose sum vanishes, it is -rho^2/(4 L) e1, where rho is the distance from the axis x1 (2.44).
   Net flow_of_forces(const Net& at) const;
 
-  /// Flow rate of a unit strength of the double layer along each axis, at a point with normal n: of an open wall through the inlet; of one that
-  /// repeats (x1 n - ((n.rho) e1 + n1 rho)/2)/L, for strengths without flux                                                         (2.45)
+  /// Returns the flow rate due to a unit strength of the double layer along each axis, at a point with normal n. In an open wall it is the flow rate
+  /// through the inlet. In a wall that repeats, for strengths without flux, it is (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
-  /// Of the surface of a channel, for distances.
+  /// Returns the bounding boxes of the elements of a channel wall, to compute distances.
   const surface::ElementBoxes& boxes() const { return *boxes_; }
 
   stokes::Evaluations evaluations() const;
@@ -149,12 +153,12 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // of a wall that repeats: w n at the sites, w a weight, and int N_A n dG
-  std::unique_ptr<stokes::Layer> on_itself_;  // at the targets
-  DenseFactors factors_;                      // of A, or what solves without them:
+  Net pressure_, flux_;                       // only of a wall that repeats: w n at the sites with a weight w, and int N_A n dG
+  std::unique_ptr<stokes::Layer> on_itself_;  // layer of the wall at the targets
+  DenseFactors factors_;                      // LU factors of A; if not set, the next two solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;
-  double tolerance_;  // of its residuals
+  double tolerance_;  // relative residual of krylov_
 };
 
 }  // namespace tanktread::coupling

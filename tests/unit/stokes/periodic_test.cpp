@@ -1,4 +1,4 @@
-// Sums over lattices, against own solutions by multipoles (lib/README.md, section on lattices) and identities.
+// Sums over lattices, compared with our own multipole solutions (lib/README.md, section on lattices) and with identities.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ Mat3 rows(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 Mat3 general() { return rows({1, 0, 0}, {0.4, 1.3, 0}, {-0.2, 0.25, 0.8}); }
 
-/// All components of the sum over the lattice at r = x - x0, the near images with the rest.
+/// Returns all components of the sum over the lattice at r = x - x0: near images plus the rest.
 std::vector<double> whole(Kind kind, const PeriodicCell& cell, const Vec3& r, int steps = 1, double across = 1) {
   Mat3 box = cell.vectors();
   for (int d = cell.n(); d < 3; ++d) box.col(d) *= across;
@@ -91,7 +91,7 @@ TEST(PeriodicKernel, StokesletsOfOnePeriodDifferByWhatIsKnown) {
     EXPECT_LT((stokeslet_at(cell, {0.1, 0.2, 0.3}, steps, 1.3) - stokeslet_at(cell, {0.4, 1.0, 0.5}, steps, 1.3) - known).norm(), 1e-10);
 }
 
-/// Five periods away what is left of the others is exp(-2 pi 5), and (2.43) is exact.
+/// At a distance of five periods the other Fourier modes are of the order exp(-2 pi 5), so that (2.43) holds exactly.
 TEST(PeriodicKernel, TheConstantOfOnePeriodVanishesAtItsReference) {
   for (const double period : {1., 0.7}) {
     const PeriodicCell cell(period * Mat3::Identity(), 1, 1.9);
@@ -114,7 +114,7 @@ TEST(PeriodicKernel, CellsOfTheSameLatticeAreEqual) {
   EXPECT_LT((two - stokeslet_at({Mat3::Identity(), 3}, r)).norm(), 1e-10);
 }
 
-/// Of a sphere of radius a about the origin, seen from x0: int T_ijk n_k dG, i the row.
+/// Returns int T_ijk n_k dG over a sphere of radius a about the origin, for the target x0; i is the row.
 Mat3 over_sphere(const PeriodicCell& cell, const Vec3& x0, double a) {
   constexpr int n = 24;
   const auto& rule = quadrature::gauss(n);
@@ -158,7 +158,7 @@ TEST(PeriodicKernel, StressletsOverASphereAreThoseOfItsVolumeFraction) {
   EXPECT_LT((over_sphere(one, {0.02, 0.05, -0.03}, a) + 8 * pi * Mat3::Identity()).norm(), 1e-8);
 }
 
-/// T = -p I + grad G + grad G^T: what differences of the Stokeslet give of it, but for the pressure, whose part is a multiple of I.
+/// T = -p I + grad G + grad G^T is compared with differences of the Stokeslet, except for the pressure, whose part is a multiple of I.
 TEST(PeriodicKernel, StressletsAreDifferencesOfStokeslets) {
   constexpr int number[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}, stress[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const Vec3 r(0.21, -0.17, 0.3);
@@ -184,7 +184,7 @@ TEST(PeriodicKernel, StressletsAreDifferencesOfStokeslets) {
   }
 }
 
-/// Sums of a cloud by near images and the rest, against the kernel itself.
+/// Returns the largest error of sums over a cloud of sources, computed from near images and the rest, compared with the kernel itself.
 double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> side(-0.5, 0.5);
@@ -203,7 +203,7 @@ double error_of_sums(Kind kind, const PeriodicCell& cell, double tolerance) {
   double mean[6] = {};
   for (int c = 0; c < 6; ++c)
     for (const double charge : q[c]) mean[c] += charge / n;
-  for (int c = 0; c < 6; ++c)  // sums of one and two periods are known but for a constant times these
+  for (int c = 0; c < 6; ++c)  // with one and two periods, sums are defined up to a constant times these means
     for (double& charge : q[c]) charge -= mean[c];
   std::vector<double> u(3 * n, 0.);
   sum.add_rest({n, x[0].data(), x[1].data(), x[2].data(),
