@@ -49,7 +49,7 @@ struct ParticleOptions {
   std::optional<Vec3> velocity;          ///< velocity of the centre of a body with `prescribed` motion; zero if not set
   std::optional<Vec3> angular_velocity;  ///< angular velocity of such a body about its centre; zero if not set
   std::optional<Vec3> force, torque;     ///< force and torque on a `free` body; zero if not set
-  std::optional<double> density_difference;  ///< inner minus outer density. Times `Flow/gravity`, the body force per volume; zero if not set
+  std::optional<double> density_difference;  ///< inner minus outer density, for the body force of `Flow/gravity`; zero if not set
   std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre
   std::optional<std::string> forces;     ///< how forces on a `prescribed` body are computed: `reciprocal`, `integral`
 

@@ -41,7 +41,7 @@ void Capsule::replicate_sums(Net& net) {
   replicate(net);
 }
 
-/// Gathers the result of an operator from all ranks: the rows at rank-owned points, or if its far sums are shared, contributions that are summed.
+/// Gathers the result of an operator from all ranks: sums the contributions of the ranks if far sums are shared, and otherwise replicates owned rows.
 void Capsule::gather(bool shared, Net& net) {
   if (!shared) return replicate(net);
   Net* const one[] = {&net};
@@ -65,7 +65,7 @@ Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   return work;
 }
 
-/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and completes it. Returns the complete sums of the loads.
+/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the complete sums of the loads.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);
@@ -122,7 +122,7 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
 }
 
 /// Returns the load at x, which is the shape of `e` or its image in the cell. If `other` is given, applies M0^-1 to it in place, in the same solve
-/// where possible, because six columns are divided among the ranks more evenly than twice three.
+/// where possible, because six columns are divided among the ranks more evenly than three columns in each of two solves.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;

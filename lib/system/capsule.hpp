@@ -140,7 +140,7 @@ class Capsule : public Dynamics {
   Eigen::Index n_points() const { return space_.n_points; }
 
   /// Changes, at the last linearisation, due to a displacement dx and to a change of the virtual work of loads in addition to that of the membranes.
-  /// `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points slide.
+  /// `slip`: change of the difference between the fluid velocity and the velocity of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
@@ -283,9 +283,9 @@ class Capsule : public Dynamics {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Loads loads_;  // loads in addition to elasticity and bending
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // C of the latest evaluation and of the Jacobian; set if a membrane is viscous
-  std::optional<VelocityProjection> projection_;  // not set if velocities are collocated
+  std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
   stokes::Layer layer_;                           // single layer at the targets, where velocities are evaluated
-  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda; set if any lambda differs from 1
+  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all are 0
   std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if the targets differ
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
@@ -296,7 +296,7 @@ class Capsule : public Dynamics {
   Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
   RigidParticles rigid_;
   std::optional<RigidTractions> tractions_;  // set if all particles are rigid and solved for by their tractions
-  std::optional<OneBodyInverses> alone_;  // set up at the first use
+  std::optional<OneBodyInverses> alone_;  // inverses for isolated rigid bodies; set up at the first use
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
