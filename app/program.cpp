@@ -181,7 +181,7 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   if (auto& file = kind.membrane.stress_free_file) find(*file, kept_stress_free(kind), arguments, scene);
   shape.read();
   auto& initial = shape.initial;
-  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the checkpoint has the current shape
+  if (!arguments.resume.empty() && initial && (initial->file || initial->run)) initial.reset();  // the shape is read from the checkpoint
   if (initial)
     for (auto* name : {&initial->file, &initial->run})
       if (*name) *name = found(**name, {}, arguments);
@@ -257,7 +257,7 @@ std::string one_line(std::string text) {
   return deck::shortened(text, 1000);
 }
 
-/// Runs the program on one rank, and returns the exit code. Only a rank that `speaks`, which is the first one, prints. `message` receives the error.
+/// Runs the program on one rank, and returns the exit code. Prints only if `speaks`, which is true on the first rank. `message` receives the error.
 int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::string& message) {
   const auto report = [speaks, &message](const char* text, int code) {
     message = one_line(text);

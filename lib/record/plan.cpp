@@ -72,7 +72,7 @@ std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
-  if (!scene.particles.empty()) return found;  // which are of one particle
+  if (!scene.particles.empty()) return found;  // these quantities are defined for a single particle only
   for (const Number& one : named_numbers)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;
@@ -95,7 +95,7 @@ std::string surface_line(const Body& body) {
                    body.space.description.c_str());
 }
 
-/// How the unknowns of a tube's wall are found.
+/// Returns how the unknowns of a tube's wall are solved for.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
@@ -177,7 +177,7 @@ std::string mesh_line(const Scene& scene) {
   return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
 }
 
-/// `pairs`: of control points, all that are in the frozen operator.
+/// Returns the time scheme and the size of the frozen operator. `pairs`: number of pairs of control points in the frozen operator.
 std::string time_line(const Scene& scene, double pairs, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
@@ -186,7 +186,7 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
-/// In place of the line `time`: what is sought.
+/// Adds the lines of a search or a spectrum, which replace the line `time`.
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
     lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
@@ -212,7 +212,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
                                                  evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
-/// What is solved for of a rigid particle, prescribed or free.
+/// Returns the line of a rigid particle with prescribed or free motion: the unknowns of its motion.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
   if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
@@ -226,7 +226,7 @@ std::string forces_line(const Scene& scene) {
   return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
-/// The systems that are solved by iteration, and by what.
+/// Returns the systems that are solved iteratively, with their solvers.
 std::string solvers_line(const Scene& scene) {
   const coupling::SolverOptions& solvers = scene.solvers;
   std::string line;
@@ -264,7 +264,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// What a particle of the coupled system is. `n_points`: control points of all.
+/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles.
 Lines particle_lines(const Scene& one, int n_points, bool tree) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
@@ -279,7 +279,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
-/// Adds the lines of every particle: of one alone as they are, of several one line each, which equal ones share.
+/// Adds the lines of all particles. The lines of a single particle are added unchanged. Of several particles, each has one line, and particles with
+/// equal lines share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   for (const Scene& one : alone) {

@@ -26,7 +26,7 @@ void DomainOptions::declare(deck::Section& section) {
 
 int DomainOptions::directions() const { return static_cast<int>(std::ranges::count(periodic, 'x')); }
 
-/// Columns, those that repeat first.
+/// Returns the lattice vectors as columns. The vectors of periodic directions come first, and the other columns are zero.
 Mat3 DomainOptions::vectors() const {
   Mat3 vectors = Mat3::Zero();
   int n = 0;
@@ -59,7 +59,8 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
     throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
 }
 
-/// A wall of constant section, or a profile that comes back to it, repeats along x1.
+/// Throws UserError if the keys do not describe a periodic duct. Ducts can only be periodic along x1: tubes of constant cross-section, and channels
+/// whose profile returns to the cross-section at the start.
 void DomainOptions::check_duct(const std::string& duct) const {
   refuse(periodic != "x1", "Domain/periodic `" + periodic + "`", duct, "a duct repeats along x1 only: give `x1`");
   refuse(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");

@@ -1,5 +1,5 @@
 #pragma once
-// The lattice that a scene repeats on: `Domain/*` of the deck.
+// Periodicity of a scene: options `Domain/*` of the deck.
 
 #include <optional>
 #include <string>
@@ -17,24 +17,24 @@ class Rejections;
 struct Scene;
 
 struct DomainOptions {
-  bool present = false;  ///< whether the scene repeats at all; nothing else counts without
+  bool present = false;  ///< true if the scene is periodic; otherwise all other members are ignored
 
-  std::string periodic = "x1 x2 x3";    ///< directions in which it does
-  std::optional<std::vector<double>> side_lengths;  ///< of a box, three; with a duct its period alone; none: lattice vectors are given
-  std::optional<Mat3> lattice_vectors;  ///< rows; those of directions that do not repeat count for nothing
+  std::string periodic = "x1 x2 x3";    ///< periodic directions
+  std::optional<std::vector<double>> side_lengths;  ///< three side lengths of a box, or the period of a duct; not set if lattice vectors are given
+  std::optional<Mat3> lattice_vectors;  ///< lattice vectors as rows; rows of directions that are not periodic are ignored
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other or are missing, and for a flow that the lattice cannot follow. `duct`: the name of
-  /// the duct that repeats, or none.
+  /// Throws UserError if keys contradict each other or are missing, or if the flow is not compatible with a lattice. `duct`: name of the periodic
+  /// duct, or empty.
   void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
-  void reject(const Scene& scene, Rejections& to) const;  ///< what a lattice excludes in the scene
+  void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice
 
-  /// Number of directions in which the scene repeats.
+  /// Returns the number of periodic directions.
   int directions() const;
 
-  /// The cell at the start; nothing where the scene does not repeat.
+  /// Returns the cell at the start; none if the scene is not periodic.
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
@@ -42,16 +42,16 @@ struct DomainOptions {
   void check_duct(const std::string& duct) const;
 };
 
-/// Data of the lattice for one row.
+/// Data of the lattice in one row of the series.
 struct DomainRow {
-  Mat3 cell = Mat3::Zero();  ///< columns: the vectors of the cell
+  Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
-  Mat3 stress = Mat3::Zero();  ///< that the particles add to the mean stress (6.9)
-  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< in the axes of the plane of the flow
+  Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
+  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< differences in the axes of the plane of the flow
   Vec3 pressure_gradient = Vec3::Zero();
 
-  /// Sets all but `cell` (6.9), (6.10) from volume and stresslet of all particles together, and their force on the fluid. `plane`: rows, the axes of
-  /// the plane of the flow.
+  /// Computes all members except `cell` (6.9), (6.10) from the total volume and stresslet of all particles and their total force on the fluid. `of`:
+  /// the cell. `plane`: axes of the plane of the flow, as rows.
   void set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet, const Vec3& force);
 
   void add_columns(const Scene& scene, Columns& to) const;

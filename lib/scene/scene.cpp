@@ -21,7 +21,7 @@ namespace tanktread {
 
 namespace {
 
-/// The list Output.
+/// Section Output.
 struct OutputList {
   Scene& scene;
 
@@ -31,7 +31,7 @@ struct OutputList {
   }
 };
 
-/// The list Channel.
+/// Section Channel.
 struct ChannelList {
   surface::TubeOptions& tube;
 
@@ -41,7 +41,7 @@ struct ChannelList {
   }
 };
 
-/// The list Particles.
+/// Section Particles.
 struct Kinds {
   std::vector<ParticleKind>& all;
   const Registry* registry;
@@ -61,11 +61,11 @@ struct Kinds {
   }
 };
 
-constexpr double most_bytes = 64e9;  // of the assembled operators of one surface, on all ranks together
-constexpr double doubles = 72;       // bytes of three rows and columns of one
-constexpr double most_vector_bytes = 4e9;  // of an iterative solver, on one rank
+constexpr double most_bytes = 64e9;  // largest size of the assembled operators of one surface, summed over all ranks
+constexpr double doubles = 72;       // bytes of a 3 x 3 block of doubles
+constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
 
-/// Control points of the particle, and of the wall of its tube.
+/// Returns the number of control points of the particle. `wall_points` returns that of the wall of its tube.
 double points(const Scene& scene) {
   const auto& imported = scene.particle.shape.imported;
   return imported ? imported->space.n_points : scene.surface.n_points();
@@ -77,8 +77,8 @@ double wall_points(const Scene& scene) {
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 
-/// Bytes a pair of control points of what the particle's layers are assembled in: rows of doubles, and frozen operators of six entries of 16 bits.
-/// `auto` assembles nothing that is too large.
+/// Returns the bytes per pair of control points of the assembled layers of the particle: rows of doubles, and frozen operators of six entries of 16
+/// bits. `auto` is not counted because it does not assemble operators that are too large.
 double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
@@ -87,8 +87,8 @@ double bytes_a_pair(const Scene& scene) {
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
-/// The system for the velocity loses a digit to rounding with each power of ten: in a tube, where that shows first, it stagnates at 1e15 times the
-/// tolerance.
+/// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten: the solver
+/// stagnates at a ratio of 1e15 times the tolerance, first in a tube.
 void check_viscosity_ratio(const Scene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
@@ -97,7 +97,7 @@ void check_viscosity_ratio(const Scene& scene) {
                               most, ratio));
 }
 
-/// `keys` say how many points there are: `must` is what they must be.
+/// Throws UserError if the operators of `n_points` points are too large. The message says what `keys`, which determine this number, `must` be.
 void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
   if (bytes * n_points * n_points > most_bytes)
     throw UserError(keys + " must " + must +
@@ -121,7 +121,7 @@ void check_size(const Scene& scene) {
               formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }
 
-/// Vectors that every rank keeps for the iterative solver, and the matrix of their products.
+/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their products, are too large.
 void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;
@@ -137,7 +137,7 @@ void check_vectors(const Scene& scene, const std::string& path, const std::share
                                      most, unknowns, most_vector_bytes / 1e9, vectors));
 }
 
-/// Keys that need each other, or that have no meaning beside another one.
+/// Throws UserError if a key lacks another key that it requires, or has no meaning in combination with another key.
 void check_motion(const Scene& scene) {
   const ParticleOptions& particle = scene.particle;
   if (particle.motion != Motion::prescribed && (particle.velocity || particle.angular_velocity))
@@ -164,7 +164,7 @@ void check_motion(const Scene& scene) {
   }
 }
 
-/// The balance of power is that of all particles (6.11).
+/// Throws UserError if the power balance (6.11), which includes all particles, is not available for the scene.
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance";
@@ -174,7 +174,7 @@ void check_power(const Scene& scene) {
   refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
 }
 
-/// What tractions of the first kind cannot do.
+/// Throws UserError if the first-kind equation for rigid bodies does not apply to the scene.
 void check_first_kind(const Scene& scene) {
   const std::string word = "Solvers/rigid bodies `first kind`";
   double n_points = 0;
@@ -186,12 +186,12 @@ void check_first_kind(const Scene& scene) {
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
-/// What cannot be done with several particles yet, and each of them by itself.
+/// Checks each of several particles as a scene of its own. Throws UserError with the names of the particles, or if they cannot be combined.
 void check_several(const Scene& scene) {
   const std::vector<Scene> alone = scene.alone();
   const bool strong = alone.front().load_is_strong();
   for (Scene one : alone) {
-    one.volume_given = one.volume_given && !one.particle.rigid();  // it is the others'
+    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies to deformable particles
     const std::string list = "Particles/" + one.name;
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
     try {
@@ -205,7 +205,7 @@ void check_several(const Scene& scene) {
   }
 }
 
-/// Throws UserError for parts that the program adds where they cannot act.
+/// Throws UserError if parts that the program adds have no effect in the scene.
 void check_registered(const Scene& scene) {
   const std::string motion = scene.particle.choice(), flow = scene.flow.choice();
   refuse(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
@@ -216,10 +216,10 @@ void check_registered(const Scene& scene) {
          "the one body is solved for in flows of the second degree; give it in a list Particles");
 }
 
-/// Lengths that the mesh must be able to have.
+/// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
 void check_adaptation(const Scene& scene) {
   if (!scene.adaptation.enabled) return;
-  // The side of a square that is one element's share of the sphere of equal volume.
+  // Element length: side of a square with the mean element area on the sphere of equal volume.
   const double area = 4 * std::numbers::pi * scene.radius() * scene.radius();
   scene.adaptation.check(static_cast<int>(scene.surface.n_points()), std::sqrt(area / scene.surface.n_elements()));
 }
@@ -288,7 +288,7 @@ void Scene::declare(deck::Section& root) {
 std::vector<Scene> Scene::alone() const {
   if (particles.empty()) return {*this};
   Scene common = *this;
-  std::vector<ParticleKind>().swap(common.particles);  // a list that is cleared keeps its room, in each of them
+  std::vector<ParticleKind>().swap(common.particles);  // frees the memory, which clear() would keep in each copy
   std::vector<Scene> scenes(particles.size(), common);
   for (std::size_t p = 0; p < particles.size(); ++p) static_cast<ParticleKind&>(scenes[p]) = particles[p];
   return scenes;

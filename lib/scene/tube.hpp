@@ -1,5 +1,5 @@
 #pragma once
-// The tube of a scene: what it is made of, whether the particle fits, and what is recorded in it.
+// Tube of a scene: construction, checks that the particle fits, and recorded data.
 
 #include <memory>
 #include <string>
@@ -10,41 +10,46 @@
 
 namespace tanktread {
 
-/// The duct's own flow; in another one, or in quiescent fluid, that of the mean velocity 1, which the pressure drop (2.7) is told by.
+/// Returns the duct flow. In another flow or a quiescent fluid, returns the duct flow of mean velocity 1, from which the pressure drop (2.7) is
+/// computed. Null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
-/// Adds what a tube or channel excludes, and what needs one.
+/// Adds the choices that contradict a tube or channel, and those that require one.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
-/// Throws UserError, with the numbers, where the scene's particle does not fit into its tube, if there is one.
+/// Throws UserError, with the lengths, if the scene has a tube and the particle does not fit into it.
 void check_fit(const Scene& scene, const Body& body);
 
-/// The wall around all that the body is, at rest. Throws UserError, with the numbers, where the tube is too short.
+/// Returns the wall around the resting shapes of all particles, which `body` contains. Throws UserError, with the lengths, if the tube is too short
+/// or its period is too long.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
-/// The tube as the body meets it, which is all particles of the scene; nothing without one.
+/// Returns the tube around `body`, which contains all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// Data of the tube for one row. Pressure drops are those of one period of a train.
+/// Data of the tube in one row of the series. For a periodic train, pressure drops refer to one period.
 struct TubeRow {
   double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
   coupling::Tube::Checks checks;
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the row's part for the particles at x. Collective.
+/// Returns the data of the tube for an evaluated shape of the particles. Collective.
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e);
 
-/// Returns it for a rigid body where the tube has it placed, with this force density on the fluid and this pressure drop. Collective.
+/// Returns the data of the tube for a rigid body, at the position set in the tube, with this force density on the fluid and this pressure drop.
+/// Collective.
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);
 
-/// Returns x1, or the coordinate along the centre line of a channel, of the centroid in a row that has come least far.
+/// Returns the smallest position of a particle's centroid in a row: x1, or in a channel the coordinate along the centre line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
-/// Returns a warning if the gap in a row is narrower than 0.6 of the wall's elements, across which its traction is off by more than 1e-4.
+/// Returns a warning if the gap in a row is smaller than 0.6 of the element size of the wall, because the error of the wall traction then exceeds
+/// 1e-4. Returns an empty string otherwise.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
-/// Throws RunFailure where particles at x have drawn apart by more than the wall is long, or are longer than the period of their train.
+/// Throws RunFailure if the particles at x have moved so far apart that the wall is too short. Not for a channel, a periodic
+/// tube or a single particle.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 }  // namespace tanktread

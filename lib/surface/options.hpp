@@ -11,21 +11,21 @@
 
 namespace tanktread::surface {
 
-/// The spline space of the particle's surface: `Surface/*` of the deck. Keys of the other mesh are empty.
+/// Options `Surface/*` of the deck: the spline space of the particle's surface. Keys of the mesh that is not selected are not set.
 struct MeshOptions {
-  std::string mesh = "cube";  ///< or polar
+  std::string mesh = "cube";  ///< cube, polar
 
   std::optional<int> elements_per_side;             ///< n of the cube mesh
-  std::optional<std::string> extraordinary_points;  ///< rule at points where three elements meet
+  std::optional<std::string> extraordinary_points;  ///< rule at points where three elements meet: g1, catmull-clark
 
-  std::optional<int> azimuthal_elements, meridional_elements;  ///< m around, r from pole to pole, of the polar mesh
-  std::optional<std::string> pole_axis;                        ///< the particle's own
-  std::optional<std::string> poles;                            ///< rule at the poles
-  std::optional<int> pole_subdivisions;                        ///< in azimuth, before the transform
+  std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
+  std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
+  std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
+  std::optional<int> pole_subdivisions;                        ///< number of bisections in azimuth of the elements at the poles before the transform
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other.
+  /// Throws UserError if keys contradict each other.
   void check() const;
 
   bool operator==(const MeshOptions&) const = default;
@@ -33,122 +33,122 @@ struct MeshOptions {
   spline::PolarMesh polar_mesh() const;
   int axis() const { return pole_axis.value()[1] - '1'; }
 
-  /// Control points of the mesh, and elements of its T-mesh.
+  /// Return the number of control points of the mesh, and the number of elements of its T-mesh.
   double n_points() const;
   double n_elements() const;
 };
 
-/// The shape that a run starts with where that is not the resting one: `Particle/initial shape` of the deck.
+/// Options `Particle/initial shape` of the deck: the shape at the start of a run, if it is not the resting shape. One of the first four is set.
 struct InitialShape {
-  std::optional<Mat3> map;          ///< from the resting shape, about its centre
-  std::optional<Vec3> stretch;      ///< the same, factors along the particle's own axes
-  std::optional<std::string> file;  ///< Bezier-extraction text on the particle's own mesh
+  std::optional<Mat3> map;          ///< linear map applied to the resting shape about its centre
+  std::optional<Vec3> stretch;      ///< factors of a linear map that stretches the resting shape along the particle's body-fixed axes
+  std::optional<std::string> file;  ///< Bezier-extraction text of a surface on the particle's mesh
   std::optional<std::string> run;   ///< results of another run, or one of its snapshots
-  std::optional<int> mode;          ///< of the run's spectrum, from 1, that is added to its shape
-  double mode_amplitude = 0.01;     ///< its largest displacement, over R_C
-  std::string volume = "resting";   ///< or own
+  std::optional<int> mode;          ///< index, from 1, of the mode of the run's spectrum that is added to its shape
+  double mode_amplitude = 0.01;     ///< largest displacement of this mode, divided by R_C
+  std::string volume = "resting";   ///< volume that the particle has and keeps: of the `resting` shape, or the initial shape's `own`
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) unless one of the four is given, and right.
+  /// Throws UserError unless exactly one of `map`, `stretch`, `file` and `run` is given and valid.
   void check() const;
 
-  /// `map` in space, be it given as `stretch` along the axes that are the columns of `rotation`; none where the shape is read.
+  /// Returns `map`, or the map given by `stretch` along the columns of `rotation`, in space-fixed axes; none if the shape is read from a file or run.
   std::optional<Mat3> affine(const Mat3& rotation) const;
 };
 
-/// The resting shape of the particle, and the one to start with: keys of `Particle/*`.
+/// Options `Particle/*` of the deck that give the resting shape and the initial shape of the particle.
 struct ParticleShape {
   std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, file
-  std::optional<double> radius;     ///< of the sphere, or of the disc of a red cell; set for these two, empty otherwise
-  std::optional<Vec3> semi_axes;    ///< along the particle's own x1, x2, x3; set for spheroid and ellipsoid, empty otherwise
-  std::optional<std::string> file;  ///< of the shape `file`: Bezier-extraction text; the spline space is the file's
-  Vec3 center = Vec3::Zero();       ///< of the resting shape
-  Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees, from the particle's own axes to those of space
-  std::optional<InitialShape> initial;  ///< none: the resting shape
+  std::optional<double> radius;     ///< radius of the sphere, or of the disc of a red cell; not set for other shapes
+  std::optional<Vec3> semi_axes;    ///< semi-axes of a spheroid or ellipsoid along its body-fixed x1, x2, x3; not set for other shapes
+  std::optional<std::string> file;  ///< path of the Bezier-extraction text with surface and spline space; set for the shape `file`
+  Vec3 center = Vec3::Zero();       ///< centre of the resting shape
+  Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees that turns the axes of space into the body-fixed axes
+  std::optional<InitialShape> initial;  ///< initial shape; if not set, the resting shape
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other.
+  /// Throws UserError if keys contradict each other.
   void check() const;
 
-  /// What is in the file, as it stands there; none for the other shapes.
+  /// Surface read from the file, without `center` and `orientation` applied; null for the other shapes.
   std::shared_ptr<const spline::SplineSurface> imported;
 
-  /// Whether the keys of the resting shape are the same.
+  /// Returns whether all keys of the resting shape are equal to those of `other`.
   bool same_rest(const ParticleShape& other) const;
 
-  /// Columns: the particle's own axes in space.
+  /// Returns the rotation matrix whose columns are the particle's body-fixed axes.
   Mat3 rotation() const;
 
-  /// Takes `imported` from the file, if there is one. Throws UserError when it holds no closed surface.
+  /// Reads `imported` if the shape is `file`. Throws UserError if the file does not contain a closed surface.
   void read();
 
-  /// Whether the keys that give its size are there and the file is read.
+  /// Returns whether the size is known: its keys are set, or the file has been read.
   bool sized() const;
 
-  /// R_C: radius of the sphere of equal volume.
+  /// Returns R_C, the radius of the sphere of equal volume.
   double equivalent_radius() const;
 
-  /// Of a sphere around its centre that holds it.
+  /// Returns the radius of a sphere around the centre that contains the particle.
   double circumscribed_radius() const;
 };
 
-/// What makes a channel of a tube: `Channel/*` of the deck beside what it shares with `Tube`. Its section is that of a tube, times factors that
-/// change along a centre line, which begins along x1 and may bend.
+/// Options `Channel/*` of the deck that `Tube` does not have. A channel has the cross-section of a tube, scaled by factors that vary along a centre
+/// line. The centre line starts along x1 and may bend.
 struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
-  std::optional<double> depth;           ///< d: of the factor, at the middle; not of `straight` and `file`
-  std::optional<double> half_length;     ///< w: from the middle to where the factor is 1
-  std::optional<double> corner_radius;   ///< of the rounded edges of a `step`
-  std::string directions = "x2 x3";      ///< in which the section changes
-  std::optional<std::string> points;     ///< path of the file of factors
-  std::optional<double> bend_radius;     ///< of the centre line's arc; none: straight
-  double bend_start = 0, bend_angle = 90;  ///< where the arc begins, and what it turns by from x1 towards x2, degrees
-  std::optional<double> start, end;      ///< of the modelled piece, along the centre line
-  std::optional<int> axial_elements;     ///< of the wall, along; by its shape if not given
+  std::optional<double> depth;           ///< d, largest deviation of the factor from 1; not set for `straight` and `file`
+  std::optional<double> half_length;     ///< w, distance from the middle of the profile to where the factor is 1
+  std::optional<double> corner_radius;   ///< radius of the rounded edges of a `step`
+  std::string directions = "x2 x3";      ///< directions in which the cross-section varies
+  std::optional<std::string> points;     ///< path of the file of factors; set for `file`
+  std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
+  double bend_start = 0, bend_angle = 90;  ///< coordinate at which the arc begins; angle of the arc, from x1 towards x2, degrees
+  std::optional<double> start, end;      ///< ends of the modelled part, as coordinates along the centre line
+  std::optional<int> axial_elements;     ///< number of elements along the wall; if not set, it follows from the shape of the wall
 
   void declare(deck::Section& list);
   void check() const;
 };
 
-/// The straight tube along x1 around the particle: `Tube/*` of the deck. Its section is constant, in the plane x2 x3. Keys of other sections
-/// are empty.
+/// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of other
+/// cross-sections are not set.
 struct TubeOptions {
-  bool present = false;  ///< whether the scene has a tube at all; nothing else counts without
+  bool present = false;  ///< true if the scene has a tube; otherwise all other members are ignored
 
-  std::string section = "circle";            ///< circle, ellipse, rectangle, file
-  std::optional<double> radius;              ///< of the circle; 1 if not given
-  std::optional<Eigen::Vector2d> semi_axes;  ///< of the ellipse, along x2 and x3
-  std::optional<Eigen::Vector2d> sides;      ///< of the rectangle, along x2 and x3
-  std::optional<std::string> outline;        ///< path of the file of points
+  std::string section = "circle";            ///< cross-section: circle, ellipse, rectangle, file
+  std::optional<double> radius;              ///< radius of the circle; default 1
+  std::optional<Eigen::Vector2d> semi_axes;  ///< semi-axes of the ellipse along x2 and x3
+  std::optional<Eigen::Vector2d> sides;      ///< sides of the rectangle along x2 and x3
+  std::optional<std::string> outline;        ///< path of the file of points of the outline; set for `file`
 
-  std::optional<double> length;  ///< of the wall; 2 pi R_T, or more for a long particle, if not given
-  double period = 0;  ///< after which the duct repeats along x1, of Domain; 0: it does not
-  std::optional<double> periodic_length;  ///< L: the particles repeat along x1, a train; none: they do not
-  std::optional<int> images;              ///< M: copies modelled at either side; from the tolerance of integrals if not given
-  int azimuthal_elements = 24;   ///< of the wall, around
+  std::optional<double> length;  ///< length of the wall; if not set, 2 pi R_T, or more for a long particle
+  double period = 0;  ///< period of the duct along x1, as given by Domain; 0 if the duct is not periodic
+  std::optional<double> periodic_length;  ///< L, period along x1 of tube and particles (a train); not set if there is none or if Domain gives it
+  std::optional<int> images;              ///< M, without effect: a periodic tube has all images
+  int azimuthal_elements = 24;   ///< number of elements around the wall
   static constexpr int default_axial_elements = 25;
-  std::optional<int> axial_elements;  ///< of the wall, along, or of one period; three more control points where it is open
-  double grading = 4;            ///< density of elements along the tube, at the particle over far away
+  std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; an open wall has three more rows of control points
+  double grading = 4;            ///< density of elements along the tube near the particle, divided by the density far from it
 
-  double contact_gap = 0.02;  ///< between particle and wall, over R_C: a run that comes closer stops
+  double contact_gap = 0.02;  ///< smallest allowed gap between particle and wall, divided by R_C; a run stops if the gap is smaller
 
-  std::optional<double> repulsion;        ///< stress by which the wall repels a membrane that touches it; none: it does not
-  std::optional<double> repulsion_range;  ///< over which that falls by e
+  std::optional<double> repulsion;        ///< stress by which the wall repels a membrane at zero gap; not set if there is no repulsion
+  std::optional<double> repulsion_range;  ///< gap over which this stress decreases by a factor of e
 
-  std::string flow = "exact";  ///< of the duct: exact (closed form or series, where the section has one), boundary elements
-  int flow_elements = 96;      ///< boundary elements of the duct flow
+  std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
+  int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  std::optional<ChannelOptions> channel;  ///< of the list `Channel`, which these are then the keys of
+  std::optional<ChannelOptions> channel;  ///< options of a channel; if set, all members are keys of the section Channel
   std::string list() const { return channel ? "Channel" : "Tube"; }
 
   void declare(deck::Section& section);
 
-  /// One sentence (UserError) for keys that contradict each other or are missing.
+  /// Throws UserError if keys contradict each other or are missing.
   void check() const;
 
-  /// Whether the duct flow is known in closed form or as a series.
+  /// Returns whether the duct flow is known in closed form or as a series.
   bool exact_flow() const { return section != "file" && flow == "exact"; }
 };
 

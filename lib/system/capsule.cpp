@@ -20,13 +20,13 @@ bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 }  // namespace
 
-/// What was evaluated stands as long as the flow is the same.
+/// Sets the time. Cached results are kept unless the flow or the cell changes.
 void Capsule::at(double time, double start) {
   const bool other_flow = flow_.at(time, start), other_cell = parameters_.cell && deform_cell(time);
   if (other_flow || other_cell) latest_.reset();
 }
 
-/// Control values of an affine v_inf: exact, for the basis sums to one.
+/// Returns the control values of an affine v_inf. They are exact because the basis functions sum to one.
 Net Capsule::ambient(const Net& x) const {
   Net v(x.rows(), 3);
   for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = flow_.velocity(x.row(i).transpose()).transpose();
@@ -35,37 +35,37 @@ Net Capsule::ambient(const Net& x) const {
 
 void Capsule::replicate(Net& net) { ranks_.replicate(net); }
 
-/// Of what own elements give to all points.
+/// Sums the contributions of all ranks' elements. If the elements are fundamental, folds the sums onto the fundamental points first.
 void Capsule::replicate_sums(Net& net) {
   if (folded_) surface::fold(parameters_.symmetry, net);
   replicate(net);
 }
 
-/// Of what an operator gives at own points, or, where its far sums are shared, of parts that add up.
+/// Gathers the result of an operator from all ranks: sums the contributions of the ranks if far sums are shared, and otherwise replicates owned rows.
 void Capsule::gather(bool shared, Net& net) {
   if (!shared) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
 }
 
-/// The same at the targets of velocities.
+/// Gathers a velocity at the targets from all ranks.
 void Capsule::gather_targets(bool shared, Net& net) {
   if (!projection_) return gather(shared, net);
   ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
 }
 
-/// dE/dx of all loads less the work of forces; `sums`: the complete sums of the loads.
+/// Returns dE/dx of all loads minus the virtual work of forces. Sets `sums` to the complete sums of the loads.
 Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   Net work(x.rows(), 3);
   membrane_.load(x, own_elements_, work);
   sums = complete_work(x, work);
   for (const Net& of_forces : forces_)
     if (of_forces.size() > 0) work -= of_forces;
-  rigid_.clear(work);  // push_bodies has theirs
+  rigid_.clear(work);  // push_bodies sets the forces on rigid bodies
   return work;
 }
 
-/// Adds the loads' work at x to the work of own elements, and completes it. Returns the complete sums of the loads.
+/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the complete sums of the loads.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);
@@ -90,7 +90,7 @@ Net Capsule::response(Evaluation& at, const Net& work) {
   return change;
 }
 
-/// Contacts and loads push bodies, beside what is given.
+/// Sets the forces of contacts and loads on rigid bodies, in addition to the given forces.
 void Capsule::push_bodies(const Net& x) {
   if (rigid_.empty()) return;
   Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
@@ -102,7 +102,7 @@ void Capsule::push_bodies(const Net& x) {
   rigid_.push(push);
 }
 
-/// A^-1 of each field, in place; ranks share the columns.
+/// Applies A^-1 to each field in place. The columns are divided among the ranks.
 void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
   const std::vector<int> components = a.components();
   int column = 0;
@@ -121,8 +121,8 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-/// The load at x, the shape of `e` or its image in the cell, and M0^-1 of another field (none: nothing) in place: ranks share six columns better than
-/// twice three.
+/// Returns the load at x, which is the shape of `e` or its image in the cell. If `other` is given, applies M0^-1 to it in place, in the same solve
+/// where possible, because six columns are divided among the ranks more evenly than three columns in each of two solves.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;
@@ -150,7 +150,7 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
-/// P v: of each particle that deforms what its volume allows.
+/// Applies P to v for each deformable particle, so that its volume does not change.
 void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   for (const Particle& particle : particles()) {
     if (particle.rigid) continue;
@@ -159,7 +159,7 @@ void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   }
 }
 
-/// Of a symmetric scene the rotations that its images leave as they are.
+/// Returns relabellings of all particles. If the scene is symmetric, uses only the rotations that its images leave unchanged.
 std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
@@ -199,9 +199,9 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
   return latest_;
 }
 
-/// (4.2), station by station: the load of membranes (membrane_load) and of bodies, what it drives through the layers and the ambient flow
-/// (explicit_velocity), the volumes' conditions (constrain), and where viscosities differ, bodies are rigid or a tube's blocks are asked for, the
-/// system of all (solve_velocity).
+/// Computes (4.2) step by step: the load of membranes (membrane_load) and rigid bodies, the velocity due to this load and the ambient flow
+/// (explicit_velocity), the projection onto constant volumes (constrain), and if necessary (has_velocity_system) the solution of the system for the
+/// velocity (solve_velocity).
 Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
@@ -231,11 +231,11 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
-  if (constrained) constrain(v, b, c);  // interpolation of the normal motion lets a little flux in
+  if (constrained) constrain(v, b, c);  // removes the small flux due to interpolation of the normal motion
   return v;
 }
 
-/// Of rigid bodies and nothing else (2.40).
+/// Computes the velocity if all particles are rigid, by their tractions (2.40).
 Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
   const auto clock = phases_.time("tractions");
   std::vector<Vec3> centres;
@@ -254,12 +254,12 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
   return v;
 }
 
-/// Of a velocity at the targets.
+/// Returns the control values of a velocity that is given at the targets.
 Net Capsule::control_values(Net at_targets) {
   return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
 }
 
-/// A f, at the targets; nothing is summed of no load.
+/// Returns A f at the targets. Skips the sum if f is zero.
 Net Capsule::single_layer_of(const Net& x, const Net& f) {
   Net u = zero_at_targets();
   if (f.isZero(0)) return u;
@@ -272,7 +272,7 @@ Net Capsule::single_layer_of(const Net& x, const Net& f) {
   return u;
 }
 
-/// H v at the targets, where the double layer was placed.
+/// Returns the double layer of v at the targets, including the factors 1 - lambda, for the shape set in `double_layer_`.
 Net Capsule::double_layer_of(const Net& v) {
   Net hv = zero_at_targets();
   double_layer_->apply(v, own_targets(), hv);
@@ -280,8 +280,8 @@ Net Capsule::double_layer_of(const Net& v) {
   return hv;
 }
 
-/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle;
-/// `answer` keeps it if it is final.
+/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle.
+/// Stores the response in `answer`, if given, unless a system for the velocity follows and changes it.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
@@ -302,7 +302,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
   return v;
 }
 
-/// Takes the shape into the tube; whether that can be: no point of it is outside.
+/// Sets the shape in the tube. Returns whether all its collocation sites are inside.
 bool Capsule::enter_tube(const Net& x) {
   place(x);
   const Net at_sites = sites_ * x;
@@ -315,7 +315,7 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// Whether all sites are, if there is one.
+/// Returns true if all collocation sites are in front of the plane wall, or if there is none.
 bool Capsule::in_front_of_wall(const Net& x) {
   if (!parameters_.wall) return true;
   const Net at = sites_ * x;
@@ -330,7 +330,7 @@ Net Capsule::measured_load(const Net& x, Net d) {
   return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(measured_net(x)), d);
 }
 
-/// Returns C v, with C as it was updated last.
+/// Returns C v, with C at its latest update.
 Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
   const auto clock = phases_.time("membrane");
   Net work;
@@ -353,7 +353,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Rows of D on every rank, each made by the rank whose point it is: taken from what is assembled, or assembled for this.
+/// Returns rows of D on every rank. Each row comes from the rank that owns its point: copied from the assembled rows, or assembled here.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
@@ -371,27 +371,27 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   return rows;
 }
 
-/// P B P v = rhs, rhs = P rhs; b and c are empty where the volume is free. In a tube B holds what the wall answers to v (schur), or all blocks
-/// are solved for. Starts from `guess`, else from the right-hand side.
+/// Solves P B P v = rhs, where rhs = P rhs; b and c are empty if the volume is not constrained. In a tube, B includes the response of the wall to v
+/// (schur), or all blocks are solved for. The initial guess is `guess`, or the right-hand side if `guess` is empty or bodies are rigid.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // films between rigid bodies take them
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected for films between rigid bodies
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
   const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // of own targets, for everybody
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product with rows of the rank-owned targets, gathered on all ranks
     Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
     for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();
     gather_targets(false, at_targets);
     return at_targets;
   };
-  const auto load_of = [&](const Net& v) {  // what the velocity adds to the load, empty where it adds nothing
+  const auto load_of = [&](const Net& v) {  // contribution of the velocity to the load; empty if there is none
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
     if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
     return load;
@@ -441,7 +441,7 @@ void Capsule::forget_recycled() const {
   if (tube_) tube_->forget_recycled();
 }
 
-/// v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f; the start is what it would be without a wall.
+/// Solves for v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f. The initial guess of v is its right-hand side.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
@@ -460,15 +460,15 @@ Blocks Capsule::velocity_blocks() const {
   return blocks;
 }
 
-/// V = b.x/3, for V is a cubic of x without lower terms. Where that leads nowhere, x is not finite any more.
+/// Uses V = b.x/3, which holds because V is a homogeneous cubic function of x. Sets x to NaN if the iteration fails.
 void Capsule::restore_volume(Net& x) {
   rigid_.place(x);
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
-  std::vector<double> missing(particles().size());  // over V0
+  std::vector<double> missing(particles().size());  // volume to be added, divided by V0
   Net c;
   const auto larger_than = [&](double bound) { return std::ranges::any_of(missing, [&](double m) { return !(std::abs(m) <= bound); }); };
-  for (int k = 0; k < 6; ++k) {  // two changes are enough after any but a very long step
+  for (int k = 0; k < 6; ++k) {  // two corrections are enough except after a very long step
     const Net b = flux_vector(x);
     for (std::size_t p = 0; p < missing.size(); ++p) {
       const auto rows = particles()[p].block.rows(x);

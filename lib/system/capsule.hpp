@@ -1,5 +1,5 @@
 #pragma once
-// Capsules, drops and rigid bodies, in unbounded flow or in a tube: fluid and membrane meet here.
+// Coupling of the Stokes flow to capsules, drops and rigid bodies, in unbounded flow or in a tube.
 
 #include <array>
 #include <functional>
@@ -41,69 +41,70 @@
 
 namespace tanktread::coupling {
 
-/// Work in units that do not depend on the machine.
+/// Counts of operations, as a measure of cost that does not depend on the machine.
 struct Work {
   long evaluations = 0;        ///< velocity evaluations (4.2)
-  long assemblies = 0;         ///< of the frozen layer operator (4.3)
-  long tangents = 0;           ///< of the membrane
+  long assemblies = 0;         ///< assemblies of the frozen layer operators (4.3)
+  long tangents = 0;           ///< evaluations of the membrane tangent
   long solves = 0;             ///< linear solves of the implicit step
-  long solver_iterations = 0;  ///< of all of them
-  long velocity_iterations = 0;  ///< of the systems that velocities come from when the viscosities differ, or blocks are asked for in a tube
-  long velocity_solves = 0;      ///< of these systems
-  long most_velocity_iterations = 0;  ///< of one of them
+  long solver_iterations = 0;  ///< iterations of these solves
+  long velocity_iterations = 0;  ///< iterations of the linear systems for velocities or tractions
+  long velocity_solves = 0;      ///< solves of these systems
+  long most_velocity_iterations = 0;  ///< largest number of iterations of one of these solves
 };
 
-/// What particles are made of and how they are solved.
+/// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
-  std::vector<Particle> particles{1};                            ///< stacked in this order; one alone need not name its space
-  bool strong_load = false;                                      ///< (P-3) at the collocation sites instead of (3.5)
+  std::vector<Particle> particles{1};                            ///< in stacking order; the space of a single particle need not be set
+  bool strong_load = false;                                      ///< true: load (P-3) at the collocation sites instead of (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< at time zero, of a lattice that the flow carries along; none: unbounded space, or a tube
-  std::optional<stokes::PlaneWall> wall;     ///< that everything is in front of; none: unbounded space, a lattice or a tube
-  surface::Symmetry symmetry;  ///< of flow, space and every shape that is asked about; of no points: none
+  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
+  std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; no points if there is none
 };
 
-/// dx/dt = v(x) of the stacked nets of all particles without a wall (2.4), (4.2):
+/// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
 ///
 ///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
-/// A, D: the single and the double layer of all surfaces at the sites of all; D with the factor 1 - lambda of each. One condition b.v = 0, and one
-/// factor of P, a particle.
-/// For lambda = 1 nothing has to be assembled or solved for the velocity. Otherwise P B P v = P (...) is solved by Belos; that is the block
-/// system of v and the multiplier of (2.8) with the multiplier eliminated, and it keeps the mode that B nearly loses as lambda -> 0 out of reach.
+/// A and D are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each
+/// particle has its own condition b.v = 0, and its own factor of P. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise
+/// P B P v = P (...) is solved by Belos. This is the block system of v and the multiplier of (2.8) after elimination of the multiplier. P removes
+/// the mode for which B becomes singular as lambda -> 0.
 ///
-/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, v the fluids' velocity, is part of B: with M of the current surface in place of
-/// M0 if loads are measured there, B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                        (3.11)
+/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, with the fluid velocity v, is part of B. If loads are measured per current area, M
+/// of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                    (3.11)
 ///
-/// Rigid bodies among them move rigidly (RigidParticles): in their rows the unknown is w of (2.23), and in Jacobian and stiff steps they only follow.
-/// Where all are rigid, their tractions may be solved for instead (RigidTractions).
+/// Rigid bodies are treated by RigidParticles: the unknown in their rows is w of (2.23). They are not stiff, so that their rows of the Jacobian are
+/// zero. If all particles are rigid, the system may be solved for their tractions instead (RigidTractions).
 ///
-/// Of a symmetric scene only the rows of fundamental control points are evaluated, and only their systems solved; the others are their images.
+/// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The other rows are their images.
 ///
-/// On a lattice the layers are those of all images (Layer::repeat). Every particle is evaluated where its mean is in the cell around the origin, and
-/// moves on where it is, with what the flow is faster there. Frozen operators leave images out.
+/// On a lattice the layers include all images (Layer::repeat). Each particle is evaluated at its image whose mean lies in the cell around the origin.
+/// Then the ambient velocity at the particle's own position minus that at the image is added to its velocity. Frozen operators omit the images.
 ///
-/// Beside a plane wall the layers are those of their images too (Layer::set_wall); the frozen operator by one node a control point leaves
-/// images out.
+/// In front of a plane wall the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
 ///
-/// In a tube the answer of wall and pressure drop (2.5)-(2.7) is added, which is linear in the load and, for lambda != 1, in v: it joins the
-/// right-hand side and B, here and in the Jacobian. Or all blocks are solved at once (BlockSystem).
+/// In a tube the response of wall and pressure drop (2.5)-(2.7) is added. It is linear in the load and, for lambda != 1, in v. It is added to the
+/// right-hand side and to B, both here and in the Jacobian. Alternatively all blocks are solved for at once (BlockSystem).
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`; the volume of `initial` is kept where parameters give no other.
+  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is kept, unless the particle sets
+  /// `kept_volume`.
   Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;
 
-  /// Everything that the shape x determines. A system starts from `guess`, where there is one. Of the shape that was asked about last, under the same
-  /// forces and flow, it is what was returned then.
+  /// Evaluates the shape x: loads, unknowns and velocities. Returns the cached result if x is the shape evaluated last and forces and flow have not
+  /// changed. `guess`, if given, is the initial guess of the linear solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
 
-  /// The same of a shape whose velocity is known, or not (no rows). It solves for the unknowns only where they are asked for and do not follow from
-  /// velocity. Those of the shape asked about last stand for them if it is within `distance` (in `norm`).
+  /// Returns an evaluation of x that computes its quantities at their first use. `velocity`: velocity of the control points if known; otherwise no
+  /// rows. The linear system is solved only if a quantity is used that does not follow from the velocity. If the shape evaluated last is within
+  /// `distance` of x (in `norm`), its rigid motions and fluid velocities are used instead of solving.
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
@@ -125,47 +126,48 @@ class Capsule : public Dynamics {
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
-  double norm(const Net& displacement) const override;  ///< in a tube without the mean along it, on which nothing depends
+  double norm(const Net& displacement) const override;  ///< in a straight tube, without the mean displacement along x1, on which nothing depends
   Net symmetric(Net field) const override;
 
-  /// Sets the virtual work of forces, one row per control point, from now on: of contacts, which keep directions and points, or of the fields on
-  /// surfaces, minus what they add to dE/dx. An empty net: none.
+  /// Sets the virtual work of forces for all later calls, one row per control point. `contacts`: contact forces, which keep their directions and
+  /// material points. `fields`: loads of the fields on surfaces; their work is minus their contribution to dE/dx. An empty net removes the forces.
   enum class Forces { contacts, fields };
   void set_forces(Forces of, Net work);
 
-  /// The change of the velocity at the shape of `at` by forces of this virtual work in addition to those that act: linear in `work`.
+  /// Returns the change of the velocity at the shape of `at` if forces of this virtual work act in addition to the present forces. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes that a displacement dx, and a change of the load's virtual work in addition to that of the membranes, make where last linearised. slip:
-  /// velocity of the fluids minus that of the control points; empty if none slides.
+  /// Changes, at the last linearisation, due to a displacement dx and to a change of the virtual work of loads in addition to that of the membranes.
+  /// `slip`: change of the difference between the fluid velocity and the velocity of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
-  RateChange rate_change(const Net& dx, const Net& work);      ///< rate: B J dx if no point slides, otherwise J dx. Collective
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx. Collective
-  /// B v with B frozen, or v if control points slide. Collective.
+  RateChange rate_change(const Net& dx, const Net& work);      ///< returns the rate B J dx if no control points slide, otherwise J dx. Collective
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns the rate J dx. Collective
+  /// Returns B v with B frozen, or v if control points slide. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
   bool preconditions_step() const { return area_.has_value(); }
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system of `solve`
 
-  /// Solves the linear system of an implicit step for `rhs`, a state of any number of rows, to this relative residual, and counts it. Collective.
+  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. `rhs` may have any number of rows.
+  /// Collective.
   Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
   bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
   const surface::Symmetry& symmetry() const { return parameters_.symmetry; }
 
-  /// Whether control points slide along the interface, so that their velocity is not the fluids'.
+  /// Returns whether control points slide along an interface, so that their velocity differs from the fluid velocity.
   bool slides() const { return interface_.has_value(); }
 
   /// Returns whether a membrane or interface is viscous, so that the load depends on the velocity.
   bool viscous() const { return viscous_.has_value(); }
 
-  /// Whether the latest place that was asked about is within `distance` (in `norm`) of x.
+  /// Returns whether the shape evaluated last is within `distance` of x (in `norm`).
   bool evaluated_about(const Net& x, double distance) const { return latest_ && norm(x - latest_->x()) <= distance; }
 
-  /// The rigid bodies among the particles, placed as x says.
+  /// Returns the rigid bodies among the particles, at their positions in x.
   RigidParticles rigid_at(Net x) const {
     RigidParticles rigid = rigid_;
     rigid.place(x);
@@ -175,39 +177,40 @@ class Capsule : public Dynamics {
   const Loads& loads() const { return loads_; }
 
   const std::vector<Particle>& particles() const { return parameters_.particles; }
-  double volume_error(const Net& x) const;  ///< of all volumes together
+  double volume_error(const Net& x) const;  ///< V/V0 - 1 of the total volume
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
-  Tube* tube() { return tube_.get(); }      ///< nothing without one
-  const stokes::AmbientFlow& flow() const { return flow_; }  ///< at the time told last
-  const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< at the time told last
+  Tube* tube() { return tube_.get(); }      ///< null if there is no tube
+  const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set by `at`
+  const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< cell at the time set by `at`
 
-  /// Moves every particle into the cell by a lattice vector, and returns these vectors. The cell is around the origin, or in a straight tube, whose
-  /// wall moves along, around the mean of the particles.
+  /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The middle of the cell is the origin.
+  /// In a channel it is the middle of the channel, and in a straight tube, whose wall moves with the particles, the mean of the particles.
   std::vector<Vec3> put_into_cell(Net& x);
 
-  /// How much faster the flow is a lattice vector further; a duct's flow repeats.
+  /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus that at the point. 0 in a duct, whose flow is periodic.
   Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.gradient(Vec3::Zero()) * shift); }
 
   const membrane::Membrane& membrane() const { return membrane_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< of both layers
-  const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< none: velocities are collocated
+  stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
+  const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< null if velocities are collocated
   const surface::Geometry& geometry() const { return geometry_; }
-  const Phases& layer_phases() const { return layer_.phases(); }  ///< where the time of the single layer goes
-  stokes::Measure measure() const { return coupling::measure(particles()); }  ///< of the load
-  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }  ///< of the load
-  void forget_recycled() const;  ///< discards what preconditioners `recycled` keep from earlier solves
+  const Phases& layer_phases() const { return layer_.phases(); }  ///< run time of the parts of the single layer
+  stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
+  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }  ///< net on which loads are measured
+  void forget_recycled() const;  ///< discards the data of earlier solves that preconditioners `recycled` keep
   const Work& work() const { return work_; }
   Work& work() { return work_; }
 
  private:
   friend class Evaluation;
 
-  /// Particles placed in the tube, and the origin along x1 of the frame of a straight wall that repeats, now and when they were placed.
+  /// Net of the particles last set in the tube. `origin`, `origin_of_net`: x1 of the origin of a straight periodic wall's frame, now and when the net
+  /// was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;
   };
-  bool repeats() const { return cell_ && !tube_; }  // the layers do; in a duct the tube's response has the images
+  bool repeats() const { return cell_ && !tube_; }  // returns whether the layers are periodic; in a duct the tube's response contains the images
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
@@ -244,7 +247,7 @@ class Capsule : public Dynamics {
   Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
   Net measured_load(const Net& x, Net d);
-  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // where C was updated
+  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // requires that C was updated at x
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta, const Net& work = {});
@@ -258,7 +261,7 @@ class Capsule : public Dynamics {
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // from the velocity of the control points
+  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns equal the control points' velocity
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
@@ -271,42 +274,42 @@ class Capsule : public Dynamics {
   Ranks& ranks_;
   Phases& phases_;
   std::vector<int> own_points_;
-  std::vector<int> own_elements_;  // that sums for own points run over
-  bool folded_ = false;            // those are fundamental ones, and their sums are to be folded
+  std::vector<int> own_elements_;  // elements that sums for the rank-owned points run over
+  bool folded_ = false;            // true if these elements are fundamental, so that their sums must be folded
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
-  std::optional<membrane::AreaConstraint> area_;  // where a membrane has points of its own for its area
-  Loads loads_;  // in addition to elasticity and bending
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // where a membrane is: of the latest evaluation, of the Jacobian
-  std::optional<VelocityProjection> projection_;  // where velocities are not collocated
-  stokes::Layer layer_;                           // at the targets of velocities
-  std::optional<stokes::Layer> double_layer_;     // where a lambda is not 1; of the factors 1 - lambda
-  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // at the collocation sites, for the Jacobian, where targets are others
+  std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
+  Loads loads_;  // loads in addition to elasticity and bending
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // C of the latest evaluation and of the Jacobian; set if a membrane is viscous
+  std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
+  stokes::Layer layer_;                           // single layer at the targets, where velocities are evaluated
+  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all are 0
+  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if the targets differ
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov velocity_solver_, step_solver_, inner_solver_;
-  NodalOperator nodal_;                     // or frozen_, as the options say
-  FrozenOperator frozen_, frozen_double_;  // empty until the first freeze
-  Net frozen_at_;                          // shape at which they were assembled
-  Corotation corotation_;                  // from there to the shape linearised last
+  NodalOperator nodal_;                     // frozen single layer; the options select either nodal_ or frozen_
+  FrozenOperator frozen_, frozen_double_;  // frozen layers; empty until the first call of `freeze`
+  Net frozen_at_;                          // shape at which the frozen operators were assembled
+  Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
   RigidParticles rigid_;
-  std::optional<RigidTractions> tractions_;  // where rigid bodies, alone, are solved for by these
-  std::optional<OneBodyInverses> alone_;  // made when first needed
-  std::optional<InterfaceMotion> interface_;  // not for material motion
+  std::optional<RigidTractions> tractions_;  // set if all particles are rigid and solved for by their tractions
+  std::optional<OneBodyInverses> alone_;  // inverses for isolated rigid bodies; set up at the first use
+  std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // R, where the flow is not affine or there is a tube or a wall
-  std::optional<stokes::PeriodicCell> cell_;  // now
-  double inner_radius_ = 0;             // of a circle inside of the tube, about its centroid
-  double latest_shift_ = 0;             // of the implicit system solved last
-  Net flux_, flux_response_;            // b and c of the Jacobian's P, empty where it has none
-  std::vector<Mat3> gradients_;         // of a flow that is not affine, or in a tube, at the sites, as linearised
-  std::vector<double> volume0_;         // of each particle
+  Eigen::SparseMatrix<double> sites_;   // R; empty unless the flow is not affine or there is a tube or a wall
+  std::optional<stokes::PeriodicCell> cell_;  // current cell
+  double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
+  double latest_shift_ = 0;             // shift of the implicit system solved last
+  Net flux_, flux_response_;            // b and c of the Jacobian's P; empty if the Jacobian has no P
+  std::vector<Mat3> gradients_;         // velocity gradients at the sites, where last linearised; only if the flow is not affine or in a tube
+  std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;
   std::shared_ptr<Evaluation> latest_;
-  std::array<Net, 2> forces_;  // their work, of contacts and of fields on what deforms; empty nets: none
+  std::array<Net, 2> forces_;  // virtual work of contact forces and of fields; empty if there are none
   TubePlace tube_place_;
 };
 

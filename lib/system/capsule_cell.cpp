@@ -1,4 +1,4 @@
-// Particles in a cell that repeats, and in a tube.
+// Particles in a periodic cell, and in a tube.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace tanktread::coupling {
 
-/// Moves the cell to this time, dH/dt = L H. Returns whether it changes. In a duct it stays.
+/// Deforms the cell to this time, dH/dt = L H. Returns whether it has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (tube_) {
     cell_ = tube_->cell();
@@ -40,14 +40,15 @@ void Capsule::place(const Net& x) {
   tube_place_.net = x, tube_place_.origin_of_net = tube_place_.origin;
 }
 
-/// The middle of the cell: of a straight wall, which goes along, the mean of all particles, however far apart.
+/// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is the mean of all particles' control points, even if
+/// they are far apart.
 Vec3 Capsule::cell_origin(const Net& x) const {
   if (!tube_) return Vec3::Zero();
   if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Evaluates the shape with the means of the particles moved into the cell.
+/// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell, and transfers the velocities back.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!cell_ || !e.x().allFinite()) return solve(e, e.x(), guess);
   Net x = e.x();

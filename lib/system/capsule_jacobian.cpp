@@ -11,7 +11,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Whether what a particle is made of resists a change of area so much more than shear.
+/// Returns whether the particle's membrane resists area changes much more than shear: its area modulus exceeds `times` its shear modulus.
 bool keeps_area(const Particle& one) {
   constexpr double times = 50;
   return !one.rigid && membrane::area_modulus(one.material.law) > times * membrane::modulus(one.material.law);
@@ -70,7 +70,7 @@ void Capsule::linearise(const Net& x) {
   if (by_sites()) gradients_ = gradients_at(sites_ * x);
 }
 
-/// Of the flow; where there is a symmetry, of fundamental points alone.
+/// Returns the velocity gradients of the flow at x. If the scene is symmetric, only the gradients at fundamental points are set.
 std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
   const std::vector<int>& rows = parameters_.symmetry.fundamental();
   if (static_cast<Eigen::Index>(rows.size()) == x.rows()) return flow_.gradients(x);
@@ -82,7 +82,7 @@ std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
   return all;
 }
 
-/// A f with A frozen.
+/// Returns A f with A frozen.
 Net Capsule::frozen_single_layer(const Net& f) {
   Net u = Net::Zero(f.rows(), 3);
   if (parameters_.solvers.frozen_operator != "nodal") {
@@ -95,14 +95,15 @@ Net Capsule::frozen_single_layer(const Net& f) {
   return corotation_.forth(u);
 }
 
-/// P of a rate, where last linearised. A stiff membrane's answer to a change of volume, which the fluids do not let happen, would spoil all else.
+/// Applies the P of the last linearisation to a rate. Without P, the response of a stiff membrane to volume changes, which the fluids do not allow,
+/// would dominate the rate.
 Net Capsule::without_flux(Net rate) const {
   if (flux_.size() > 0) constrain(rate, flux_, flux_response_);
   return rate;
 }
 
-/// The displacement along which a volume is restored, where c alone would do: of a membrane that keeps its area, what is left of c after an implicit
-/// step. Along c itself the area changes too, and the stress of that, C times as large, would go into the next step.
+/// Returns the displacement along which a volume is restored. By default it is c. For a membrane that nearly conserves area, it is the result of an
+/// implicit step for c, because c also changes the area, and the resulting stress, of the order of C, would affect the next step.
 Net Capsule::inflation(const Net& c) {
   constexpr double rough = 1e-2;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(particles(), keeps_area)) return c;
@@ -110,7 +111,8 @@ Net Capsule::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// B J delta = P (grad v_inf delta - R^{-1} A M0^{-1} H delta), and 0 of rigid bodies                         (4.3)
+/// Returns B J delta = P (grad v_inf delta - (1/mu) R^{-1} A M0^{-1} H delta), with 0 in the rows of rigid bodies (4.3). `work`, if given, is added
+/// to H delta.
 Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
@@ -134,7 +136,7 @@ Net Capsule::energy_part(const Net& delta, const Net& work) {
   return without_flux(std::move(change));
 }
 
-/// P B P v + (1 - P) v with B frozen; rigid bodies keep what they have and do nothing to the others.
+/// Returns P B P v + (1 - P) v with B frozen. The rows of rigid bodies are unchanged and do not contribute to other rows.
 Net Capsule::frozen_viscous(const Net& v) {
   if (!double_layer_ && !viscous_) return v;
   const Net inside = without_flux(v);
@@ -154,7 +156,7 @@ Net Capsule::frozen_viscous(const Net& v) {
   return v - without_flux(collocation_.solve(hv));
 }
 
-/// dv = B^-1 (B J delta), the inner system solved well below the tolerance of the outer one.
+/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity. The inner system is solved to a smaller tolerance than the outer one.
 Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   const Net rhs = energy_part(delta, work);
   if (!double_layer_ && !viscous_) return rhs;
@@ -166,14 +168,15 @@ Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Material motion: (B - shift (B J + E)) delta = B r, so that B need not be inverted. Otherwise (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6).
+/// Solves the system of an implicit step. If all control points move with the fluid, it is (B - shift (B J + E)) delta = B r, which does not require
+/// the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6). E are the secants (4.13).
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   return stiff_system(shift, left(r), tolerance, secants);
 }
 
-/// Returns whether all points move with the fluid and its velocity is the solution of a system: then the Jacobian has the projection P in every form
-/// of the system, because the extrapolation (4.30) makes the Jacobian a part of the result.
+/// Returns whether all points move with the fluid and the velocity is the solution of a system. The Jacobian then includes the projection P in every
+/// form of the system, because the extrapolation (4.30) makes the result depend on the Jacobian.
 bool Capsule::flows_by_system() const { return (viscous_ || double_layer_) && !interface_ && rigid_.empty(); }
 
 /// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
@@ -190,8 +193,8 @@ Net Capsule::defect(const Net& x, const Net& u) {
   return defect_here(in_cell, slower);
 }
 
-/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity). The load of u in a viscous membrane is added to
-/// the elastic load, so that one sum serves both. (3.14)
+/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity) (3.14). The load of u in a viscous membrane is
+/// added to the elastic load, so that only one sum over the surface is needed.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
@@ -243,7 +246,7 @@ void Capsule::prepare_step(double shift) {
   if (area_) area_->factor(shift);
 }
 
-/// The two systems of `solve`, of a right-hand side B r, or r.
+/// Solves the system of `solve` for its right-hand side, which is B r, or r if control points slide.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {
@@ -297,7 +300,7 @@ double Capsule::norm(const Net& displacement) const {
   for (const Particle& particle : particles()) {
     const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
     const double norm = moved.norm() / (particle.radius * std::sqrt(static_cast<double>(particle.block.n_points)));
-    largest = norm <= largest ? largest : norm;  // what is not a number stays so
+    largest = norm <= largest ? largest : norm;  // keeps NaN
   }
   return largest;
 }

@@ -13,7 +13,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the parameters with the space and the rows of every particle set.
+/// Returns the parameters with the space and the block of every particle set.
 CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
   place(parameters.particles);
@@ -28,8 +28,8 @@ std::optional<VelocityProjection> chosen_projection(const spline::Space& space, 
   return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
 }
 
-/// Returns the mobility of each control point: velocity per force, for waves of wave number k between the longest on a surface and the shortest on a
-/// mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the viscosity of the sheet itself.
+/// Returns the mobility of each control point (velocity per force) at a wave number k between that of the longest wave on the surface and that of the
+/// shortest wave on the mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the viscosity of the sheet.
 Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
   for (const Particle& one : particles) {

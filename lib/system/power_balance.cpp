@@ -11,10 +11,11 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Two points a direction: between collocation sites the velocity errs like the square of a parabola, which the middle alone counts twice.
+/// Returns the rule of two Gauss points per direction. Between collocation sites the error of the velocity varies like the square of a parabola. The
+/// midpoint rule would overestimate its mean by a factor of about two.
 const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
 
-/// Of all elements, in their order.
+/// Returns the points of this rule on all elements, in the order of the elements.
 stokes::Sites places(const spline::Space& space) {
   stokes::Sites sites;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
@@ -70,14 +71,15 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
     powers.membranes += e->membrane_dissipation(p);
     powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
   }
-  const double done = product(work, v);  // to all surfaces by the fluids
+  const double done = product(work, v);  // power of the fluids on all surfaces
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
   powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);
   return powers;
 }
 
-/// In a duct's flow the pressure drop that the particles add does the work (2.7); others are of one gradient, as the walls of their tube move.
+/// Returns the power input of the flow. In a duct flow it is the flow rate times the additional pressure drop due to the particles (2.7). Other flows
+/// have a uniform gradient, and (6.11) applies; the walls of their tube move with the flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
@@ -96,8 +98,8 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   return power;
 }
 
-/// int (Df - p n).r by Gauss' rule, p the mean of Df.n over each particle: a uniform pressure does no work, and what quadrature leaves of its
-/// layer counts for nothing.
+/// Returns int (Df - p n).r over all particles by Gauss quadrature, where r is `left` and p is the mean of Df.n over each particle. p is subtracted
+/// because a uniform pressure does no work, so that the quadrature error of its layer does not count.
 double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;
@@ -117,7 +119,7 @@ double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, c
   return sum;
 }
 
-/// What the double layers are of: the velocity, and w of (2.23) of rigid bodies.
+/// Returns the density of the double layers: the velocity, or w of (2.23) for rigid bodies.
 Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   Net all = v;
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
@@ -125,7 +127,7 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   return all;
 }
 
-/// v less the right-hand side of (2.22), at the places.
+/// Returns v minus the right-hand side of (2.22) at `places_`.
 Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();

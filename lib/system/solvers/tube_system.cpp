@@ -8,7 +8,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// The four blocks in one array, of unknowns or of residuals.
+/// Views of the four blocks in one array of unknowns or residuals.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
@@ -26,7 +26,7 @@ struct Parts {
 using In = Parts<const double>;
 using Out = Parts<double>;
 
-/// The rows of (2.5) to (2.8).
+/// Computes the product of the block matrix (2.5) to (2.8) with x.
 void product(const BlockSystem& s, const In& x, Out r) {
   Tube& tube = s.tube;
   const Net v = x.velocity, traction = x.wall_traction / s.unit;
@@ -42,7 +42,8 @@ void product(const BlockSystem& s, const In& x, Out r) {
   r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
 }
 
-/// Velocity and multiplier with B = 1; then the pressure drop and the traction, with what the ones before do to them or without.
+/// Solves for the velocity and the multiplier with B = 1, then for the pressure drop and the wall traction. If `triangular`, these two include the
+/// contributions of the unknowns before them.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   x.multiplier = r.multiplier;
