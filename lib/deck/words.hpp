@@ -36,7 +36,8 @@ std::string guess(const std::string& given, const std::vector<std::string>& cand
 /// Returns the path of the key that is probably meant by an unknown name, `Time/final time` for `tend`; empty if there is none.
 std::string synonym(const std::string& name);
 
-/// Returns why the key at this path does not exist: a sentence without its full stop on what this program does not compute; empty if unknown.
+/// Returns the reason why there is no key at this path: a sentence, without its full stop, that names the feature that this program lacks. Returns an
+/// empty text if no reason is known.
 std::string missing_feature(const std::string& path);
 
 }  // namespace tanktread::deck

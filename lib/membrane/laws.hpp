@@ -150,7 +150,8 @@ struct UserLaw {
   friend bool operator==(const UserLaw&, const UserLaw&) = default;
 };
 
-/// Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2: the springs of a MaxwellElement (3.23), with separate shear and dilatation, per current area.
+/// Energy density of the springs of a MaxwellElement (3.23): Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2, with separate terms for shear and
+/// dilatation. The moduli refer to the current area.
 struct MaxwellSpring {
   double shear_modulus = 1;     ///< G, force per length
   double dilatation_modulus = 0;  ///< K

@@ -19,7 +19,7 @@ constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
 
-/// The elements that one caller works on, packed, with the unstressed surface at their Gauss points.
+/// Elements assigned to one caller, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< materials of the groups: those of the surface, then the separated area elasticities

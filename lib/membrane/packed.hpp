@@ -18,7 +18,7 @@ constexpr int max_functions = 64;  ///< largest number of functions on one eleme
 /// Up to pack_lanes() elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
 struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
-  int functions = 0;                  ///< m, the largest number of functions of its elements; missing functions have zero extraction
+  int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< start of its control-point ids in Group::points, [A * pack_lanes() + lane]
   std::size_t extraction = 0;         ///< start of its extraction in Group::extraction, [A * (p + 1)^2 + b]; equal batches share one

@@ -25,7 +25,7 @@ class ExpressionParser {
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
     if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is the same for every strain.");
-    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // the last result is the energy
+    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy, because the last result must be the energy
     for (const auto& [name, value] : constants_)
       if (std::ranges::find(used_, name) == used_.end()) throw UserError(what_ + " does not use the constant `" + name + "`.");
   }

@@ -34,7 +34,7 @@ struct TimeOptions {
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2
 
   double least_step() const { return minimum_step.value_or(1e-9 * unit); }
-  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< returns whether a frozen operator of any size is used (4.3)
+  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< true if the scheme always uses the frozen operator
   bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< for crank-nicolson
 
   void declare(deck::Section& section);

@@ -63,8 +63,8 @@ class SteadyEquations {
 };
 
 /// Solves the equations as a fixed point of x + s (1 - s J)^{-1} G(x) by NOX, with Anderson acceleration (`anderson`) or Newton's method
-/// (`newton-krylov`). If a whole step changes x by much, shorter steps come first. If the iteration does not converge, x is the best iterate.
-/// Collective.
+/// (`newton-krylov`). If an iteration with the step s changes x by much, implicit steps shorter than s are done first. If the iteration does not
+/// converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion

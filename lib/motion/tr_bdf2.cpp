@@ -26,7 +26,7 @@ struct Remembered {
   Orders orders;
 };
 
-/// Extrapolates slopes from earlier times, relative to the start of the step, by polynomials through the latest slopes.
+/// Extrapolates the slope dx/dt in time by a polynomial through the latest slopes. Times are relative to the start of the step.
 class Prediction {
  public:
   Prediction(const State& state, const Memory& memory, std::size_t most) : times_{0, (2 * d - 1) * memory.step, -memory.step}, most_(most) {

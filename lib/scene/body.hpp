@@ -45,7 +45,8 @@ struct Member;
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
-  /// Space with the same control points but degenerate poles; null unless `space` has poles by the Bezier transform and the mesh may adapt
+  /// Space with the same control points as `space` but with degenerate poles. It is set if `space` removes the degeneracy by the Bezier transform and
+  /// the mesh may adapt; otherwise it is null.
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run

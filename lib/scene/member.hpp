@@ -43,7 +43,7 @@ coupling::Rigid rigid(const Scene& scene, const Body& body);
 /// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
-/// Locates the followed point on the current mesh if the mesh may adapt. A resumed run finds the same site.
+/// Computes `followed`, the site of the material point `place` on the current mesh, if the mesh may adapt. A resumed run finds the same site.
 void follow(Member& member);
 
 /// Sets blocks, geometries and membranes of all members. Their bodies must exist.

@@ -93,7 +93,7 @@ std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
 struct Walker {
   int cell, turn;
 };
-/// Moves n cells forward (or to the left) and keeps the forward direction.
+/// Returns the walker after n cells forward (`forward`) or to its left (`left`). The walker keeps its forward direction.
 Walker forward(const Lattice& l, Walker w, int n);
 Walker left(const Lattice& l, Walker w, int n);
 

@@ -71,8 +71,9 @@ Eigen::MatrixXd triangle_of_degenerate();
 
 /// Barycentric coordinates of the corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
-/// Returns the matrix of (P-A.2), shape (16, 10), which maps the triangle to the Bezier points of a quadrilateral in it, U fastest. It is exact,
-/// because a cubic of a bilinear map is bicubic.
+/// Returns the matrix of (P-A.2), shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the Bezier points of a bicubic
+/// quadrilateral in the triangle, U fastest. The representation is exact, because the quadrilateral is a bilinear map, and a cubic polynomial of a
+/// bilinear map is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
 /// Returns the three quadrilaterals between the corners, the mid-sides and the barycentre: at T_003, at the pole, at T_030.

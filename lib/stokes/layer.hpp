@@ -91,7 +91,8 @@ class Layer {
   /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Makes later targets off the surfaces, from row `first` on, see only the images of the surfaces on the lattice and not the surfaces themselves.
+  /// Excludes the surfaces themselves for later targets off the surfaces, from row `first` on. Only the images of the surfaces on the lattice then
+  /// contribute to u at these targets.
   void see_images_only(int first) { lattice_.images_only = first; }
 
   /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
@@ -106,7 +107,7 @@ class Layer {
   /// Returns whether far sums use clusters, so that a few products are faster by `apply` than by assembling.
   bool by_clusters() const { return tree_.has_value(); }
 
-  /// Sets the shape, for any number of densities, and the area to which the density of a single layer refers.
+  /// Sets the shape x, which is kept for any number of densities. `measure`: area to which the density of a single layer refers.
   void place(const Net& x, Measure measure = Measure::current);
 
   /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).

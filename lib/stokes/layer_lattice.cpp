@@ -47,7 +47,7 @@ void Layer::place_in_cell() {
   }
 }
 
-/// Returns the positions at which the far sums see the targets.
+/// Returns the positions of the targets `rows` for the far sums. On a lattice, these positions are wrapped into the cell.
 std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int> rows) const {
   std::vector<Vec3> at = rows_of(targets.at, rows);
   if (lattice_.cell)

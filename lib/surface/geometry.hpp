@@ -50,7 +50,8 @@ PrincipalAxes principal_axes(const Measures& measures);
 /// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-// Extreme coordinates of a closed surface and extreme distances on a plane section, by Newton's method on the exact polynomials.
+// The functions below compute extreme coordinates of a closed surface and extreme distances in a plane section. They apply Newton's method to the
+// exact polynomials of the surface.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range

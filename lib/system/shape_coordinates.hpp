@@ -93,7 +93,7 @@ class ShapeCoordinates {
   const VelocityProjection* projection_;
   Net normals_;  // normals of drops at the sites of the projection
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
-  Net state_;                           // state that changes are relative to
+  Net state_;                           // state y relative to which add_fields() defines changes
   Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the part of a state after its control net, one column each
 };
 

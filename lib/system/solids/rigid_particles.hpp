@@ -52,8 +52,8 @@ class RigidParticles {
   /// Moves every body to the position that fits its rows of x best, and sets its rows to this position.
   void place(Net& x);
 
-  /// Sets the virtual work of forces on the bodies in addition to the given ones, one row per control point of all particles, for forces on material
-  /// points with fixed directions. No rows: no such forces.
+  /// Sets forces on the bodies in addition to the given ones, by their virtual work with one row per control point of all particles. The forces act
+  /// on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
   void push(const Net& work);
 
   void add_load(Net& load) const;            ///< adds the load of given forces and torques
@@ -63,8 +63,8 @@ class RigidParticles {
                                               ///< R^-1 D w, in the rows of v
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> for bodies with prescribed motion, 0 in other rows
   void move(Net& v);                         ///< replaces w in the rows of v by V; w is stored
-  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< sets the motion and force found by another
-                                                                                                       ///< equation; updates rows of v
+  /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
+  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, velocities are those of images in the cell. `enter`: from now on bodies are replaced by images, from which the particles p differ
   /// by `shifts[p]`, in a flow of this gradient. `carry`: moves the image of body p, if p is a body, back to the body's own centre, and changes its
   /// velocity accordingly.
@@ -90,8 +90,8 @@ class RigidParticles {
   /// Returns the collocation correction of the velocity of unit load k on its own body, in the axes at rest (OwnLacking).
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns component k of <w> (velocity, then angular velocity) as a linear functional of the body's rows of w, row after row, in the position at
-  /// rest.
+  /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
+  /// The body is in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -120,8 +120,8 @@ class RigidParticles {
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
     Net field(const RigidMotion& of) const;                             // rows of a rigid field
     RigidMotion load() const;                                           // a and b of the force on the fluid
-    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f
-    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w
+    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f, f = a + b x r
+    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w, w of all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

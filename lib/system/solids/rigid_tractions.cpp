@@ -82,7 +82,7 @@ void RigidTractions::make_regular(const Net& x, const Net& at) {
   }
 }
 
-/// Returns A of the bodies at the sites, without lattice or tube, made regular.
+/// Returns the regularised single-layer operator A of the bodies at the sites, without the images on a lattice and the response of a tube.
 Eigen::MatrixXd RigidTractions::system() {
   const Eigen::Index n = flux_.size();
   Eigen::MatrixXd all = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& own) {

@@ -96,8 +96,9 @@ class Tube {
   /// Not collective.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Stores the operators of the current shape, as low-precision blocks, for `frozen_response`, which returns u at the particle's collocation points.
-  /// If the wall's system is solved by iteration, `frozen_response` returns 0, because u is a small and smooth part of a Jacobian.
+  /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
+  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. This is accurate enough, because u is a small and
+  /// smooth part of a Jacobian.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
@@ -107,9 +108,9 @@ class Tube {
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
-  const Net& inlet_on_particle() const;  ///< c; in a duct that repeats, the empty duct's flow per unit pressure drop of a period
+  const Net& inlet_on_particle() const;  ///< c on the particle; in a duct that repeats, v_inf of the empty duct per unit pressure drop of a period
   const Net& ambient() const;            ///< v_inf at the collocation points, with amplitude 1
-  Net inlet_on_wall() const;
+  Net inlet_on_wall() const;             ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
 
   /// Returns the correction of `pressure_of` for a force density f, if the ambient flow is a duct flow with this amplitude. `work`: residual work of
@@ -135,7 +136,8 @@ class Tube {
   };
   Leak leak(const Net& f);
 
-  /// Returns the part of (2.42) that is due to the wall and the inlet: the work of the leak with the response `of` to another load.
+  /// Returns the contribution of the wall and the inlet to the correction (2.42). It is the work f^D.leak.velocity - dp leak.flow, where the leak is
+  /// due to one load, and f^D and dp belong to the response `of` to another load.
   double work(const Leak& leak, const Response& of) const;
 
   /// Returns the flow rate if the particle's pressure drop has this value: Q, or the reduced flow rate if the pressure drop is prescribed.

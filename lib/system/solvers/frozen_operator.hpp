@@ -50,7 +50,7 @@ class Corotation {
  public:
   Corotation() = default;
 
-  /// Computes the rotations that map `from` to `to`, control nets of shape (N, 3). `particles` give the rows of each rotation.
+  /// Computes, for each particle, the rotation that maps its rows of `from` best to its rows of `to`. Both are control nets of shape (N, 3).
   Corotation(std::span<const Particle> particles, const Net& from, const Net& to);
 
   Net back(const Net& f) const;    ///< Q^T f

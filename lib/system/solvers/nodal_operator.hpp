@@ -32,7 +32,7 @@ class NodalOperator {
     Eigen::SparseMatrix<double> values;  ///< R, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B
     Eigen::VectorXd areas;               ///< current areas: a control point C is near if |x_C - x_i| < reach sqrt(area_C)
-    surface::Symmetry symmetry;          ///< symmetry of surface and densities; no points if there is none
+    surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 
   /// Computes blocks A_iC of near control points as Layer::assemble does.
