@@ -51,7 +51,7 @@ class Field {
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with those of r to round-off.
+  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with the sums of r to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.

@@ -18,7 +18,7 @@ class MassMatrix {
   /// `order`: Gauss points per direction at degree 3, plus one for each higher degree. `space` must outlive this object.
   explicit MassMatrix(const spline::Space& space, int order = 4);
 
-  /// Returns the matrix of the surface x, valid until the next update. If x equals that of the latest update, nothing is computed.
+  /// Returns the matrix of the surface x, valid until the next update. If x equals the x of the latest update, nothing is computed.
   const Eigen::SparseMatrix<double>& update(const Net& x);
 
   /// Returns the row sums, int N_A dGamma on the surface x, without forming the matrix.

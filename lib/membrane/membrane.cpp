@@ -22,7 +22,7 @@ constexpr int max_gauss = max_order * max_order;
 /// Elements assigned to one caller, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< materials of the groups: those of the surface, then the separated area elasticities
+  std::vector<Material> materials;  ///< materials of the groups: materials of the surface, then the separated area elasticities
   std::vector<Law> whole;           ///< complete law from which tensions are computed, per material
   std::vector<bool> sampled;        ///< whether tensions are evaluated at the Gauss points of a group, per material
   std::vector<Group> groups;

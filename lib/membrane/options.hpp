@@ -22,7 +22,7 @@ struct Options {
   std::optional<double> area_dilatation;   ///< C of Skalak and Evans-Skalak, 1 if not given; empty for other laws
   double global_area_dilatation = 0;        ///< K/G_s of the total area (3.26)
   double leaf_modulus = 0;                  ///< kbar/E_b of the area difference of the leaflets (3.27)
-  std::optional<double> leaf_difference;    ///< stress-free area difference divided by that of a sphere
+  std::optional<double> leaf_difference;    ///< stress-free area difference divided by the area difference of a sphere
   std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin, only for this law
   std::optional<std::string> energy;        ///< Psi/G_s of the law `expression` as a text in I1, I2 and J, only for this law
   std::map<std::string, double> constants;  ///< named constants in `energy`

@@ -12,7 +12,7 @@ namespace tanktread::membrane {
 template <class Number>
 struct ReferencePointOf {
   Number g11, g12, g22;  ///< contravariant metric G^ab
-  Number inverse_det;    ///< 1/|G|
+  Number inverse_det;    ///< 1/|G|, inverse determinant of the covariant metric
   Number area;           ///< Gauss weight times sqrt|G|; zero on idle lanes
 };
 using ReferencePoint = ReferencePointOf<Pack>;

@@ -47,7 +47,7 @@ class WholeMembrane : public Load {
 
  private:
   struct Measure {
-    int degree;                                      // m
+    int degree;                                      // m, degree of homogeneity of Q
     std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts

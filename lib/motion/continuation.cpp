@@ -14,7 +14,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction below this many times the tolerance may be limited by quadrature errors
+constexpr double noise = 30;  // a correction smaller than this multiple of the tolerance may be limited by quadrature errors
 }
 
 void ContinuationOptions::declare(deck::Section& section) {

@@ -8,7 +8,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double margin = 1.1;    // power iteration approaches rho from below
+constexpr double margin = 1.1;    // factor on rho, because power iteration gives a lower bound
 constexpr int lasting_steps = 25;  // number of steps for which a measured stiffness is used
 constexpr int most_stages = 200;
 

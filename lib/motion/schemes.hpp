@@ -24,13 +24,13 @@ std::vector<double> values_of(const Memory& memory) {
   return values;
 }
 
-/// Returns the factor for the next step of a PI controller, between 0.3 and 2. `error` is divided by the tolerance; `previous` is that of the
-/// previous accepted step (0: none); the error scales with the given power of the step. Gustafsson 1991.
+/// Returns the factor between 0.3 and 2 by which a PI controller multiplies the step. `error`: error of the step divided by the tolerance.
+/// `previous`: the same ratio for the previous accepted step, or 0. `power`: power of the step with which the error scales. Source: Gustafsson 1991.
 double step_factor(double error, double previous, int power);
 
-/// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate is of the order of its
-/// own result. The error of a run is the sum of the errors of its steps, whose number grows like tolerance^(-1/(order + 1)). With this fraction the
-/// sum stays proportional to the tolerance (Soderlind & Wang 2006):
+/// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate has the same order as its
+/// result. The error of a run is the sum of the errors of its steps, whose number grows like tolerance^(-1/(order + 1)). With this fraction the sum
+/// stays proportional to the tolerance (Soderlind & Wang 2006):
 ///
 ///   min(1, (tolerance/1e-3)^(1/order))                                                                                            (4.31)
 double step_share(double tolerance, int order);
@@ -66,7 +66,7 @@ class Attempts {
   const TimeOptions& options_;
   State& state_;
   double limit_, proposed_, size_ = 0;
-  double rejected_size_ = 0, rejected_error_ = 0;  // of the previous attempt
+  double rejected_size_ = 0, rejected_error_ = 0;  // size and error of the previous rejected attempt
 };
 
 class Scheme : public Integrator {
@@ -100,10 +100,11 @@ class Rkc2 : public Scheme {
 /// Returns the number of stages that a step dt of RKC2 needs at the stiffness rho (4.8).
 int rkc2_stages(double dt, double rho);
 
-/// Returns the stiffness rho of the system at x, where the velocity is v: the spectral radius of J by power iteration (4.7). The result approaches
-/// rho from below: eight iterations from a random direction, or two from the direction of an earlier call, give at least 0.9 rho. `direction` is the
-/// start and the end of the iteration, normalised to 1. If its size differs from that of x, the iteration starts from pseudo-random numbers that are
-/// the same in every run. An iteration costs one product with the frozen operator, or one velocity evaluation if nothing is assembled.
+/// Returns the stiffness rho of the system at x, where the velocity is v. rho is the spectral radius of J, computed by power iteration (4.7). The
+/// result is a lower bound: eight iterations from a random direction, or two from the direction of an earlier call, give at least 0.9 rho. The
+/// iteration starts from `direction` and stores its last direction there, normalised to 1. If `direction` and x differ in size, the iteration starts
+/// from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one velocity evaluation if
+/// nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
 /// The paper's Crank-Nicolson scheme (P-38), by default with its sub-iteration and its step rule (4.1):

@@ -28,7 +28,7 @@ struct SpectrumOptions {
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< shift for krylov, 1/time
   int block = 3;                   ///< block size for krylov
-  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: that of the shape
+  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: parity of the shape
   double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by R_C
 
   void declare(deck::Section& section);

@@ -93,7 +93,7 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // the coupled system makes its geometry and membrane itself
+    if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is not one of the whole scene
     share_or_make(members, p);

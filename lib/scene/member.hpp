@@ -30,14 +30,14 @@ struct Member {
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  /// Returns the name in checkpoints and messages
+  /// Returns the name of this item of the particle, for checkpoints and messages
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< name of the deck's section
   /// Returns the name of a column in the results
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
-/// Returns what drives a rigid body: its prescribed motion, or its force, weight included, and torque.
+/// Returns the drive of a rigid body: the prescribed motion, or the force (including the weight) and the torque.
 coupling::Rigid rigid(const Scene& scene, const Body& body);
 
 /// Builds all particles of a scene in their resting shapes.
@@ -49,7 +49,7 @@ void follow(Member& member);
 /// Sets blocks, geometries and membranes of all members. Their bodies must exist.
 void arrange(std::vector<Member>& members);
 
-/// Returns all members as one body, whose nets are stacked and whose measures are those of the whole; null if there is only one member.
+/// Returns all members as one body, whose nets are stacked and whose measures refer to all of them together; null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, in a tube if there is one, with only the operators that they need. `all`: their common space and nets.

@@ -55,8 +55,8 @@ std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int
   return at;
 }
 
-/// Subtracts the surfaces themselves from the far sum at the targets that see images only. Nodes are moved into the cell one by one, so that no image
-/// of the far sum is the surface itself for all of them.
+/// Subtracts the surfaces themselves from the far sum at targets to which only images contribute. They cannot be left out of the far sum, because its
+/// nodes are moved into the cell one by one, so that the nodes of one surface may belong to different images.
 void Layer::subtract_itself(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   std::vector<int> rows;

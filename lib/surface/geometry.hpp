@@ -30,7 +30,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 /// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area uses the same points.
 struct Measures {
   double area = 0, volume = 0;
-  Vec3 centroid;        ///< P-42
+  Vec3 centroid;        ///< centroid of the volume (P-42)
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
@@ -125,7 +125,7 @@ class Geometry {
   std::vector<int> all_, all_blocks_;  ///< 0 .. n_elements - 1, 0 .. n_blocks - 1
 };
 
-/// The same measures for a single evaluation.
+/// Computes measures of one control net.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
 

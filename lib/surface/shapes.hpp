@@ -34,9 +34,9 @@ class CubeSphere {
   Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
 };
 
-/// Returns the control points of the unit sphere: those of a smooth cube sphere, after `fits` least-squares fits of the surface to its own radial
-/// image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the projected
-/// cube.
+/// Returns the control points of the unit sphere: the control points of a smooth cube sphere after `fits` least-squares fits of the surface to its
+/// own radial image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the
+/// projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at +1 comes first. `space` is the space of the mesh.
@@ -71,7 +71,7 @@ Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape
 /// Converts the resting shape `net` of one particle into that of another on the same mesh, with another size, position and orientation.
 Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to);
 
-/// Returns the surface of a file, with its centroid moved to the deck's centre and rotated about it.
+/// Returns the surface read from a file. Its centroid is moved to the centre given in the deck, and the surface is rotated about this centre.
 Net imported_shape(const ParticleShape& shape);
 
 }  // namespace tanktread::surface

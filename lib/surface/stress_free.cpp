@@ -85,7 +85,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// Returns the z of `other` whose area to the equator equals that of `one` at the given z.
+/// Returns the height on the meridian `other` that encloses the same area with the equator as the height z on the meridian `one`.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

@@ -101,7 +101,7 @@ class Parity {
  public:
   explicit Parity(const Symmetry& symmetry, const Vec3& of_planes = Vec3::Ones());
 
-  /// Return the factors that convert the vector, or the scalar, at a point's source to that at the point, as Symmetry::signs.
+  /// Return the factors that convert a vector, or a scalar, at the source of a point to the value at the point, like Symmetry::signs.
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
 

@@ -34,7 +34,7 @@ struct TubeWall {
   Eigen::SparseMatrix<double> open_from_periodic;  ///< E: maps control values of a periodic density to those on the space; else empty
 
   double length() const { return end - start; }
-  double radius() const { return outline.radius(); }  ///< R_T
+  double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)
 };
 
 /// Returns the wall of a section over [-length/2, length/2], with the elements and the grading g of the options: the element density is proportional

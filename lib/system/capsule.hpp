@@ -63,7 +63,7 @@ struct CapsuleParameters {
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; no points if there is none
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points: none
 };
 
 /// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):

@@ -29,8 +29,8 @@ class Evaluation {
   const Net& work();                                     ///< dE/dx of all loads minus the virtual work of forces; 0 for rigid bodies
   const std::vector<Net>& load_sums();                   ///< complete sums of the loads
 
-  /// Load of the fluids on the membranes, as control values, per unstressed or per current area, depending on the particle. For a rigid body it is
-  /// the load of equation (2.23), a rigid field with the force and torque on the fluid, and not the traction.
+  /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
+  /// rigid body this is the load df of (2.23), a rigid field with the force and torque on the fluid, and not the traction.
   const Net& load();
 
   const RigidParticles& rigid();                         ///< rigid bodies with their motion at this shape

@@ -75,7 +75,7 @@ class InterfaceMotion {
   bool relaxed_ = false;           // true if any drop relaxes
   double radius_ = std::numeric_limits<double>::infinity();  // R_C of the smallest drop
   std::vector<int> own_elements_;  // rank-owned elements of relaxing drops
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   const VelocityProjection* projection_;
   const membrane::SymmetricSolver &collocation_, &mass_;
   const Ranks& ranks_;

@@ -88,7 +88,7 @@ class ShapeCoordinates {
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;
   surface::Parity parity_;
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
   Net normals_;  // normals of drops at the sites of the projection

@@ -62,14 +62,14 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
 /// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. In a fluid at rest it is R_C per unit of time.
 double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
 
-/// Returns one number per rank, of which only this rank's is set yet; the others are 0.
+/// Returns an array with one number per rank. The number of this rank is `mine`; the numbers of other ranks are 0.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
   std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
   all[static_cast<size_t>(ranks.rank())] = mine;
   return all;
 }
 
-/// Returns the smallest number of the ranks that own blocks.
+/// Returns the smallest of the numbers of the ranks that own blocks.
 double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
   double result = std::numeric_limits<double>::infinity();
   for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);

@@ -27,7 +27,7 @@ class NearField {
   /// its panel if it is an image.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// Lets targets also see images of the panels, which are treated like other surfaces. Must be called before update().
+  /// Includes periodic images of the panels. An image is treated as a different surface. Must be called before update().
   void repeat() { across_gaps_ = true; }
 
   /// Returns the index of the closed surface that contains a panel.

@@ -44,7 +44,7 @@ class OneBodyInverses {
  private:
   struct Factors {
     bool prescribed;
-    Eigen::SparseMatrix<double> sites;  // R
+    Eigen::SparseMatrix<double> sites;  // collocation matrix R
     Eigen::MatrixXd inverse;
   };
   struct Use {
@@ -81,7 +81,7 @@ class FilmInverses {
  private:
   struct Film {
     std::vector<int> sites;         // sites of one body, then of the other
-    DenseFactors one_and_coupling;  // 1 + C
+    DenseFactors one_and_coupling;  // LU factors of 1 + C
   };
   std::vector<Film> films_;
 };

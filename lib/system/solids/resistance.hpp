@@ -85,7 +85,7 @@ class Resistance {
   stokes::Evaluations kernel_evaluations() const;  ///< total since construction
   int last_iterations() const { return last_iterations_; }
   long solver_iterations() const { return iterations_; }
-  void forget_recycled() const;  ///< discards the data that preconditioners `recycled`, including that of the wall, keep from earlier solves
+  void forget_recycled() const;  ///< discards the data that the preconditioners `recycled` of the body and the wall keep from earlier solves
   const Net& surface() const { return surface_; }
 
  private:
@@ -102,11 +102,11 @@ class Resistance {
   Phases& phases_;
   std::vector<int> own_points_;
   stokes::Layer layer_;
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;
   Net flux_, normal_;  // b and c
-  double weight_ = 0;  // s / (b.c)
+  double weight_ = 0;  // factor s / (b.c) of the term c b^T (2.10)
   stokes::Rows<double> rows_;
   Tube* tube_;
   std::optional<stokes::PlaneWall> wall_;

@@ -57,7 +57,7 @@ class RigidParticles {
   void push(const Net& work);
 
   void add_load(Net& load) const;            ///< adds the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< adds the collocation correction of -R^-1 A f/mu on the bodies themselves, f their load (OwnLacking)
+  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of -R^-1 A f/mu, f the load of the body
   void subtract_prescribed(Net& v) const;          ///< subtracts V of the bodies with prescribed motion
   void complete(const Net& w, Net& v) const;  ///< subtracts w, adds <w> if force and torque are given, and adds the collocation correction of
                                               ///< R^-1 D w, in the rows of v
@@ -65,9 +65,9 @@ class RigidParticles {
   void move(Net& v);                         ///< replaces w in the rows of v by V; w is stored
   /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, velocities are those of images in the cell. `enter`: from now on bodies are replaced by images, from which the particles p differ
-  /// by `shifts[p]`, in a flow of this gradient. `carry`: moves the image of body p, if p is a body, back to the body's own centre, and changes its
-  /// velocity accordingly.
+  /// On a lattice, the system is solved for the images of the bodies in the cell. `enter` replaces the bodies by these images: shifts[p] is the
+  /// position of particle p minus the position of its image, and `gradient` is the gradient of the flow. `carry` moves the image of particle p, if it
+  /// is a body, by `along` back to the position of the body, and adds `faster` to its velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -87,7 +87,7 @@ class RigidParticles {
   /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// Returns the collocation correction of the velocity of unit load k on its own body, in the axes at rest (OwnLacking).
+  /// Returns the collocation correction of the velocity that the unit load k on the body induces on the same body, in the axes at rest (OwnLacking).
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.

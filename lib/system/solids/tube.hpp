@@ -26,7 +26,7 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if all particles have the same
+  double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points: none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -41,8 +41,8 @@ struct TubeParameters {
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G are single layers divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is the disturbance of the traction on the wall,
-/// and dp that of the pressure drop between the ends. v_inf is here the duct's flow with any mean velocity, whatever the actual
-/// ambient flow is. Q is its flow rate.
+/// and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the duct with any mean velocity, even if the
+/// ambient flow of the scene is another flow. Q is the flow rate of v_inf.
 ///
 /// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
 /// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
@@ -55,8 +55,8 @@ struct TubeParameters {
 /// the empty duct's flow v_inf per unit pressure drop of a period. It vanishes on the wall, so that the response without it is that of a prescribed
 /// pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on the particle.
 ///
-/// The wall of a channel is fixed in the laboratory frame, and v_inf is that of ChannelFlow. The contribution of v to dp then follows, without f_inf,
-/// from the condition that the flow rate of the disturbance vanishes (2.14).
+/// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
+/// f_inf, from the condition that the disturbance has zero flow rate (2.14).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,

@@ -66,8 +66,8 @@ struct Tube::Particle {
   std::vector<int> own;                                  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
-  Eigen::SparseMatrix<double> collocation;  ///< R
-  membrane::DirectSolver from_sites;        ///< R^-1
+  Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
+  membrane::DirectSolver from_sites;        ///< factored R, to compute control values from values at the sites
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
   std::optional<Period> period;       ///< set in a duct that repeats
@@ -78,7 +78,7 @@ struct Tube::Particle {
   Net sites;                                                       ///< collocation points, in the wall's frame
   Net inlet;                                                       ///< (1/mu) c at the sites
   Net ambient, interpolated_ambient;                               ///< duct flow at the sites; in a channel also its control values
-  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); those of v are empty if lambda = 1
+  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); the weights of v are empty if lambda = 1
   std::vector<int> nearest;                                        ///< nearest site for each target on the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
 
