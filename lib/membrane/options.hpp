@@ -33,12 +33,12 @@ struct Options {
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< area of the weak load: reference (unstressed, 3.7) or current (3.6)
-  std::optional<double> bending_modulus;   ///< E_b, force x length; no bending if neither key is given
+  std::optional<double> bending_modulus;   ///< E_b, force x length; no bending if this and bending_number are not given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
   std::optional<double> spontaneous_curvature;   ///< c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
-  std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), which then has these viscosities
+  std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), whose viscosities are `viscosity`
   PatchForces forces;                            ///< forces that hold or pull the membrane
 
   void declare(deck::Section& section);

@@ -62,7 +62,7 @@ void bending_energy(double modulus, int n, const double* weight, const Pack* c0,
 /// Computes p, the gradient of the bending energy with respect to the jets.
 void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p);
 
-/// Computes p, the Hessian of the bending energy at `jets` times u.
+/// Computes p = H u, where H is the Hessian of the bending energy at `jets`.
 void bending_apply(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, const Pack* u, Pack* p);
 
 /// Computes entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: number of Gauss points.

@@ -26,7 +26,7 @@ struct ContinuationOptions {
   int points = 100;                  ///< largest number of points
   double fold_tolerance = 1e-6;      ///< relative tolerance of the parameter at a fold
   std::optional<std::string> second_parameter;      ///< path of another numerical key, along which the first fold is continued
-  std::optional<std::vector<double>> second_values;  ///< its values in sequence, after the deck's own value
+  std::optional<std::vector<double>> second_values;  ///< values of the second parameter in sequence, after its value in the deck
 
   void declare(deck::Section& section);
 };

@@ -144,7 +144,7 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Bounds the squared distance to the disc's centre by its Bezier coefficients, which also show along which index it bends.
+  /// Sets the bound, corner and bending direction of a piece from the Bezier coefficients of the squared distance to the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

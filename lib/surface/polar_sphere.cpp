@@ -113,7 +113,8 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // Residuals: eps, and its gradient in an orthonormal frame. `slope`: their derivatives with respect to the profile of rows first .. last.
+    // residual: eps, and the gradient of eps in an orthonormal frame. slope: derivatives of `residual` with respect to the profile of rows first ..
+    // last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);

@@ -61,14 +61,15 @@ Vec3 red_cell(const Vec3& on_unit_sphere);
 /// the fit. Lengths refer to the deck's radius.
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
 
-/// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the particle's own axis x_{axis+1}.
+/// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the body-fixed axis x_{axis+1} of the particle.
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
 /// Fits the resting shape `net` of a sphere or ellipsoid again on its current space. Returns any other shape unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
-/// Converts the resting shape `net` of one particle into that of another on the same mesh, with another size, position and orientation.
+/// Converts the resting shape `net` of the particle `from` to the resting shape of the particle `to` on the same mesh. `to` may have another size,
+/// position and orientation.
 Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to);
 
 /// Returns the surface read from a file. Its centroid is moved to the centre given in the deck, and the surface is rotated about this centre.

@@ -50,7 +50,7 @@ Meridian red_cell_meridian(double radius) {
   return {radius, [=](double z) { return radius * half_thickness(z); }, [=](double z) { return radius * slope(z); }};
 }
 
-/// Returns the particle's own axis of revolution, 2 for x3.
+/// Returns the index of the body-fixed axis of revolution of the particle, 2 for x3.
 int axis_of(const ParticleShape& shape) {
   if (shape.shape == "sphere" || shape.shape == "red cell") return 2;
   if (shape.semi_axes) {

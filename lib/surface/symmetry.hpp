@@ -105,7 +105,7 @@ class Parity {
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
 
-  /// Complete fields of this parity from their rows at the fundamental points, as Symmetry::complete.
+  /// Complete fields of this parity from their rows at the fundamental points, like Symmetry::complete.
   void complete(Net& field) const;
   void complete(Eigen::VectorXd& field) const;
 

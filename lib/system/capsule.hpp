@@ -126,7 +126,7 @@ class Capsule : public Dynamics {
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
-  double norm(const Net& displacement) const override;  ///< in a straight tube, without the mean displacement along x1, on which nothing depends
+  double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
   Net symmetric(Net field) const override;
 
   /// Sets the virtual work of forces for all later calls, one row per control point. `contacts`: contact forces, which keep their directions and
@@ -305,7 +305,7 @@ class Capsule : public Dynamics {
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift of the implicit system solved last
   Net flux_, flux_response_;            // b and c of the Jacobian's P; empty if the Jacobian has no P
-  std::vector<Mat3> gradients_;         // velocity gradients at the sites, where last linearised; only if the flow is not affine or in a tube
+  std::vector<Mat3> gradients_;         // velocity gradients at the sites, at the last linearisation; only in a tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;
   std::shared_ptr<Evaluation> latest_;

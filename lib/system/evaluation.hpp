@@ -33,9 +33,9 @@ class Evaluation {
   /// rigid body this is the load df of (2.23), a rigid field with the force and torque on the fluid, and not the traction.
   const Net& load();
 
-  const RigidParticles& rigid();                         ///< rigid bodies with their motion at this shape
-  const Tube::Response& response();                      ///< response of the tube to load and velocity; leaves the tube set to this shape
-  Tube::Checks checks();                                 ///< checks of this response
+  const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
+  const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
+  Tube::Checks checks();                                 ///< returns the checks of the tube's response
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();

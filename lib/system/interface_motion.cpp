@@ -142,7 +142,7 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // in the frame of the initial shape, like A0
+    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, to which A0 refers
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();

@@ -44,9 +44,9 @@ void add_centroid(const Vec3& centroid, Columns& to) {
 /// Returns the cosine of the angle between y and the first direction of the plane.
 double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
 
-/// Returns the site of one element in the first direction of the plane as seen from `from`, by Newton's method from a starting site.
+/// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // the iteration could not leave a pole
+  // Keeps sites inside the element, because the iteration could not leave a pole.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
@@ -273,7 +273,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
                            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
-  const std::vector<int>& sites = body.symmetry.fundamental();  // the other sites are images of these
+  const std::vector<int>& sites = body.symmetry.fundamental();  // all other sites are images of these sites
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);

@@ -90,7 +90,7 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);
 
-/// Returns the site of the surface that is seen from the point `from` in the first direction of the plane.
+/// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest |v.n| at these collocation sites, divided by rate x R_C: zero if the shape is steady. In a tube, v is relative to the axial

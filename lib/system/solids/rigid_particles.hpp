@@ -117,8 +117,8 @@ class RigidParticles {
 
     Rigid given() const;
     RigidMotion mean(const Net& w) const;      // <w>, from w of all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
-    Net field(const RigidMotion& of) const;                             // rows of a rigid field
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // rigid field a + b x r with this integral and moment over the surface
+    Net field(const RigidMotion& of) const;                             // values of a rigid field at the control points of the body
     RigidMotion load() const;                                           // a and b of the force on the fluid
     Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f, f = a + b x r
     Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w, w of all particles
