@@ -100,7 +100,7 @@ struct DirectSolver::Impl {
     Eigen::Index size;
     DirectSolver solver;
   };
-  std::vector<Kind> kinds;  // used instead of all members above if there are equal blocks
+  std::vector<Kind> kinds;  // solvers of equal blocks; if not empty, used instead of the members above
 
   /// Factors one block of each kind if at least half of the blocks are equal to earlier ones. Otherwise does nothing and returns false.
   bool factor_equal_blocks() {

@@ -73,8 +73,8 @@ class Field {
   /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
-  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown, and
-  /// the field is not made symmetric; modes (4.16) are then those of the whole surface.
+  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown. The
+  /// field is then not made symmetric, and modes (4.16) are computed on the whole surface.
   virtual std::vector<std::pair<int, double>> images(const surface::Image&) const { return {}; }
 };
 

@@ -213,7 +213,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 /// The law that the deck selects. It is visited once, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law split in two, whose energies add up to that of the law: the law without its separable area elasticity, and the area elasticity.
+/// A law split into two laws, whose energies add up to the energy of the law: the law without its separable area elasticity, and the area elasticity.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;

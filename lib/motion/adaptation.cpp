@@ -101,7 +101,7 @@ double excess(const surface::Errors& errors, const AdaptationOptions& options) {
 /// Returns the largest length of an element next to a film of this width.
 double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
-/// Returns marks or merges of those of n elements for which wanted(element, direction) holds along s or t.
+/// Returns the marks or merges of n elements: an element is included if wanted(element, direction) holds along s or t.
 template <class Entry, class Wanted>
 std::vector<Entry> collected(std::size_t n, const Wanted& wanted) {
   std::vector<Entry> found;

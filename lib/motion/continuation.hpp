@@ -57,10 +57,10 @@ struct BranchPoint {
 /// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh stays that of the first fold.
 class Branch {
  public:
-  /// Returns the equations at a value of the parameter and of the second one, which is 0 if there is none. Collective.
+  /// Returns the equations at a value of the parameter and of the second parameter. Without a second parameter, the second value is 0. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Transfers shapes to a mesh that fits the last of them better, and changes the family to that mesh. The last shape is steady at this parameter.
+  /// Transfers shapes to a mesh that fits the last shape better, and changes the family to that mesh. The last shape is steady at this parameter.
   /// Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 

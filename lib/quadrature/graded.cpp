@@ -36,7 +36,7 @@ struct Bezier {
     return value;
   }
 
-  /// Returns the planar approximation of a part, and the largest distance of the corners of the part from those of the approximation.
+  /// Returns the planar approximation of a part, and the largest distance between a corner of the part and the same corner of the approximation.
   std::pair<Patch, double> patch(const Part& p) const {
     const auto [x, xs, xt] = at(p.s + p.width / 2, p.t + p.height / 2);
     const Patch flat{x, xs * p.width / 2, xt * p.height / 2};

@@ -56,7 +56,7 @@ struct Account {
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
 /// Returns the newest undamaged checkpoint of a directory. The first rank finds it, and every other rank reads the same file. Throws UserError if
-/// there is none, RunFailure if one cannot be read. Collective.
+/// there is no checkpoint, RunFailure if a checkpoint cannot be read. Collective.
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks);
 
 /// Returns the effective deck from the newest checkpoint of a directory. Throws like newest_checkpoint. Collective.
@@ -74,7 +74,7 @@ class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
-  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is none.
+  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is no checkpoint.
   std::optional<Resumed> resumed();
 
   /// Sets the body of the next snapshots, and its Bezier extraction.

@@ -1,5 +1,5 @@
 #pragma once
-// Registry of parts (loads, fields, flows, series) that a program adds to those of the library.
+// Registry of parts (loads, fields, flows, series) that a program adds to the parts of the library.
 
 #include <functional>
 #include <span>

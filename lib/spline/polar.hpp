@@ -28,7 +28,7 @@ struct PolarMesh {
 
 /// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth v
 /// in elements, and distance from the axis divided by the distance of its row. With `c1`, the three control points of a pole replace row 1 of the
-/// tensor net, at distances from the axis other than that of row 1.
+/// tensor net, at other distances from the axis than row 1.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };

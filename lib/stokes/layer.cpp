@@ -288,8 +288,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the weights of a rule on panel e, including area. If the panel contains the target and the area is that of the unstressed surface, the
-/// weights are cached.
+/// Returns the weights of a rule on panel e, including area. If the panel contains the target and areas refer to the unstressed surface, the weights
+/// are cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;

@@ -110,7 +110,7 @@ void Layer::place_rest(const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the present moments, x_p the mean of the nodes of surface p.
+/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the current moments of f. x_p is the mean of the nodes of surface p.
 Vec3 Layer::pressure_along() const {
   const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
   const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };

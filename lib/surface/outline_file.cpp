@@ -72,7 +72,7 @@ class File {
   std::vector<Row> rows_;
 };
 
-/// Returns the spline through n + 1 points from rows[first] on (n of them if closed), parametrised by chord length.
+/// Returns the spline through n + 1 points from rows[first] on (n points if closed), parametrised by chord length.
 CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, bool closed) {
   std::vector<double> breaks{0};
   std::vector<Vec2> points{rows[first].x};

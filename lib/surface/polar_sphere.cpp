@@ -83,7 +83,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // a single point stays on the axis
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the single point at a pole stays on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }

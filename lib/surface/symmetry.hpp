@@ -80,8 +80,8 @@ class Symmetry {
 /// wall. `keeps` is called before the elements are compared; it receives the images of the points.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
-/// One element of each orbit, the one with most fundamental points, in ascending order. Its weight is 1 divided by the number of images, identity
-/// included, that map it onto itself.
+/// One element of each orbit of elements, in ascending order: the element with most fundamental points. The weight of an element is 1 divided by the
+/// number of images, including the identity, that map the element onto itself.
 struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;

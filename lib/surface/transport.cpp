@@ -81,7 +81,7 @@ struct Sums {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
-  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // round-off must not decide on a side
+  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // points this close are in the plane
   const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {
     const auto [low, high] = hull(places[e], 1);

@@ -82,7 +82,7 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // v - W - w at the sites where u is evaluated; M0^{-1} dE1/dx at the collocation sites
+    Net x, rest, density;  // rest: v - W - w at the sites where u is evaluated; density: M0^{-1} dE1/dx at the collocation sites
   };
   Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
   Net x_, flux_, normals_;  // values where the system was linearised

@@ -94,7 +94,7 @@ class ShapeCoordinates {
   Net normals_;  // normals of drops at the sites of the projection
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
   Net state_;                           // state y relative to which add_fields() defines changes
-  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the part of a state after its control net, one column each
+  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the field coefficients of a state, one column each
 };
 
 }  // namespace tanktread::coupling

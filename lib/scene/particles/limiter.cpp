@@ -70,7 +70,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// Returns the contact of the same pair less than half an element away, or null.
+/// Returns the known contact of the pair that is less than half an element away; null if there is no such contact.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));

@@ -36,8 +36,8 @@ class ImageSum {
   /// the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
-  /// Returns the sum over a few nodes, starting with node `first`, at one target. It is subtracted when a better rule replaces these nodes.
-  /// `carried`: strengths of these nodes.
+  /// Returns the sum over a few nodes, starting with node `first`, at one target. The caller subtracts this sum if a better rule replaces the nodes.
+  /// `carried`: source strengths of these nodes.
   Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum

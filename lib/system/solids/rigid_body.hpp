@@ -143,7 +143,7 @@ class FreeBodyInTube : public LoneRigidBody {
   double viscosity_;
   Krylov krylov_;
   double tolerance_;
-  mutable Net place_;  // latest position, its solution, and the unknowns of its linear system
+  mutable Net place_;  // latest position, the solution at this position, and the unknowns of the linear system
   mutable Solution solution_;
   mutable Eigen::VectorXd unknowns_;
   mutable long iterations_ = 0;

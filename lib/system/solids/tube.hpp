@@ -72,7 +72,8 @@ class Tube {
   /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body it is -1, and `v` is w of (2.23).
+  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body the contrast is -1, and the argument `v`
+  /// of other functions is w of (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
@@ -86,7 +87,7 @@ class Tube {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< f^D, control values on the wall
     double pressure_drop = 0;
-    Net load, moves;  ///< f and v, only in a duct that repeats
+    Net load, moves;  ///< load f and velocity v of the particle, only in a duct that repeats
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: known correction of the pressure drop.
@@ -175,9 +176,9 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall's traction; these and the next two lines are computed at first use
-  Net flow_of_wall_;  // weights of a velocity on the wall, for the flow rate through the inlet of the traction that cancels it
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of c times mu; with the wall's response
+  Net flow_weights_, force_weights_;  // weights of the wall's traction; computed at first use, like the next three members
+  Net flow_of_wall_;  // weights of a velocity on the wall: give the flow rate through the inlet due to the traction that cancels the velocity
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of mu c; of mu c and the wall's response
 };
 
 }  // namespace tanktread::coupling

@@ -48,8 +48,8 @@ struct Tube::Particle {
   /// duct that repeats. Empty nets are skipped.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Velocities caused by f and v in a duct that repeats, rank-owned rows only: at the wall's targets by the particle and its images, and at the
-  /// collocation points only by its images. Empty nets are skipped.
+  /// Velocities that the load f and the velocity v of the particle cause in a duct that repeats, for rank-owned rows. At the targets on the wall,
+  /// both the particle and its images contribute. At the collocation points of the particle, only the images contribute. Empty nets are skipped.
   struct Cause {
     Net at_wall, at_sites;
   };
@@ -73,7 +73,7 @@ struct Tube::Particle {
   std::optional<Period> period;       ///< set in a duct that repeats
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
-  Net shape;                                                       ///< in the wall's frame
+  Net shape;                                                       ///< net of the particle in the frame of the wall
   double centroid = 0;                                             ///< position along x1 of the origin of that frame
   Net sites;                                                       ///< collocation points, in the wall's frame
   Net inlet;                                                       ///< (1/mu) c at the sites

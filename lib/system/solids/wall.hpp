@@ -59,8 +59,8 @@ class WallPatches {
 /// control values per site. A constant pressure q n produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
-  /// Collective. `phases`: if given, records the time of exchanges, including those of `apply`; must outlive this object. `solver`: "factored",
-  /// "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
+  /// Assembles and factors the operator. Collective. `phases`: if given, records the time of exchanges, also in `apply`; must outlive this object.
+  /// `solver`: "factored", "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
        const surface::Symmetry& symmetry = surface::Symmetry(), const std::string& solver = "factored");
 
