@@ -263,7 +263,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the same rule as for the rest
+  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the rule of the other terms
 
   friend bool operator==(const Material&, const Material&) = default;
 };

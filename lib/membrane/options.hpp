@@ -27,9 +27,9 @@ struct Options {
   std::optional<std::string> energy;        ///< Psi/G_s of the law `expression` as a text in I1, I2 and J, only for this law
   std::map<std::string, double> constants;  ///< named constants in `energy`
   std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
-  std::optional<double> reduced_volume;    ///< reduced volume of the stress-free spheroid, only for it
+  std::optional<double> reduced_volume;    ///< reduced volume of a stress-free spheroid; only for that shape
   std::optional<std::string> stress_free_file;
-  int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the same rule as for the rest
+  int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the rule of the other terms
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< area of the weak load: reference (unstressed, 3.7) or current (3.6)

@@ -19,7 +19,7 @@ class ExpressionParser {
       : what_(what), text_(text), constants_(constants), energy_(energy) {}
 
   void parse() {
-    constexpr std::size_t longest = 2000;  // a longer text might exceed the stack
+    constexpr std::size_t longest = 2000;  // largest number of characters; a longer text might exceed the stack
     if (text_.size() > longest)
       throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();

@@ -17,7 +17,7 @@ namespace tanktread::motion {
 
 /// Options of the continuation, `Continuation/*` of the deck.
 struct ContinuationOptions {
-  bool present = false;              ///< whether the deck has this section
+  bool present = false;              ///< true if the deck has this section
   std::string parameter;             ///< path of a numerical key of the deck
   double to = 0;                     ///< value of the parameter at which the branch ends
   std::string method = "arclength";  ///< arclength, natural
@@ -113,7 +113,7 @@ class Branch {
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
   std::vector<Solved> last_;  // up to three points, latest last
-  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, and whether each is a fold
+  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds of the second parameter
   double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
   std::size_t values_ = 0;        // number of its values reached

@@ -22,7 +22,7 @@ namespace tanktread::motion {
 
 /// Options of the search for periodic motions, `Periodic/*` of the deck.
 struct PeriodicOptions {
-  bool present = false;       ///< whether the deck has this section
+  bool present = false;       ///< true if the deck has this section
   double period = 0;          ///< expected period
   double turn = 0;            ///< rotation of the shape about x2 after a period, degrees
   double tolerance = 1e-5;    ///< tolerance of the distance between start and return, in the norm of `Time/tolerance`

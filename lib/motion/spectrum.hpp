@@ -22,7 +22,7 @@ namespace tanktread::motion {
 
 /// Options of the linear stability analysis, `Spectrum/*` of the deck.
 struct SpectrumOptions {
-  bool present = false;            ///< whether the deck has this section
+  bool present = false;            ///< true if the deck has this section
   int number = 12;                 ///< number of modes to report
   std::optional<double> near;      ///< rate near which modes are reported, 1/time; empty: the fastest-growing modes are reported
   std::string method = "dense";    ///< dense, krylov

@@ -19,7 +19,7 @@ namespace tanktread::motion {
 
 /// Options of the search for steady shapes, `Steady/*` of the deck.
 struct SteadyOptions {
-  bool present = false;             ///< whether the deck has this section
+  bool present = false;             ///< true if the deck has this section
   std::string method = "anderson";  ///< anderson, newton-krylov
   double tolerance = 1e-8;          ///< tolerance of the estimated error of the shape (4.32), in the norm of `Time/tolerance`
   int iterations = 100;             ///< largest number of iterations

@@ -24,10 +24,10 @@ namespace tanktread {
 /// Options of the command line, and the deck.
 struct RunRequest {
   std::string output;           ///< directory of the results
-  bool resume = false;          ///< resume from the newest checkpoint there
-  bool overwrite = false;       ///< delete the results of an earlier run there first
+  bool resume = false;          ///< true to resume from the newest checkpoint in the directory
+  bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
-  bool quiet = false;           ///< no progress bar
+  bool quiet = false;           ///< true to show no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };

@@ -50,7 +50,7 @@ class ExtendedMesh {
   struct Trace {  // extensions of one T-junction
     int missing = 0;
     std::vector<Ray> vertices;  // vertices on the extensions, with the slot in the direction of the extension
-    std::vector<bool> face;     // for each of `vertices`, true if it is on the face extension
+    std::vector<bool> face;     // true for the elements of `vertices` on the face extension
     std::vector<Ray> edges;
   };
   struct Passing {  // extension that passes a vertex

@@ -35,7 +35,7 @@ struct Lattice {
   std::vector<std::array<std::uint8_t, 4>> slot;  ///< slot at corner k of each cell that points to corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3
-  std::vector<std::uint8_t> is_extraordinary;  ///< whether each vertex is extraordinary
+  std::vector<std::uint8_t> is_extraordinary;  ///< for each vertex, nonzero if it is extraordinary
 
   std::vector<std::array<int, 4>> point_at;  ///< index in `extraordinary` of the point at corner 0 .. 3 of each macro face, or -1
 

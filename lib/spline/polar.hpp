@@ -83,7 +83,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 struct PolePiece {
   double from = 0, to = 1;     ///< range of v of the triangle that contains the piece
   Corners corners;             ///< corners of the piece in this triangle
-  Eigen::MatrixXd conversion;  ///< matrix from Bezier points of the degenerate element to those of the piece; shape (16, 16)
+  Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
   /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.
   std::optional<std::array<double, 2>> local(double u, double v) const;

@@ -170,7 +170,7 @@ class OutlineSearch {
   const Patches& surface_;
   const Outline& outline_;
   std::vector<ElementPart> pieces_;  // a heap
-  Eigen::MatrixXd products_;   // for the degree last used
+  Eigen::MatrixXd products_;   // products() for the degree used last
   Clearance best_;
 };
 

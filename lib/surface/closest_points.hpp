@@ -23,7 +23,7 @@ class ElementBoxes {
  public:
   struct Box {
     Eigen::Array3d low, high;
-    int first, last;    ///< its elements: element(first) .. element(last - 1)
+    int first, last;    ///< elements in the box: element(first) .. element(last - 1)
     int child[2] = {};  ///< children of a box with several elements
   };
 

@@ -40,7 +40,7 @@ bool distinct(double longer, double shorter, double volume);
 
 /// Semi-axes of the ellipsoid with the same second moments (6.1).
 struct PrincipalAxes {
-  Vec3 lengths = Vec3::Zero();     ///< in descending order
+  Vec3 lengths = Vec3::Zero();     ///< lengths of the semi-axes in descending order
   Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along the semi-axes; the first nonzero component of each is positive
   bool longest_defined = false;    ///< the longest and the middle semi-axis are distinct
   bool shortest_defined = false;   ///< the middle and the shortest semi-axis are distinct

@@ -26,7 +26,7 @@ struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
-  bool onwards = false, backwards = false;  // whether a piece moves along the curve, or against it
+  bool onwards = false, backwards = false;  // true if a piece moves along the curve; true if a piece moves against it
 
   /// Adds the piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {

@@ -56,7 +56,7 @@ struct Work {
 /// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
-  std::vector<Particle> particles{1};                            ///< in stacking order; the space of a single particle need not be set
+  std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
   bool strong_load = false;                                      ///< true: load (P-3) at the collocation sites instead of (3.5)
   VolumeOptions volume;
   SolverOptions solvers;

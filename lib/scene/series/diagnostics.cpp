@@ -52,7 +52,7 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // at a pole one of the derivatives may be exactly zero
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // true at a pole, where a derivative may be exactly zero
     site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
     site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
   }
@@ -159,7 +159,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // the columns of a single particle have the same names
+  const bool only = scene.particles.empty();  // true for a single particle, whose columns have the same names
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);

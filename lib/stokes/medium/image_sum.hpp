@@ -52,8 +52,8 @@ class ImageSum {
   Kind kind_;
   PlaneWall wall_;
   std::optional<TreeSum> tree_;
-  std::vector<double> node_[3];  // in the wall's axes
-  std::vector<Vec3> targets_;    // in the laboratory frame
+  std::vector<double> node_[3];  // far nodes in the axes of the wall
+  std::vector<Vec3> targets_;    // targets in the laboratory frame
   std::vector<int> wanted_;
   bool placed_ = false;          // true if the targets were set since the nodes were
   long long interactions_ = 0;

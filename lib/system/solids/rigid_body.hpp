@@ -75,7 +75,7 @@ class LoneRigidBody : public Dynamics {
   Net surface_;
   Vec3 centre_;
   double radius_;
-  stokes::AmbientFlow flow_;  // at the time set last
+  stokes::AmbientFlow flow_;  // flow at the time set last
   Rigid driven_;
 
  private:

@@ -105,7 +105,7 @@ class RigidParticles {
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // of the surface: force and torque integrals of the six rigid motions
+    Eigen::Matrix<double, 6, 6> inertia;  // integrals over the surface: forces and torques of the six rigid motions as loads
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;

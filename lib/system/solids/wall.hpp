@@ -91,7 +91,7 @@ class Wall {
 
   const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
   stokes::Layer& layer() { return layer_; }             ///< layer of the wall at points off it, for control values on its space
-  const stokes::Cap& inlet() const { return *inlet_; }  ///< only of an open wall
+  const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a wall that repeats
 
   /// Returns the lattice of a wall that repeats; not set for an open wall.
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
