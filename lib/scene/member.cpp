@@ -145,7 +145,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // one measure for all is cheaper; for rigid bodies all are equal
+  for (coupling::Particle& one : parameters.particles)  // one measure for all is cheaper; for rigid bodies all measures are equal
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

@@ -30,9 +30,9 @@ struct Member {
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  /// Returns the name of this item of the particle, for checkpoints and messages
+  /// Returns the name under which an item of this particle is stored or reported
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< name of the deck's section
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
   /// Returns the name of a column in the results
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };

@@ -85,7 +85,7 @@ struct ContactOptions {
   bool limiter = false;  ///< true if forces between the particles keep the gaps at this limit
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by R_C; the run ends if a gap is smaller
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of `limit`; the run ends if a gap is smaller
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;

@@ -27,7 +27,7 @@ struct TileFunctions {
   Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
   std::vector<int> irregular;         ///< corner of each tile that is at an extraordinary point, or -1
-  std::vector<Contribution> entries;  ///< contributions on regular tiles, by ascending anchor; functions on irregular tiles are no tensor products
+  std::vector<Contribution> entries;  ///< on regular tiles, by ascending anchor; functions on irregular tiles are no tensor products
   std::vector<Knots> knots;           ///< knots of each anchor
 };
 TileFunctions tile_functions(const TMesh& mesh);

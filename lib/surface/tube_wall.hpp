@@ -31,7 +31,7 @@ struct TubeWall {
   std::vector<spline::Site> middles;               ///< midpoints of the elements of densities
   std::vector<int> middle_of;                      ///< index in `middles` for each element of the space
   double period = 0;                               ///< period L along x1; 0 for an open wall with two ends
-  Eigen::SparseMatrix<double> open_from_periodic;  ///< E: maps control values of a periodic density to control values on the space; else empty
+  Eigen::SparseMatrix<double> open_from_periodic;  ///< E: control values of a periodic density to control values on the space; else empty
 
   double length() const { return end - start; }
   double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)

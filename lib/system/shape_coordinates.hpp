@@ -58,7 +58,7 @@ class ShapeCoordinates {
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates, or the change of a state
   Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of the field with these control values, or of the change of a state
   bool admits(const Net& field) const;                  ///< true if the field nearly has the symmetry of the coordinates
-  Net admitted(Net field) const;                        ///< field with the symmetry of the coordinates and these values at fundamental points
+  Net admitted(Net field) const;                        ///< field with the symmetry of the coordinates, equal at fundamental points
 
  private:
   struct Coordinate {

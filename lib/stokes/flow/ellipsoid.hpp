@@ -16,13 +16,13 @@ struct Ellipsoid {
   /// Returns the force that the body exerts on the fluid when it translates with U: F_i = 16 pi mu U_i / (chi + alpha_i a_i^2).
   Vec3 force(double viscosity, const Vec3& velocity) const;
 
-  /// Returns the torque that the body exerts on the fluid when it rotates with omega: T_3 = (16 pi mu/3)(a^2 + b^2) omega_3 / (a^2 alpha_1 + b^2
-  /// alpha_2), cyclic.
+  /// Returns the torque that the body exerts on the fluid when it rotates with omega:
+  /// T_3 = (16 pi mu/3)(a^2 + b^2) omega_3 / (a^2 alpha_1 + b^2 alpha_2), cyclic.
   Vec3 torque(double viscosity, const Vec3& angular_velocity) const;
 
-  /// Returns the force per area that the body exerts on the fluid at a point x of the surface, with h = (sum x_i^2/a_i^4)^(-1/2) = n.x: f = h/(4 pi
-  /// abc) (F + 3 (K omega) x x), where K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. As Jeffery found, the second part has the moment of a uniform
-  /// stress. Its antisymmetric part is the torque; its symmetric part follows from the torque by the reciprocal theorem.
+  /// Returns the force per area that the body exerts on the fluid at a point x of the surface, with h = (sum x_i^2/a_i^4)^(-1/2) = n.x:
+  /// f = h/(4 pi abc) (F + 3 (K omega) x x), where K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. As Jeffery found, the second part has the moment of a
+  /// uniform stress. Its antisymmetric part is the torque; its symmetric part follows from the torque by the reciprocal theorem.
   Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const;
 
   /// Returns the point of the surface in the direction of x, and below the outward unit normal there.

@@ -109,10 +109,12 @@ class Tube {
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
-  const Net& inlet_on_particle() const;  ///< c on the particle; in a duct that repeats, v_inf of the empty duct per unit pressure drop of a period
-  const Net& ambient() const;            ///< v_inf at the collocation points, with amplitude 1
-  Net inlet_on_wall() const;             ///< c on the wall
-  double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
+
+  /// Returns c on the particle. In a duct that repeats, this is v_inf of the empty duct per unit pressure drop of a period.
+  const Net& inlet_on_particle() const;
+  const Net& ambient() const;                           ///< v_inf at the collocation points, with amplitude 1
+  Net inlet_on_wall() const;                            ///< c on the wall
+  double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
   /// Returns the correction of `pressure_of` for a force density f, if the ambient flow is a duct flow with this amplitude. `work`: residual work of
   /// the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the points of

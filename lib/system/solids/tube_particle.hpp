@@ -73,13 +73,13 @@ struct Tube::Particle {
   std::optional<Period> period;       ///< set in a duct that repeats
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
-  Net shape;                                                       ///< net of the particle in the frame of the wall
-  double centroid = 0;                                             ///< position along x1 of the origin of that frame
-  Net sites;                                                       ///< collocation points, in the wall's frame
-  Net inlet;                                                       ///< (1/mu) c at the sites
-  Net ambient, interpolated_ambient;                               ///< duct flow at the sites; in a channel also its control values
-  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); the weights of v are empty if lambda = 1
-  std::vector<int> nearest;                                        ///< nearest site for each target on the wall
+  Net shape;                                   ///< net of the particle in the frame of the wall
+  double centroid = 0;                         ///< position along x1 of the origin of that frame
+  Net sites;                                   ///< collocation points, in the wall's frame
+  Net inlet;                                   ///< (1/mu) c at the sites
+  Net ambient, interpolated_ambient;           ///< duct flow at the sites; in a channel also its control values
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of f and v in (2.7); the weights of v are empty if lambda = 1
+  std::vector<int> nearest;                    ///< nearest site for each target on the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
 
   struct Frozen {

@@ -128,8 +128,8 @@ class Wall {
   Net flow_of_forces(const Net& at) const;
 
   /// Returns the flow rate that a double layer of unit strength at a point with normal n causes, one component per axis of the strength. In an open
-  /// wall this is the flow rate through the inlet. In a wall that repeats, the strengths must have no flux, and the result is (x1 n - ((n.rho) e1 +
-  /// n1 rho)/2)/L (2.45).
+  /// wall this is the flow rate through the inlet. In a wall that repeats, the strengths must have no flux, and the result is
+  /// (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Returns the bounding boxes of the elements of a channel wall, to compute distances.
@@ -159,7 +159,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;                       // only of a wall that repeats: traction w n of a constant pressure w, at the sites; int N_A n dG
+  Net pressure_, flux_;  // only of a wall that repeats: traction w n of a constant pressure w, at the sites; int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // layer of the wall at the targets
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
