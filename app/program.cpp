@@ -279,7 +279,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     }
     const int code = run(arguments, registry, speaks);
     const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
-                        !arguments.new_deck.empty();  // a run is not among these, because its output is files
+                        !arguments.new_deck.empty();  // a run is not listed, because a run writes its output to files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

@@ -367,8 +367,8 @@ class Run {
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
-  bool adapting_ = false;     // whether the latest step has reached the adaptation of its mesh
-  bool interrupted_ = false;  // whether a step was interrupted and discarded
+  bool adapting_ = false;     // true if the latest step has reached the adaptation of the mesh
+  bool interrupted_ = false;  // true if a step was interrupted and discarded
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;
   struct Pictured {

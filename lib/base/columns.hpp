@@ -25,7 +25,7 @@ struct Column {
 /// deck, so that every row has the same columns.
 class Columns {
  public:
-  /// If `every`, `when` is always true, so that the columns of all decks are listed.
+  /// `every`: if true, `when` always returns true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
   /// Returns whether to add a column that has this condition.

@@ -34,7 +34,7 @@ inline void require_none(std::vector<std::string> mistakes) {
 /// Collects sentences about choices that contradict each other. They are added by the classes that know the reasons.
 class Rejections {
  public:
-  /// Adds a sentence if both choices are made.
+  /// Adds a sentence if both choices are made, which contradict each other. `why`: reason, appended to the sentence.
   void pair(bool both, const std::string& one, const std::string& other, const std::string& why) {
     if (both) sentences_.push_back(one + " and " + other + " contradict each other: " + why + ".");
   }

@@ -9,7 +9,7 @@
 namespace tanktread {
 namespace {
 
-constexpr std::array<const char*, 3> names{"baseline", "avx2", "avx512"};  // in the order of InstructionSet
+constexpr std::array<const char*, 3> names{"baseline", "avx2", "avx512"};  // names in the order of InstructionSet
 
 InstructionSet widest() {
 #ifdef SEVERAL_INSTRUCTION_SETS

@@ -16,7 +16,7 @@ class Phases {
  public:
   struct Phase {
     std::string name;
-    double seconds = 0;  ///< wall clock, inner phases not included
+    double seconds = 0;  ///< wall-clock time without the time of inner phases
     long calls = 0;
   };
 

@@ -59,7 +59,7 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Returns whether the time of the expectation is not after the end of the run. If so, the expectation does not depend on the final time.
+  /// Returns whether the expectation is evaluated at a time `at` that is not after the end of the run. If so, it does not depend on the final time.
   bool before_end(const Teuchos::ParameterList& expectation) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

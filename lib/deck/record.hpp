@@ -30,7 +30,7 @@ struct List {
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
-  bool alike = false;                               ///< whether inner sections share keys by `like` and `defaults`
+  bool alike = false;                               ///< true if inner sections share keys by `like` and `defaults`
   std::vector<std::string> mentioned;               ///< names that are allowed here but not declared
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null for a section of this program
 

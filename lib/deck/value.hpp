@@ -25,7 +25,7 @@ std::string description(const Teuchos::ParameterEntry& entry);
 /// Returns a parameter list as YAML, indented by `depth` steps.
 std::string yaml_text(const Teuchos::ParameterList& list, int depth);
 
-/// Merges `over` into `base`, key by key. Values of `over` replace those of `base`.
+/// Merges `over` into `base`, key by key. Values of `over` replace values of `base`.
 void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over);
 
 /// Checks a section for another library against the parameters that this library accepts (its getValidParameters()). Throws UserError at the first

@@ -33,10 +33,11 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
 /// an empty text if the distance is larger than a third of the length of `given`, and larger than 1.
 std::string guess(const std::string& given, const std::vector<std::string>& candidates);
 
-/// Returns the path of the key that is probably meant by an unknown name, `Time/final time` for `tend`; empty if there is none.
+/// Returns the path of the key that is probably meant by an unknown name, for example `Time/final time` for `tend`; empty if no key is similar.
 std::string synonym(const std::string& name);
 
-/// Returns why the key at this path does not exist: a sentence without its full stop on what this program does not compute; empty if unknown.
+/// Returns the reason why there is no key at this path: a sentence, without its full stop, that names the feature that this program lacks. Returns an
+/// empty text if no reason is known.
 std::string missing_feature(const std::string& path);
 
 }  // namespace tanktread::deck

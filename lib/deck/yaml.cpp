@@ -20,7 +20,7 @@ namespace tanktread::deck {
 namespace {
 
 constexpr int most_levels = 20;              // nesting depth of sections
-constexpr std::size_t most_nodes = 100'000;  // keys and values; those of an alias count each time it is used
+constexpr std::size_t most_nodes = 100'000;  // limit on keys and values; an alias counts each time it is used
 constexpr std::size_t longest_key = 100;     // characters
 
 template <class Number>

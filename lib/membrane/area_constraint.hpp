@@ -34,8 +34,8 @@ class AreaConstraint {
   /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves x by two steps until t(x) is close to t(`like`); the remaining difference is of second order in the initial one. P is formed with `time`.
-  /// Afterwards D and t are those of the new x.
+  /// Moves x by two steps so that t(x) is close to t(`like`). The remaining difference is of second order in the initial difference. P is formed with
+  /// `time`. Afterwards D and t refer to the new x.
   void bring(Net& x, const Net& like, double time);
 
  private:

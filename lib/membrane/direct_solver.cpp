@@ -27,11 +27,12 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 
-// Number of rows up to which the explicit inverse is stored and multiplied by. For these sizes the overhead of Amesos2 per solve (maps, import of
-// several columns) exceeds the cost of the product. Measured with the mass and collocation matrices of spheres.
+// Number of rows up to which the explicit inverse is stored. A solve is then a product with the inverse. For these sizes the overhead of Amesos2 per
+// solve (maps, import of several columns) exceeds the cost of the product. Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Number of rows from which iteration is as fast as substitution, and its setup takes a small part of the time. Measured with the same matrices.
+// Number of rows from which iteration is as fast as substitution and the setup of the iteration takes a small part of the time. Measured with the
+// mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_iterating = 5000;
 
 /// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.
@@ -99,7 +100,7 @@ struct DirectSolver::Impl {
     Eigen::Index size;
     DirectSolver solver;
   };
-  std::vector<Kind> kinds;  // used instead of all members above if there are equal blocks
+  std::vector<Kind> kinds;  // solvers of equal blocks; if not empty, used instead of the members above
 
   /// Factors one block of each kind if at least half of the blocks are equal to earlier ones. Otherwise does nothing and returns false.
   bool factor_equal_blocks() {

@@ -42,7 +42,7 @@ class Field {
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
 
-  /// Stores the shape for solve(), in addition to what linearise() stores. May replace the state set last.
+  /// Stores the shape x for solve(), in addition to the state that linearise() has stored. May replace the state that was set last.
   virtual void freeze(const Net& /*x*/) {}
 
   /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.
@@ -51,7 +51,7 @@ class Field {
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with those of r to round-off.
+  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with the sums of r to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.
@@ -73,8 +73,8 @@ class Field {
   /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
-  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown, and
-  /// the field is not made symmetric; modes (4.16) are then those of the whole surface.
+  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown. The
+  /// field is then not made symmetric, and modes (4.16) are computed on the whole surface.
   virtual std::vector<std::pair<int, double>> images(const surface::Image&) const { return {}; }
 };
 

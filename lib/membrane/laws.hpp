@@ -46,7 +46,7 @@ struct NeoHookean {
 /// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening. C sets the resistance to area changes. (3.3)  P-8
 struct Skalak {
   double shear_modulus = 1;
-  double area_dilatation = 1;  ///< C
+  double area_dilatation = 1;  ///< C, dimensionless resistance to area changes
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -67,7 +67,7 @@ struct Skalak {
 /// neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
 struct MooneyRivlin {
   double shear_modulus = 1;
-  double share = 1;  ///< m
+  double share = 1;  ///< m, fraction of the neo-Hookean term
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -150,10 +150,11 @@ struct UserLaw {
   friend bool operator==(const UserLaw&, const UserLaw&) = default;
 };
 
-/// Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2: the springs of a MaxwellElement (3.23), with separate shear and dilatation, per current area.
+/// Energy density of the springs of a MaxwellElement, Psi = G/2 (I1 + 2 - 2 J_s) + K/2 J_s (J_s - 1)^2, with separate terms for shear and dilatation.
+/// Psi is an energy per stress-free area, and Psi/J_s is the integrand of (3.23), an energy per current area.
 struct MaxwellSpring {
   double shear_modulus = 1;     ///< G, force per length
-  double dilatation_modulus = 0;  ///< K
+  double dilatation_modulus = 0;  ///< K, force per length
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -174,7 +175,7 @@ struct MaxwellSpring {
 
 /// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
 struct SurfaceTension {
-  double tension = 1;  ///< sigma
+  double tension = 1;  ///< sigma, force per length
 
   template <class Number>
   Number energy(const Number&, const Number& i2) const {
@@ -212,7 +213,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 /// The law that the deck selects. It is visited once, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law split in two, whose energies add up to that of the law: the law without its separable area elasticity, and the area elasticity.
+/// A law split into two laws, whose energies add up to the energy of the law: the law without its separable area elasticity, and the area elasticity.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;
@@ -252,7 +253,7 @@ struct Bending {
 /// It is the Boussinesq-Scriven law; Barthes-Biesel & Sgaier, J. Fluid Mech. 160, 1985.
 struct SurfaceViscosity {
   double shear = 0;        ///< eta_s, viscosity x length
-  double dilatational = 0;  ///< kappa_s
+  double dilatational = 0;  ///< kappa_s, viscosity x length
 
   bool any() const { return shear > 0 || dilatational > 0; }
   friend bool operator==(const SurfaceViscosity&, const SurfaceViscosity&) = default;
@@ -262,7 +263,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the same rule as for the rest
+  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the rule of the other terms
 
   friend bool operator==(const Material&, const Material&) = default;
 };

@@ -33,19 +33,20 @@ struct SurfaceValues {
 /// Linear conditions c.(U, W) = 0 on a rigid motion with velocity U and angular velocity W, one condition c per row.
 using RigidConditions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-/// A load on the membrane, given by an energy E(x) of the control net x, shape (N, 3), or by a virtual work -dE/dx of a force whose energy the
-/// membrane does not store. It is added to the virtual work (3.5) of the membrane. Work and products have the shape (N, 3); work is a force.
+/// Load on the membrane, added to the virtual work (3.5) of the membrane. A load is given by dE/dx, where x is the control net, shape (N, 3). Either
+/// E(x) is an energy that the membrane stores, or -dE/dx is the virtual work of an external force. dE/dx (a force) and the product (d2E/dx2) dx have
+/// the shape (N, 3).
 ///
-/// Each is evaluated in two phases. In the local phase, a rank adds what its elements contribute to their control points. In the global phase, every
-/// rank adds the same terms to all points. Between the phases the caller sums over ranks and, if the scene is symmetric, over images. Nets that must
-/// be complete for the global phase, such as the gradient of the total area, are summed too. Uses no MPI.
+/// Both are evaluated in two phases. In the local phase, each rank adds the contributions of its elements to their control points. In the global
+/// phase, every rank adds the same terms to all points. Between the phases, the caller sums over ranks and, if the scene is symmetric, over images. A
+/// load may need further nets in the global phase, for example the gradient of the total area. The caller sums these nets too. Uses no MPI.
 class Load {
  public:
   virtual ~Load() = default;
 
   virtual std::size_t n_sums() const { return 0; }  ///< number of nets that are summed in addition to the work
 
-  /// Adds the contributions of these elements to dE/dx to `work`, and those to the sums to `sums`, shape (N, 3) each.
+  /// Adds contributions of these elements: to dE/dx in `work`, and to the nets that the global phase needs in `sums`. Shape of each net: (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
   /// Adds to dE/dx the terms that depend on the complete sums.
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}
@@ -78,7 +79,7 @@ class Load {
 
 using LoadParts = deck::Parts<std::unique_ptr<Load>(const ParticleSurface&)>;
 
-/// Returns the conditions W x f = 0; none if f is 0.
+/// Returns the rigid conditions W x f = 0 of a force with the fixed direction f. If f = 0, there are no conditions.
 inline RigidConditions fixed_direction(const Vec3& f) {
   if (f.norm() == 0) return RigidConditions(0, 6);
   const Vec3 d = f.normalized();

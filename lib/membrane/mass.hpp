@@ -18,7 +18,7 @@ class MassMatrix {
   /// `order`: Gauss points per direction at degree 3, plus one for each higher degree. `space` must outlive this object.
   explicit MassMatrix(const spline::Space& space, int order = 4);
 
-  /// Returns the matrix of the surface x, valid until the next update. If x equals that of the latest update, nothing is computed.
+  /// Returns the matrix of the surface x, valid until the next update. If x equals the x of the latest update, nothing is computed.
   const Eigen::SparseMatrix<double>& update(const Net& x);
 
   /// Returns the row sums, int N_A dGamma on the surface x, without forming the matrix.
@@ -30,7 +30,7 @@ class MassMatrix {
  private:
   const spline::Space* space_;
   std::vector<Group> groups_;
-  std::vector<std::vector<Pack>> values_;  // N_A at the Gauss points per group; [A n_gauss + q] for each extraction matrix
+  std::vector<std::vector<Pack>> values_;  // per group: N_A at the Gauss points, entry [A n_gauss + q] for each extraction matrix
   std::vector<std::vector<int>> slots_;    // positions of entries (A, B <= A) and (B, A), per group; [(batch pairs + pair) pack_lanes() + lane]
   Eigen::SparseMatrix<double> matrix_;
   Net updated_;  // x of the latest update

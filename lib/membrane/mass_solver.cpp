@@ -8,7 +8,7 @@ constexpr int iterations_allowed = 60;  // more would cost as much as a factoris
 
 Eigen::Array3d column_products(const Net& a, const Net& b) { return a.cwiseProduct(b).colwise().sum().transpose(); }
 
-// Returns a/b, and 0 for a component that is already solved.
+// Returns a/b per component; 0 for a component that is already solved (b = 0).
 Eigen::Array3d ratio(const Eigen::Array3d& a, const Eigen::Array3d& b) { return (b == 0).select(0., a / b); }
 
 }  // namespace

@@ -19,7 +19,8 @@ struct Metric {
 
 }  // namespace
 
-/// Calls use(group, batch, index of its first point in relaxed_, its tangents of x) for every batch.
+/// Calls use(group, batch, first, a) for every batch. first: index of the first Gauss point of the batch in relaxed_. a: tangents of the shape x at
+/// the Gauss points of the batch.
 template <class Use>
 void MaxwellElement::each_batch(const Net& x, const Use& use) const {
   std::size_t first = 0;

@@ -14,20 +14,20 @@ namespace tanktread::membrane {
 namespace {
 
 constexpr std::size_t parts_kept = 3;       // all elements, the rank-owned ones, and one more set
-constexpr double compressed_below = -1e-9;  // in units of the modulus: round-off does not count as compression of a membrane at rest
+constexpr double compressed_below = -1e-9;  // divided by the modulus; larger tensions may be round-off
 constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
 
-/// The elements that one caller works on, packed, with the unstressed surface at their Gauss points.
+/// Elements assigned to one caller, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< materials of the groups: those of the surface, then the separated area elasticities
+  std::vector<Material> materials;  ///< materials of the groups: materials of the surface, then the separated area elasticities
   std::vector<Law> whole;           ///< complete law from which tensions are computed, per material
-  std::vector<bool> sampled;        ///< whether tensions are evaluated at the Gauss points of a group, per material
+  std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of its group
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group; point q of batch k at n_gauss k + q
-  std::vector<std::vector<Pack>> relaxed_curvature;    ///< c0 of `Bending` at the same points, per group; empty for groups without bending
+  std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending
 
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
   void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);

@@ -14,9 +14,9 @@ namespace tanktread::membrane {
 
 struct Part;
 
-/// Summary of tensions and area changes over the Gauss points: the smallest principal tension divided by the modulus, the fraction of the current
-/// area where it is negative, and the largest |J - 1|, with J the ratio of current to unstressed area (`smallest_tension`, `compressed_area`,
-/// `local_area_change` of the series). A tension counts as negative below -1e-9 of the modulus.
+/// Summary of tensions and area changes over the Gauss points, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of the
+/// series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal tension is
+/// less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
 struct TensionSummary {
   double smallest = 0, compressed_area = 0, area_change = 0;
 };

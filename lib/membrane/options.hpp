@@ -22,23 +22,23 @@ struct Options {
   std::optional<double> area_dilatation;   ///< C of Skalak and Evans-Skalak, 1 if not given; empty for other laws
   double global_area_dilatation = 0;        ///< K/G_s of the total area (3.26)
   double leaf_modulus = 0;                  ///< kbar/E_b of the area difference of the leaflets (3.27)
-  std::optional<double> leaf_difference;    ///< stress-free area difference divided by that of a sphere
+  std::optional<double> leaf_difference;    ///< stress-free area difference divided by the area difference of a sphere
   std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin, only for this law
   std::optional<std::string> energy;        ///< Psi/G_s of the law `expression` as a text in I1, I2 and J, only for this law
   std::map<std::string, double> constants;  ///< named constants in `energy`
   std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
-  std::optional<double> reduced_volume;    ///< reduced volume of the stress-free spheroid, only for it
+  std::optional<double> reduced_volume;    ///< reduced volume of a stress-free spheroid; only for that shape
   std::optional<std::string> stress_free_file;
-  int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the same rule as for the rest
+  int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the rule of the other terms
   double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
   std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
   std::string load_measure = "reference";  ///< area of the weak load: reference (unstressed, 3.7) or current (3.6)
-  std::optional<double> bending_modulus;   ///< E_b, force x length; no bending if neither key is given
+  std::optional<double> bending_modulus;   ///< E_b, force x length; no bending if this and bending_number are not given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
   std::optional<double> spontaneous_curvature;   ///< c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
-  std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), which then has these viscosities
+  std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), whose viscosities are `viscosity`
   PatchForces forces;                            ///< forces that hold or pull the membrane
 
   void declare(deck::Section& section);

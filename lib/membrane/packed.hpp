@@ -18,10 +18,10 @@ constexpr int max_functions = 64;  ///< largest number of functions on one eleme
 /// Up to pack_lanes() elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
 struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
-  int functions = 0;                  ///< m, the largest number of functions of its elements; missing functions have zero extraction
+  int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
-  std::size_t points = 0;             ///< start of its control-point ids in Group::points, [A * pack_lanes() + lane]
-  std::size_t extraction = 0;         ///< start of its extraction in Group::extraction, [A * (p + 1)^2 + b]; equal batches share one
+  std::size_t points = 0;             ///< start of the batch's control-point ids in Group::points, [A * pack_lanes() + lane]
+  std::size_t extraction = 0;         ///< start of the batch's extraction in Group::extraction, [A * (p + 1)^2 + b]; shared by equal batches
 };
 
 /// All given elements of one degree and material, in ascending order, with the Gauss rule of the degree.
@@ -42,7 +42,7 @@ struct Group {
 /// per direction at degree 3 and one more for each higher degree. `material`: material of each element of the space; if empty, all are 0.
 std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 
-/// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, a[6 q + 3 + c] that of x_,t.
+/// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.
 void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 
 /// Applies the transpose of `tangents`: adds sum_q (N_A,s p_q,1 + N_A,t p_q,2) to the rows A of `sum`, lane after lane.

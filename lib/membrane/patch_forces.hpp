@@ -1,5 +1,5 @@
 #pragma once
-// Forces that hold or pull a membrane, such as those of beads in optical tweezers.
+// Forces that hold or pull a membrane, such as the forces of beads in optical tweezers.
 
 #include <span>
 #include <string>

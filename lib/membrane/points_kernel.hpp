@@ -12,7 +12,7 @@ namespace tanktread::membrane {
 template <class Number>
 struct ReferencePointOf {
   Number g11, g12, g22;  ///< contravariant metric G^ab
-  Number inverse_det;    ///< 1/|G|
+  Number inverse_det;    ///< 1/|G|, inverse determinant of the covariant metric
   Number area;           ///< Gauss weight times sqrt|G|; zero on idle lanes
 };
 using ReferencePoint = ReferencePointOf<Pack>;
@@ -62,7 +62,7 @@ void bending_energy(double modulus, int n, const double* weight, const Pack* c0,
 /// Computes p, the gradient of the bending energy with respect to the jets.
 void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p);
 
-/// Computes p, the Hessian of the bending energy at `jets` times u.
+/// Computes p = H u, where H is the Hessian of the bending energy at `jets`.
 void bending_apply(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, const Pack* u, Pack* p);
 
 /// Computes entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: number of Gauss points.

@@ -19,13 +19,13 @@ class ExpressionParser {
       : what_(what), text_(text), constants_(constants), energy_(energy) {}
 
   void parse() {
-    constexpr std::size_t longest = 2000;  // a longer text might exceed the stack
+    constexpr std::size_t longest = 2000;  // largest number of characters; a longer text might exceed the stack
     if (text_.size() > longest)
       throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
     if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is the same for every strain.");
-    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // the last result is the energy
+    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy, because the last result must be the energy
     for (const auto& [name, value] : constants_)
       if (std::ranges::find(used_, name) == used_.end()) throw UserError(what_ + " does not use the constant `" + name + "`.");
   }

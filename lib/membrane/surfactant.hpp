@@ -37,14 +37,14 @@ class Surfactant : public Field {
 
   const Eigen::VectorXd& concentration() const { return concentration_; }  ///< control values of c
 
-  /// Returns the load of the surfactant in addition to that of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).
+  /// Returns the load of the surfactant, in addition to the load of the clean interface: d_A = int (sigma(c) - sigma(0)) grad_s N_A dG, shape (N, 3).
   /// (3.18)
   Net load() const override;
 
   Eigen::VectorXd rate(const Net& slip) const override;
 
   double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, in units of area
-  /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to that of the clean interface. f: free energy density.  (3.21)
+  /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to the energy of the clean interface. f: free energy density.  (3.21)
   double energy() const override;
   surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
 

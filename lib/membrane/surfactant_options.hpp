@@ -10,9 +10,9 @@ namespace tanktread::membrane {
 /// Options of the surfactant, `Interface/surfactant` of the deck. Concentrations c are divided by the uniform concentration at the start of the run.
 struct SurfactantOptions {
   std::string equation_of_state = "linear";  ///< linear, Langmuir
-  double elasticity = 0.2;                   ///< E of the equation of state
-  std::optional<double> coverage;            ///< x of Langmuir: initial divided by largest concentration; only for Langmuir
-  std::optional<double> diffusivity;         ///< D_s, length^2/time; 0 if neither is given
+  double elasticity = 0.2;                   ///< elasticity E in the equation of state
+  std::optional<double> coverage;            ///< coverage x: initial concentration divided by the largest one; only for Langmuir
+  std::optional<double> diffusivity;         ///< D_s, length^2/time; 0 if this and the Peclet number are not given
   std::optional<double> peclet_number;       ///< rate R_C^2/D_s
 
   void declare(deck::Section& section);

@@ -42,8 +42,8 @@ class SymmetricSolver {
   /// Components that share a factor.
   struct Part {
     std::vector<int> components, points;  // fundamental points where these components need not vanish
-    std::vector<int> unknown;             // index of the unknown of each point of the surface, that of its fundamental point, or -1
-    Eigen::VectorXd images;               // m_a
+    std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if left out
+    Eigen::VectorXd images;               // m_a, numbers of images of the points
     DirectSolver solver;
   };
   Part part(const DirectSolverOptions& options, int component) const;

@@ -29,7 +29,7 @@ class WallRepulsion : public Load {
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;
   bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }  // images that keep the axis; the caller checks the wall
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // in a tube, rigid motions are along the axis
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // none: in a tube, rigid motions are along the axis
   bool depends_on_labels() const override { return false; }
 
  private:

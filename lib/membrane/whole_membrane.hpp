@@ -17,7 +17,7 @@ namespace tanktread::membrane {
 struct WholeStiffness {
   double area = 0;                        ///< K of the total area (3.26), force/length
   double leaves = 0;                      ///< kbar of the area difference of the leaflets (3.27), force x length
-  std::optional<double> leaf_difference;  ///< Q0 divided by that of a sphere of equal area; if not given, that of X
+  std::optional<double> leaf_difference;  ///< Q0 divided by Q of a sphere of equal area; if not given, Q0 is Q of the unstressed shape X
 
   bool any() const { return area > 0 || leaves > 0; }
 };
@@ -47,8 +47,8 @@ class WholeMembrane : public Load {
 
  private:
   struct Measure {
-    int degree;                                      // m
-    std::vector<std::pair<double, Membrane>> parts;  // factors and membranes: Q is the sum of factor times energy
+    int degree;                                      // m, degree of homogeneity of Q
+    std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
     double tension = 0;                              // k (Q - Q0) at the linearisation

@@ -101,7 +101,7 @@ double excess(const surface::Errors& errors, const AdaptationOptions& options) {
 /// Returns the largest length of an element next to a film of this width.
 double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
-/// Returns marks or merges of those of n elements for which wanted(element, direction) holds along s or t.
+/// Returns the marks or merges of n elements: an element is included if wanted(element, direction) holds along s or t.
 template <class Entry, class Wanted>
 std::vector<Entry> collected(std::size_t n, const Wanted& wanted) {
   std::vector<Entry> found;
@@ -127,7 +127,8 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
   const auto slender = [&](double ratio) { return ratio >= margin * options.limit_aspect_ratio.value(); };
   const auto is_short = [&](const surface::MidLine& line) { return 2 * line.length < margin * allowed_length(line, options); };
   const auto alone = [&](std::size_t e, int a) { return is_short(metrics[e].along[a]) && !slender(2 * metrics[e].aspect_ratio(a)); };
-  const auto both = [&](const surface::ElementMetrics& m) {  // keeps the aspect ratio, even if merging in one direction only would exceed its limit
+  // Merging in both directions keeps the aspect ratio, so that it is possible even if merging in one direction would exceed the limit.
+  const auto both = [&](const surface::ElementMetrics& m) {
     return !slender(std::max(m.aspect_ratio(0), m.aspect_ratio(1))) && is_short(m.along[0]) && is_short(m.along[1]);
   };
   return collected<spline::Merge>(metrics.size(),

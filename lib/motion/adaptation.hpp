@@ -27,8 +27,8 @@ struct AdaptationOptions {
   std::optional<double> reference_curvature_variation;     ///< chi_ref, 1/length^2; empty: not in use
   std::optional<double> reference_traction_variation;      ///< T_ref, for the traction per current area, per length
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
-  std::optional<double> limit_aspect_ratio;                ///< D_ref
-  std::optional<double> order;                             ///< kappa
+  std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
+  std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
   std::optional<double> film_resolution;                   ///< longest element next to a film divided by sqrt(width x R_C); set if there are films
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
   int interval = 1;                                        ///< accepted steps between checks

@@ -7,8 +7,8 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double stable = 2.3;       // dt rho of BS3, below its limit of 2.51 because rho is measured from below
-constexpr double solve_share = 0.5;  // work of a linear solve divided by that of an evaluation: 0.4 to 1.5 on 218 and 866 control points
+constexpr double stable = 2.3;       // largest dt rho for BS3; less than the stability limit 2.51, because the measured rho is a lower bound
+constexpr double solve_share = 0.5;  // work of a linear solve divided by work of an evaluation: 0.4 to 1.5 on 218 and 866 control points
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
@@ -21,10 +21,10 @@ struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;
   double age = 0;         ///< steps since the stiffness was measured
-  double points = 0;      ///< number of control points at that measurement; 0: not measured yet
+  double points = 0;      ///< number of control points when the stiffness was measured; 0: not measured yet
   double work = 0;        ///< work of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
   double since = 0;       ///< steps since the last change of scheme
-  double then = 0;        ///< stiffness at the last change
+  double then = 0;        ///< stiffness at the last change of scheme
 };
 
 Scheme& Automatic::chosen(const Choice& choice) {

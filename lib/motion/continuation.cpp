@@ -14,7 +14,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction below this many times the tolerance may be limited by quadrature errors
+constexpr double noise = 30;  // a correction smaller than this multiple of the tolerance may be limited by quadrature errors
 }
 
 void ContinuationOptions::declare(deck::Section& section) {
@@ -63,7 +63,7 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
 /// Finds the intersection of the branch with the plane through `predicted` with this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 80;
-  constexpr double far = 4;  // largest distance from the prediction, in steps
+  constexpr double far = 4;  // largest distance from the prediction divided by the step
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;

@@ -17,7 +17,7 @@ namespace tanktread::motion {
 
 /// Options of the continuation, `Continuation/*` of the deck.
 struct ContinuationOptions {
-  bool present = false;              ///< whether the deck has this section
+  bool present = false;              ///< true if the deck has this section
   std::string parameter;             ///< path of a numerical key of the deck
   double to = 0;                     ///< value of the parameter at which the branch ends
   std::string method = "arclength";  ///< arclength, natural
@@ -26,7 +26,7 @@ struct ContinuationOptions {
   int points = 100;                  ///< largest number of points
   double fold_tolerance = 1e-6;      ///< relative tolerance of the parameter at a fold
   std::optional<std::string> second_parameter;      ///< path of another numerical key, along which the first fold is continued
-  std::optional<std::vector<double>> second_values;  ///< its values in sequence, after the deck's own value
+  std::optional<std::vector<double>> second_values;  ///< values of the second parameter in sequence, after its value in the deck
 
   void declare(deck::Section& section);
 };
@@ -57,10 +57,10 @@ struct BranchPoint {
 /// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh stays that of the first fold.
 class Branch {
  public:
-  /// Returns the equations at a value of the parameter and of the second one, which is 0 if there is none. Collective.
+  /// Returns the equations at a value of the parameter and of the second parameter. Without a second parameter, the second value is 0. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Transfers shapes to a mesh that fits the last of them better, and changes the family to that mesh. The last shape is steady at this parameter.
+  /// Transfers shapes to a mesh that fits the last shape better, and changes the family to that mesh. The last shape is steady at this parameter.
   /// Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
@@ -113,7 +113,7 @@ class Branch {
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
   std::vector<Solved> last_;  // up to three points, latest last
-  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, and whether each is a fold
+  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds of the second parameter
   double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
   std::size_t values_ = 0;        // number of its values reached

@@ -11,12 +11,12 @@ namespace tanktread::motion {
 /// Thrown by a velocity evaluation after a stop signal. It does not derive from std::exception, so no scheme treats it as an error.
 struct Stopped {};
 
-/// Wraps another motion for the integrators. If an evaluation at a trial shape fails on one rank or more (a solver does not converge, the surface is
-/// folded or open, values are not finite), the result is NaN on all ranks, and every scheme then shortens its step. If memory runs out, all ranks
-/// throw RunFailure. Norms, on which the decisions of a scheme depend, are those of the first rank. Collective, like the motion.
+/// Wraps another motion for the integrators. An evaluation at a trial shape may fail on some ranks, because a solver does not converge, the surface
+/// is folded or open, or values are not finite. The result is then NaN on all ranks, and every scheme shortens its step. If memory runs out, all
+/// ranks throw RunFailure. Decisions of a scheme depend on norms; every rank uses the norms of the first rank. Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
-  /// `told`: returns whether this rank has received a stop signal. A velocity evaluation then throws Stopped on every rank.
+  /// `told`: function that returns whether this rank has received a stop signal. If so, the next velocity evaluation throws Stopped on every rank.
   GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> told) : motion_(motion), told_(std::move(told)) {}
 
   void at(double time, double start) override { motion_.at(time, start); }

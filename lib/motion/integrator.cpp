@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double same_time = 1e-12;  // relative tolerance, because limits and kinks are sums and products of numbers in a deck
+constexpr double same_time = 1e-12;  // relative tolerance of times; equal limits and kinks may differ by rounding
 
 std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
   if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);

@@ -40,14 +40,14 @@ void forget(State& state);
 /// Computes the first slope of a state that has none.
 void begin(coupling::Dynamics& dynamics, State& state);
 
-/// If the state is at a kink of the motion, keeps only position, step and frozen operator, computes the slope after the kink and returns true.
-/// Otherwise returns false. `advance` calls this function; before that, the state has the slope at the end of its last step.
+/// Restarts a state that is at a kink of the motion: keeps only position, step and frozen operator, and computes the slope after the kink. Returns
+/// false if the state is not at a kink. `advance` calls this function. Before the call, the state has the slope at the end of its last step.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.
 struct StepReport {
   double step = 0;        ///< size of the accepted step
-  int iterations = 0;     ///< nonlinear iterations or sub-iterations, including those of rejected attempts
+  int iterations = 0;     ///< nonlinear iterations or sub-iterations, including the iterations of rejected attempts
   int rejected = 0;       ///< number of rejected attempts
   double error = 0;       ///< estimated local error in the norm of `Time/tolerance`; 0 if there is no estimate
   double displacement = 0;///< norm of x_{n+1} - x_n
@@ -79,7 +79,7 @@ double step_towards(double time, double limit, double step);
 /// Continuous output within a step: the cubic Hermite interpolant of positions and slopes at both ends, of fourth order, without further evaluations.
 class DenseOutput {
  public:
-  /// Both states must have their slopes in history.front() and be on one mesh; `after` is later than `before`.
+  /// `before`, `after`: states at the start and the end of the step. Both must have their slopes in history.front() and be on the same mesh.
   DenseOutput(const State& before, const State& after);
 
   Net place(double time) const;

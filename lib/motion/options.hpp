@@ -15,27 +15,27 @@ struct TimeOptions {
   double final_time = 1.0;                 ///< the run ends here
   double tolerance = 1e-4;                 ///< error of a step: root mean square displacement of the control points divided by R_C
   std::optional<double> initial_step;      ///< empty: the scheme finds one
-  std::optional<double> fixed_step;        ///< size of all steps, without error control; the last step is shortened
+  std::optional<double> fixed_step;        ///< size of all steps; if set, there is no error control, and only the last step is shortened
   std::optional<double> maximum_step;      ///< empty: no limit
-  std::optional<double> minimum_step;      ///< the run fails if a controlled step falls below this; empty: 1e-9 of `unit`
+  std::optional<double> minimum_step;      ///< smallest controlled step; the run fails if it must be smaller; empty: 1e-9 of `unit`
   double unit = 1;                         ///< unit of time of the scene, the inverse rate of its flow; not a key of the deck
-  std::optional<double> steady_tolerance;  ///< stop if the shape's velocity (6.8) divided by (rate R_C) falls below this; empty: never
+  std::optional<double> steady_tolerance;  ///< the run ends if the shape velocity (6.8) divided by (rate R_C) is less; empty: never
   std::optional<double> end_when_past;     ///< stop if x1 of the centroids of all particles is larger than this; empty: never
   double iteration_tolerance = 1e-7;       ///< tolerance of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< for crank-nicolson: plain, anderson, newton-krylov
   std::optional<std::string> step_control;  ///< for crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain
-  bool count_euler_step = true;             ///< whether the Euler step is the first sub-iteration of crank-nicolson
+  bool count_euler_step = true;             ///< true if the Euler step counts as a sub-iteration of crank-nicolson
   double newton_tolerance = 0.2;           ///< error of the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< largest number of iterations of a stage before the step is halved
   double linear_tolerance = 0.05;          ///< relative residual of the linear solves of a stage
-  double contraction_limit = 0.3;          ///< contraction rate above which the frozen layer operator is assembled again
-  double largest_operator = 32;             ///< size of the frozen operator, in GB on all ranks together, above which `auto` avoids it
+  double contraction_limit = 0.3;          ///< if the contraction rate is larger, the frozen layer operator is assembled again
+  double largest_operator = 32;             ///< largest frozen operator that `auto` uses, in GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2
 
   double least_step() const { return minimum_step.value_or(1e-9 * unit); }
-  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< returns whether a frozen operator of any size is used (4.3)
-  bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< for crank-nicolson
+  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< true if the scheme always uses the frozen operator (4.3)
+  bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }  ///< step control of crank-nicolson
 
   void declare(deck::Section& section);
 

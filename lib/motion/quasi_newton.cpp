@@ -9,7 +9,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double worth_assembling = 0.3;  // change of shape since the last assembly above which a new one pays off
+constexpr double worth_assembling = 0.3;  // change of shape since the last assembly; if it is larger, a new assembly pays off
 }  // namespace
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {

@@ -8,16 +8,16 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double margin = 1.1;    // power iteration approaches rho from below
+constexpr double margin = 1.1;    // factor on rho, because power iteration gives a lower bound
 constexpr int lasting_steps = 25;  // number of steps for which a measured stiffness is used
 constexpr int most_stages = 200;
 
 /// Content of State::memory.
 struct StiffnessMemory {
   double stiffness = 0;  ///< measured stiffness
-  double age = 0;        ///< steps since the measurement
+  double age = 0;        ///< number of steps since the measurement
   double error = 0;      ///< error of the last accepted step divided by the tolerance
-  double points = 0;     ///< control points of the mesh on which it was measured
+  double points = 0;     ///< number of control points of the mesh on which the stiffness was measured
 };
 
 void measure(coupling::Dynamics& dynamics, State& state, StiffnessMemory& memory, StepReport& report) {

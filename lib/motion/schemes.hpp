@@ -24,13 +24,13 @@ std::vector<double> values_of(const Memory& memory) {
   return values;
 }
 
-/// Returns the factor for the next step of a PI controller, between 0.3 and 2. `error` is divided by the tolerance; `previous` is that of the
-/// previous accepted step (0: none); the error scales with the given power of the step. Gustafsson 1991.
+/// Returns the factor between 0.3 and 2 by which a PI controller multiplies the step. `error`: error of the step divided by the tolerance.
+/// `previous`: the same ratio for the previous accepted step, or 0. `power`: power of the step with which the error scales. Source: Gustafsson 1991.
 double step_factor(double error, double previous, int power);
 
-/// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate is of the order of its
-/// own result. The error of a run is the sum of the errors of its steps, whose number grows like tolerance^(-1/(order + 1)). With this fraction the
-/// sum stays proportional to the tolerance (Soderlind & Wang 2006):
+/// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate has the same order as its
+/// result. The error of a run is the sum of the errors of its steps, whose number grows like tolerance^(-1/(order + 1)). With this fraction the sum
+/// stays proportional to the tolerance (Soderlind & Wang 2006):
 ///
 ///   min(1, (tolerance/1e-3)^(1/order))                                                                                            (4.31)
 double step_share(double tolerance, int order);
@@ -49,14 +49,15 @@ class Attempts {
   /// is not finite; `kind` names the scheme in the message.
   bool holds(double error, const char* kind) const;
 
-  /// Rejects the attempt, whose error divided by the tolerance is `error` (0: unknown). The next attempt has `part` of its size. If two attempts were
-  /// rejected, their errors give the power of the step with which the error scales, at least 1/2. The next attempt is then no longer than this power
-  /// predicts, but at least a tenth of the rejected one. The power is below 1 while a shape relaxes after mesh refinement. Gustafsson 1994.
+  /// Rejects the attempt. `error`: error of the attempt divided by the tolerance; 0 if unknown. The size of the next attempt is `part` times the size
+  /// of this attempt. If two successive attempts are rejected, the order p of the error, error ~ dt^p, is computed from their errors, with p >= 1/2.
+  /// The next attempt is then no longer than p predicts, but at least a tenth of the rejected attempt. While a shape relaxes after mesh refinement, p
+  /// is below 1. Source: Gustafsson 1994.
   void reject(double part, double error = 0);
 
-  /// Ends the step at y. Sets position, time and next step of the state, `factor` times this step, and returns the report. A step shortened to meet
-  /// the limit does not reduce the next one. The scheme updates its history and memory itself. `error`: divided by the tolerance times `share`
-  /// (4.31).
+  /// Ends the step at y and returns the report. Sets the position and time of the state, and sets the next step to `factor` times this step. If this
+  /// step was shortened to meet the limit, the next step is not reduced. The scheme updates its history and memory itself. `error`: error of the step
+  /// divided by the tolerance times `share` (4.31).
   StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`
@@ -65,7 +66,7 @@ class Attempts {
   const TimeOptions& options_;
   State& state_;
   double limit_, proposed_, size_ = 0;
-  double rejected_size_ = 0, rejected_error_ = 0;  // of the previous attempt
+  double rejected_size_ = 0, rejected_error_ = 0;  // size and error of the previous rejected attempt
 };
 
 class Scheme : public Integrator {
@@ -99,10 +100,11 @@ class Rkc2 : public Scheme {
 /// Returns the number of stages that a step dt of RKC2 needs at the stiffness rho (4.8).
 int rkc2_stages(double dt, double rho);
 
-/// Returns the stiffness rho of the system at x, where the velocity is v: the spectral radius of J by power iteration (4.7). The result approaches
-/// rho from below: eight iterations from a random direction, or two from the direction of an earlier call, give at least 0.9 rho. `direction` is the
-/// start and the end of the iteration, normalised to 1. If its size differs from that of x, the iteration starts from pseudo-random numbers that are
-/// the same in every run. An iteration costs one product with the frozen operator, or one velocity evaluation if nothing is assembled.
+/// Returns the stiffness rho of the system at x, where the velocity is v. rho is the spectral radius of J, computed by power iteration (4.7). The
+/// result is a lower bound: eight iterations from a random direction, or two from the direction of an earlier call, give at least 0.9 rho. The
+/// iteration starts from `direction` and stores its last direction there, normalised to 1. If `direction` and x differ in size, the iteration starts
+/// from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one velocity evaluation if
+/// nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
 /// The paper's Crank-Nicolson scheme (P-38), by default with its sub-iteration and its step rule (4.1):
@@ -170,14 +172,14 @@ class Bdf3 : public Scheme {
   TrBdf2 starter_;
 };
 
-/// Chooses the scheme from the measured stiffness rho (4.7), which costs less than an evaluation with the frozen operator:
+/// Chooses the scheme of each step. The choice uses the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
 ///
-///   TR-BDF2 if a velocity, which explicit schemes need, requires a linear system that the defect of a stage does not (3.14); otherwise
-///   BS3 as long as the step that the error allows, including the first one, is stable, dt < 2.3/rho;
-///   otherwise TR-BDF2, whose work per unit of time is measured;
-///   back to BS3 if that work exceeds 1.5 times 3/min(dt, 2.3/rho), and again to TR-BDF2 if rho has changed or fifty steps have passed.
+///   TR-BDF2 is used if a velocity requires the solution of a linear system but the residual of a stage does not (3.14).
+///   Otherwise BS3 is used as long as the step that the error allows is stable, dt < 2.3/rho. This includes the first step.
+///   Otherwise TR-BDF2 is used, and its work per unit of time is measured.
+///   If this work exceeds 1.5 times 3/min(dt, 2.3/rho), BS3 is used until rho has changed or fifty steps have passed, then TR-BDF2 again.
 ///
-/// If the frozen operator would be larger than `Time/largest operator`, RKC2 is used, which needs none.
+/// If the frozen operator would be larger than `Time/largest operator`, RKC2 is used instead, because RKC2 needs no frozen operator.
 class Automatic : public Scheme {
  public:
   explicit Automatic(const TimeOptions& options) : Scheme(options), explicit_(options), implicit_(options), stabilised_(options) {}

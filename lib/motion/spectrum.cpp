@@ -129,7 +129,7 @@ class Recognition {
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// Returns the kind of a mode that is not that of the volume or a mass.
+  /// Returns the kind of a mode, if the mode is not due to the conservation of the volume or a mass.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();

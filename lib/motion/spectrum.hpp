@@ -22,13 +22,13 @@ namespace tanktread::motion {
 
 /// Options of the linear stability analysis, `Spectrum/*` of the deck.
 struct SpectrumOptions {
-  bool present = false;            ///< whether the deck has this section
+  bool present = false;            ///< true if the deck has this section
   int number = 12;                 ///< number of modes to report
-  std::optional<double> near;      ///< report the modes with rates nearest to this one, 1/time; empty: the fastest-growing modes
+  std::optional<double> near;      ///< rate near which modes are reported, 1/time; empty: the fastest-growing modes are reported
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< shift for krylov, 1/time
   int block = 3;                   ///< block size for krylov
-  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: that of the shape
+  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: parity of the shape
   double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by R_C
 
   void declare(deck::Section& section);
@@ -56,9 +56,9 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
 ///
 /// The relabellings (Dynamics::relabellings) that make up the velocity of a steady shape are subtracted from v, because modes are changes of the
-/// shape as seen from outside. Displacements and results are projected so that they do not change the conserved quantities, the volume and the masses
-/// of surfactants. Otherwise two modes of rate 0 would have the same shape at a fold, and errors of J would change their rates by the square root of
-/// the errors.
+/// shape, not of the control points along it. Displacements and results are projected so that they do not change the conserved quantities, the volume
+/// and the masses of surfactants. Otherwise two modes of rate 0 would have the same shape at a fold, and errors of J would change their rates by the
+/// square root of the errors.
 class Linearised {
  public:
   /// Linearises about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
@@ -80,7 +80,7 @@ class Linearised {
 };
 
 /// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved
-/// quantities, first that of the volume. They identify the modes that have rate 0 only because of conservation. Collective.
+/// quantities, first the gradient of the volume. They identify the modes that have rate 0 only because of conservation. Collective.
 std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 

@@ -19,7 +19,7 @@ namespace tanktread::motion {
 
 /// Options of the search for steady shapes, `Steady/*` of the deck.
 struct SteadyOptions {
-  bool present = false;             ///< whether the deck has this section
+  bool present = false;             ///< true if the deck has this section
   std::string method = "anderson";  ///< anderson, newton-krylov
   double tolerance = 1e-8;          ///< tolerance of the estimated error of the shape (4.32), in the norm of `Time/tolerance`
   int iterations = 100;             ///< largest number of iterations
@@ -45,10 +45,10 @@ class SteadyEquations {
   /// `step`: s. The motion must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
-  Net residual(const Net& x);                          ///< s G(x), not finite if the evaluation fails. Collective
-  Net precondition(const Net& x, const Net& r);  ///< (1 - s J)^{-1} r with the frozen Jacobian (4.3), linearised at x. Collective
+  Net residual(const Net& x);                          ///< returns s G(x); not finite if the evaluation fails. Collective
+  Net precondition(const Net& x, const Net& r);  ///< returns (1 - s J)^{-1} r with the frozen Jacobian (4.3) linearised at x. Collective
   double unit_length() const;                          ///< Euclidean norm of a displacement that has norm 1 in the norm of the motion
-  std::vector<Net> neutral(const Net& x);  ///< orthonormal fields that Q projects onto. Collective
+  std::vector<Net> neutral(const Net& x);  ///< returns the orthonormal fields that Q projects onto. Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
 
@@ -63,8 +63,8 @@ class SteadyEquations {
 };
 
 /// Solves the equations as a fixed point of x + s (1 - s J)^{-1} G(x) by NOX, with Anderson acceleration (`anderson`) or Newton's method
-/// (`newton-krylov`). If a whole step changes x by much, shorter steps come first. If the iteration does not converge, x is the best iterate.
-/// Collective.
+/// (`newton-krylov`). If an iteration with the step s changes x by much, implicit steps shorter than s are done first. If the iteration does not
+/// converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion

@@ -13,7 +13,7 @@ namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
 constexpr double worth_an_order = 0.7;  // a higher order is chosen if it reduces the error of the prediction by this factor
-constexpr double accuracy = 4;  // lower bound of the error of the second-order result divided by that of the extrapolated one
+constexpr double accuracy = 4;  // lower bound of the ratio of two errors: of the second-order result and of the extrapolated result
 
 /// Orders of extrapolation of the slopes that would have given the best predictions of the second and the third stage of a step.
 struct Orders {
@@ -26,7 +26,7 @@ struct Remembered {
   Orders orders;
 };
 
-/// Extrapolates slopes from earlier times, relative to the start of the step, by polynomials through the latest slopes.
+/// Extrapolates the slope dx/dt in time by a polynomial through the latest slopes. Times are relative to the start of the step.
 class Prediction {
  public:
   Prediction(const State& state, const Memory& memory, std::size_t most) : times_{0, (2 * d - 1) * memory.step, -memory.step}, most_(most) {

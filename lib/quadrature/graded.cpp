@@ -36,7 +36,7 @@ struct Bezier {
     return value;
   }
 
-  /// Returns the planar approximation of a part, and the largest distance of the corners of the part from those of the approximation.
+  /// Returns the planar approximation of a part, and the largest distance between a corner of the part and the same corner of the approximation.
   std::pair<Patch, double> patch(const Part& p) const {
     const auto [x, xs, xt] = at(p.s + p.width / 2, p.t + p.height / 2);
     const Patch flat{x, xs * p.width / 2, xt * p.height / 2};
@@ -72,7 +72,7 @@ constexpr int most_parts = 100'000;
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
   const Bezier element{bezier, degree};
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
-  const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;  // measured: tests/verify/layer_shapes.cpp
+  const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;  // largest bulge divided by distance; from tests/verify/layer_shapes.cpp
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};
   for (int looked_at = 0; !parts.empty(); ++looked_at) {

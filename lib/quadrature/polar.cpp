@@ -58,7 +58,8 @@ struct FarSide {
 
   int order(double tolerance, double rho) const { return 1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho); }
 
-  /// Returns rho in mu of a side that actually runs from a to b, a + q c with c = b - a. r^2 = 0 at q = (-a.c +- i |a x c|) / c.c.
+  /// Returns rho of the integrand in the variable mu, if the side is the line a + q c with c = b - a in space.
+  /// r^2 = 0 at q = (-a.c +- i |a x c|) / c.c.
   double rho(const Vec3& a, const Vec3& b) const {
     const Vec3 c = b - a;
     if (!(c.squaredNorm() > 1e-12 * a.squaredNorm())) return 1e6;

@@ -34,7 +34,7 @@ struct PolarOrders {
 /// order for the error tolerance^1.25 exp(-range of mu / 2).
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
-/// Returns orders that are larger if the element is so distorted that its actual corners cause poles closer than those of the affine element.
+/// Returns orders that are larger if the element is so distorted that its actual corners cause closer poles than the corners of the affine element.
 /// Both arrays hold the corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: `corner` the actual positions, `affine` the positions
 /// predicted by the tangents at the target.
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,

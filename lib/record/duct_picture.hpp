@@ -16,7 +16,7 @@ namespace tanktread {
 ///   pressure_gradient, mean_velocity, radius (R_T)
 std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow);
 
-/// Returns the shape of a channel and the flow through it without particles, for plots: the file `channel.h5` of a run's results. Collective.
+/// Returns the shape of a channel and the flow through the empty channel, for plots: the file `channel.h5` of a run's results. Collective.
 std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow);
 
 }  // namespace tanktread

@@ -24,20 +24,20 @@ namespace tanktread {
 /// Options of the command line, and the deck.
 struct RunRequest {
   std::string output;           ///< directory of the results
-  bool resume = false;          ///< resume from the newest checkpoint there
-  bool overwrite = false;       ///< delete the results of an earlier run there first
-  bool another_scheme = false;  ///< true if the time scheme differs from the checkpoint's; only shape, slope and step of its state are then kept
-  bool quiet = false;           ///< no progress bar
+  bool resume = false;          ///< true to resume from the newest checkpoint in the directory
+  bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
+  bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
+  bool quiet = false;           ///< true to show no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// Names under which a run keeps copies, in its directory, of the files that its deck names. It can be resumed without the originals.
+/// Names of copies of the files that a deck names. A run stores the copies in its directory, so that it can be resumed without the original files.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
-std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of its membrane's stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file of its copies
-/// Returns the name for the file of an outline or of a channel's points: the original's without its folder
+std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
+std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file of positions of copies
+/// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder
 std::string kept_name(const std::string& file);
 
 /// Data of a finished run for its summary and its messages.
@@ -56,7 +56,7 @@ struct Account {
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
 /// Returns the newest undamaged checkpoint of a directory. The first rank finds it, and every other rank reads the same file. Throws UserError if
-/// there is none, RunFailure if one cannot be read. Collective.
+/// there is no checkpoint, RunFailure if a checkpoint cannot be read. Collective.
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks);
 
 /// Returns the effective deck from the newest checkpoint of a directory. Throws like newest_checkpoint. Collective.
@@ -74,7 +74,7 @@ class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
-  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is none.
+  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is no checkpoint.
   std::optional<Resumed> resumed();
 
   /// Sets the body of the next snapshots, and its Bezier extraction.

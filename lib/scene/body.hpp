@@ -45,7 +45,8 @@ struct Member;
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
-  /// Space with the same control points but degenerate poles; null unless `space` has poles by the Bezier transform and the mesh may adapt
+  /// Space with the same control points as `space` but with degenerate poles. It is set if `space` removes the degeneracy by the Bezier transform and
+  /// the mesh may adapt; otherwise it is null.
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run
@@ -53,8 +54,9 @@ struct Body {
   stokes::AmbientFlow flow;
   FlowPlane plane;     ///< plane in which D and tank-treading are measured
   membrane::Law law;
-  double radius = 1;   ///< R_C
-  /// Reference volume V0: that of the resting shape, or of the initial one if it keeps its own volume, on the first mesh (also after mesh changes)
+  double radius = 1;   ///< R_C, radius of the sphere of equal volume
+  /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh
+  /// and does not change if the mesh changes.
   double volume = 0;
   double initial_area = 0;  ///< initial int c dG of the surfactant on the first mesh; 0 until it is computed
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C

@@ -65,7 +65,8 @@ class Packing {
     Vec3 image;  // vector that is added to the neighbour's centre
   };
 
-  /// Finds, for each sphere, the spheres that may overlap it before one has moved by the skin. Does so again only after a move of half the skin.
+  /// Finds, for each sphere, the spheres that may overlap it before any sphere has moved by the skin. Does nothing until a sphere has moved by half
+  /// the skin since the last search.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());

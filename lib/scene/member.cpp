@@ -93,7 +93,7 @@ void arrange(std::vector<Member>& members) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     Member& member = members[p];
     member.block = blocks[p];
-    if (members.size() == 1) continue;  // the coupled system makes its geometry and membrane itself
+    if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
     Body& body = *member.body;
     body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is not one of the whole scene
     share_or_make(members, p);
@@ -145,7 +145,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // a common measure is cheaper, and the areas of a rigid body do not change
+  for (coupling::Particle& one : parameters.particles)  // one measure for all is cheaper; for rigid bodies all measures are equal
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

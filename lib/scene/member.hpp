@@ -30,26 +30,26 @@ struct Member {
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  /// Returns the name in checkpoints and messages
+  /// Returns the name under which an item of this particle is stored or reported
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
   std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
   /// Returns the name of a column in the results
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
-/// Returns what drives a rigid body: its prescribed motion, or its force, weight included, and torque.
+/// Returns the drive of a rigid body: the prescribed motion, or the force (including the weight) and the torque.
 coupling::Rigid rigid(const Scene& scene, const Body& body);
 
 /// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
-/// Locates the followed point on the current mesh if the mesh may adapt. A resumed run finds the same site.
+/// Computes `followed`, the site of the material point `place` on the current mesh, if the mesh may adapt. A resumed run finds the same site.
 void follow(Member& member);
 
 /// Sets blocks, geometries and membranes of all members. Their bodies must exist.
 void arrange(std::vector<Member>& members);
 
-/// Returns all members as one body, whose nets are stacked and whose measures are those of the whole; null if there is only one member.
+/// Returns all members as one body, whose nets are stacked and whose measures refer to all of them together; null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, in a tube if there is one, with only the operators that they need. `all`: their common space and nets.
@@ -64,7 +64,7 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
 bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
-/// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint's lattice is another one.
+/// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});
 
 }  // namespace tanktread

@@ -1,5 +1,5 @@
 #pragma once
-// Registry of parts (loads, fields, flows, series) that a program adds to those of the library.
+// Registry of parts (loads, fields, flows, series) that a program adds to the parts of the library.
 
 #include <functional>
 #include <span>
@@ -28,8 +28,8 @@ using RunSeries = std::function<std::vector<double>(double time, std::span<const
 /// Registered series, each computed per particle or once per run.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
-/// Parts by name, each with its own keys in the deck. `main` (app/program.hpp) accepts a registry. lib/README.md, Recipes, shows an example of each
-/// part.
+/// User-defined parts of the program, by name: loads, fields, flows and series. Each part declares its keys of the deck. `main` (app/program.hpp)
+/// accepts a registry. The section Recipes of lib/README.md shows an example of each kind of part.
 struct Registry {
   membrane::LoadParts loads;    ///< `Membrane/loads/<name>`
   membrane::FieldParts fields;  ///< `Interface/fields/<name>`, on interfaces and membranes

@@ -84,8 +84,8 @@ struct ContactOptions {
   double limit = 1e-3;  ///< smallest allowed gap, divided by the R_C of the smallest particle
   bool limiter = false;  ///< true if forces between the particles keep the gaps at this limit
 
-  static constexpr double slack = 1e-2;  ///< fraction of the limit by which the limiter lets gaps adjacent to a contact fall below it
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap, divided by the same R_C, below which the run ends
+  static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of `limit`; the run ends if a gap is smaller
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;

@@ -19,7 +19,7 @@ struct WallOptions {
 
   std::string shape = "plane";
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
-  double contact_gap = 1e-3;  ///< gap, divided by R_C, below which the run ends
+  double contact_gap = 1e-3;  ///< gap divided by R_C; the run ends if the gap is smaller
 
   void declare(deck::Section& section);
 

@@ -28,7 +28,8 @@ class ExtendedMesh {
   TMesh take() && { return std::move(mesh_); }
   void set_spacing(int point, int h) { mesh_.spacing[point] = h; }
 
-  /// Sets the current extended mesh as the earlier one, all of whose edges must stay covered.
+  /// Marks all edges of the current extended mesh as required: the extended mesh must still contain them after later changes. missing() counts the
+  /// required edges that it does not contain.
   void keep_extensions();
 
   void insert(const std::vector<Ray>& path) { change(path, true); }
@@ -49,7 +50,7 @@ class ExtendedMesh {
   struct Trace {  // extensions of one T-junction
     int missing = 0;
     std::vector<Ray> vertices;  // vertices on the extensions, with the slot in the direction of the extension
-    std::vector<bool> face;     // whether each of them is on the face extension
+    std::vector<bool> face;     // true for the elements of `vertices` on the face extension
     std::vector<Ray> edges;
   };
   struct Passing {  // extension that passes a vertex

@@ -96,7 +96,8 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
   const int tiles = int(b.tiling.tiles.size());
-  // The side of the averaged square is 2^-max(levels, 4) of a base element. It does not change if the rings around the square are refined.
+  // Next to an extraordinary point, catmull_clark_pieces() represents a square by an averaged bicubic. The side of this square is 2^-max(levels, 4)
+  // of an element of the initial mesh. It does not depend on the refinement, so that spaces before and after a refinement are nested.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
   std::map<std::pair<int, int>, std::vector<Element>> patterns;  // elements by corner and spacing, with ring indices as control points
   std::array<int, OneRing::size> numbers;

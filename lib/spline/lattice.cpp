@@ -95,7 +95,7 @@ Walker left(const Lattice& l, Walker w, int n) { return move(l, w, n, 1); }
 
 PlacedEdge placed(const Lattice& l, Ray e) {
   const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
-  if (c < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // on the border of an open face
+  if (c < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // the edge is on the border of an open face
   return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
 }
 

@@ -35,7 +35,7 @@ struct Lattice {
   std::vector<std::array<std::uint8_t, 4>> slot;  ///< slot at corner k of each cell that points to corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3
-  std::vector<std::uint8_t> is_extraordinary;  ///< whether each vertex is extraordinary
+  std::vector<std::uint8_t> is_extraordinary;  ///< for each vertex, nonzero if it is extraordinary
 
   std::vector<std::array<int, 4>> point_at;  ///< index in `extraordinary` of the point at corner 0 .. 3 of each macro face, or -1
 
@@ -93,7 +93,7 @@ std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
 struct Walker {
   int cell, turn;
 };
-/// Moves n cells forward (or to the left) and keeps the forward direction.
+/// Returns the walker after n cells forward (`forward`) or to its left (`left`). The walker keeps its forward direction.
 Walker forward(const Lattice& l, Walker w, int n);
 Walker left(const Lattice& l, Walker w, int n);
 

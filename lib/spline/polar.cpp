@@ -281,7 +281,7 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
-    std::vector<int> place(out.elements.size());  // index of the element in `kept`, or -1 - index of its first piece in `pieces`
+    std::vector<int> place(out.elements.size());  // k for element k of `kept`; -1 - k if the first piece of the element is pieces[k]
     std::vector<bool> at_end(out.elements.size());
     for (std::size_t t = 0; t < out.elements.size(); ++t) {
       const Rectangle& r = f.tiling.tiles[t];

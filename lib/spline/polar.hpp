@@ -28,7 +28,7 @@ struct PolarMesh {
 
 /// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth v
 /// in elements, and distance from the axis divided by the distance of its row. With `c1`, the three control points of a pole replace row 1 of the
-/// tensor net, at distances from the axis other than that of row 1.
+/// tensor net, at other distances from the axis than row 1.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
@@ -71,8 +71,9 @@ Eigen::MatrixXd triangle_of_degenerate();
 
 /// Barycentric coordinates of the corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
-/// Returns the matrix of (P-A.2), shape (16, 10), which maps the triangle to the Bezier points of a quadrilateral in it, U fastest. It is exact,
-/// because a cubic of a bilinear map is bicubic.
+/// Returns the matrix of (P-A.2), shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the Bezier points of a bicubic
+/// quadrilateral in the triangle, U fastest. The representation is exact, because the quadrilateral is a bilinear map, and a cubic polynomial of a
+/// bilinear map is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
 /// Returns the three quadrilaterals between the corners, the mid-sides and the barycentre: at T_003, at the pole, at T_030.
@@ -82,7 +83,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 struct PolePiece {
   double from = 0, to = 1;     ///< range of v of the triangle that contains the piece
   Corners corners;             ///< corners of the piece in this triangle
-  Eigen::MatrixXd conversion;  ///< matrix from Bezier points of the degenerate element to those of the piece; shape (16, 16)
+  Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
   /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.
   std::optional<std::array<double, 2>> local(double u, double v) const;

@@ -51,7 +51,7 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   return score;
 }
 
-/// Returns the bay of the candidate with the smallest harm; among equals the shorter bay, then the lower vertex.
+/// Returns the bay of the candidate with the smallest harm. Among bays of equal harm, returns the shortest, then the one with the lowest vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;

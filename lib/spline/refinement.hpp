@@ -68,17 +68,18 @@ struct Refinement {
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules = {});
 
 class ExtendedMesh;
-/// Repairs the mesh without bisecting elements. Returns the numbers of bays and of halvings.
+/// Repairs the mesh without bisecting elements. Returns the number of added bays and the number of halvings.
 std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules);
 
+/// Result of `coarsen`. A bay is the part of a mesh line between two successive perpendicular edges.
 struct Coarsening {
   TMesh mesh;
   int bays = 0;       ///< number of bays removed
   int doublings = 0;  ///< number of times that the spacing of the rings of an extraordinary point was doubled
-  int repairs = 0;    ///< number of bays added again to keep the mesh analysis-suitable
+  int repairs = 0;    ///< number of bays inserted after the removal to make the mesh analysis-suitable
 };
 
-/// Permission for an element of elements(mesh) to grow: how often it may double its width (s) and height (t).
+/// Permission for an element of elements(mesh) to grow: `s` and `t` are the numbers of times that its width and its height may be doubled.
 struct Merge {
   int element;
   int s = 1, t = 1;

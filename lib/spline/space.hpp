@@ -1,5 +1,5 @@
 #pragma once
-// A spline space as all other modules see it: a list of Bezier elements and the collocation points.
+// Interface of a spline space to all other modules: a list of Bezier elements and the collocation points.
 
 #include <array>
 #include <memory>

@@ -13,8 +13,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns options with a smaller tolerance for the double layer. Rules are chosen for int G f dG; under equal rules the error of the double layer,
-/// whose kernel is steeper by one order, is up to five times as large (tests/verify/layers.cpp).
+/// Returns options whose tolerance is smaller for the double layer. Quadrature rules are chosen for int G f dG. The kernel of the double layer is
+/// steeper by one order, so that the error with the same rule is up to five times as large (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
@@ -24,7 +24,8 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  const double of_tree = single() ? options.tolerance : options.tolerance / 2;  // measured: the error is half of this tolerance
+  // The measured error of the double layer by clusters is half of the tolerance set here.
+  const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
   std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
@@ -287,8 +288,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the weights of a rule on panel e, including area. If the panel contains the target and the area is that of the unstressed surface, the
-/// weights are cached.
+/// Returns the weights of a rule on panel e, including area. If the panel contains the target and areas refer to the unstressed surface, the weights
+/// are cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;

@@ -83,30 +83,32 @@ class Layer {
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
-  /// deforms. With three periods, a double layer includes an additional pressure linear in x, so that it leaves the mean velocity over the cell
-  /// unchanged, where the volume inside the surfaces counts as part of the cell:
+  /// deforms. With three periods, a double layer includes an additional pressure linear in x. It then does not change the mean velocity over the
+  /// cell, including the volume inside the surfaces:
   ///
   ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p.                                              (2.28)
   ///
   /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Makes later targets off the surfaces, from row `first` on, see only the images of the surfaces on the lattice and not the surfaces themselves.
+  /// Excludes the surfaces themselves for later targets off the surfaces, from row `first` on. Only the images of the surfaces on the lattice then
+  /// contribute to u at these targets.
   void see_images_only(int first) { lattice_.images_only = first; }
 
   /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
   /// on a lattice. The blocks assembled for near control points do not include the wall.
   void set_wall(const PlaneWall& wall);
 
-  /// If far sums use clusters, shares those at the sites `everybody` among callers 0 .. parts - 1. `apply` then fills these rows with a part of the
-  /// layer; the sum over all callers is the layer. Near-singular and singular quadrature is included only by the caller that requests the row.
+  /// If far sums use clusters, divides the far sums at the sites `everybody` among callers 0 .. parts - 1. `apply` then fills these rows with a part
+  /// of the layer potential, and the caller must sum the rows over all callers. Near-singular and singular quadrature is included only by the caller
+  /// that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 
   /// Returns whether far sums use clusters, so that a few products are faster by `apply` than by assembling.
   bool by_clusters() const { return tree_.has_value(); }
 
-  /// Sets the shape, for any number of densities, and the area to which the density of a single layer refers.
+  /// Sets the shape x, which is kept for any number of densities. `measure`: area to which the density of a single layer refers.
   void place(const Net& x, Measure measure = Measure::current);
 
   /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).
@@ -146,7 +148,8 @@ class Layer {
   /// Consecutive targets should be neighbours, because each group of sixteen evaluates the panels of all its near points.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
 
-  /// Far nodes of the current shape: positions, weights including area and k (single layer), normals times area and k (double layer).
+  /// Return the far nodes of the current shape: their number, positions, weights including area and k (single layer), and normals times area and k
+  /// (double layer).
   int n_nodes() const { return surface_.panels.n_nodes(); }
   const std::vector<double> (&nodes() const)[3] { return surface_.node; }
   const std::vector<double>& weights() const { return weight_; }
@@ -157,8 +160,8 @@ class Layer {
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Number of kernel evaluations and times of all calls so far. Times are divided into `setup`, `far`, `near`, `self` and `assembly`, and further
-  /// phases for a lattice or a wall.
+  /// Return the number of kernel evaluations and the times of all calls so far. Times are divided into `setup`, `far`, `near`, `self` and `assembly`,
+  /// and further phases for a lattice or a wall.
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }
 
@@ -179,12 +182,12 @@ class Layer {
   struct Lattice {
     std::optional<PeriodicCell> cell;
     Repetition how;
-    int images_only = std::numeric_limits<int>::max();  // first target that sees only images
+    int images_only = std::numeric_limits<int>::max();  // first target to which only images of the surfaces contribute
     std::optional<PeriodicSum> sum;
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
-    std::vector<Mat3> rest_stress;              // contribution of the rest of the lattice for constant densities there
+    std::vector<Mat3> rest_stress;              // at rest_at: contribution of the rest of the lattice for constant densities
   };
 
   /// The unstressed surface.

@@ -47,7 +47,7 @@ void Layer::place_in_cell() {
   }
 }
 
-/// Returns the positions at which the far sums see the targets.
+/// Returns the positions of the targets `rows` for the far sums. On a lattice, these positions are wrapped into the cell.
 std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int> rows) const {
   std::vector<Vec3> at = rows_of(targets.at, rows);
   if (lattice_.cell)
@@ -55,8 +55,8 @@ std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int
   return at;
 }
 
-/// Subtracts the surfaces themselves from the far sum at the targets that see images only. Nodes are moved into the cell one by one, so that no image
-/// of the far sum is the surface itself for all of them.
+/// Subtracts the surfaces themselves from the far sum at targets to which only images contribute. They cannot be left out of the far sum, because its
+/// nodes are moved into the cell one by one, so that the nodes of one surface may belong to different images.
 void Layer::subtract_itself(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   std::vector<int> rows;
@@ -110,7 +110,7 @@ void Layer::place_rest(const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the present moments, x_p the mean of the nodes of surface p.
+/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the current moments of f. x_p is the mean of the nodes of surface p.
 Vec3 Layer::pressure_along() const {
   const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
   const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };

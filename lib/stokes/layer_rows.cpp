@@ -20,7 +20,7 @@ constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 /// Padded functions and functions of control points that are not requested add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< the panels; index among them of each panel of the surface, or -1
+  std::vector<int> panels, index;  ///< the panels; for each panel of the surface, its index in this list, or -1
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;

@@ -40,10 +40,10 @@ std::vector<double> shares(const spline::Space& space) {
   return out;
 }
 
-/// Returns the number of Gauss points per direction of the far rule for each element. Elements that are small compared with the distance of the
-/// surrounding targets (at extraordinary points of Catmull-Clark surfaces, and halves at T-junctions) need fewer points, because the integrand is
-/// smoother on them and their share of the area is small. At least half the digits are kept, as the shape of elements next to extraordinary points
-/// requires (tests/verify/layers.cpp).
+/// Returns the number of Gauss points per direction of the far rule for each element. Some elements are small compared with the distance of the
+/// surrounding targets: pieces at extraordinary points of Catmull-Clark surfaces, and halves at T-junctions. They need fewer points, because the
+/// integrand is smoother on a small element and its part of the area is small. The rule keeps at least half the digits of the tolerance, as the shape
+/// of elements next to extraordinary points requires (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;

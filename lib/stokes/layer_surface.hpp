@@ -18,19 +18,19 @@ namespace tanktread::stokes {
 bool sums_by_tree(const spline::Space& space, const quadrature::Options& options, int images = 1);
 bool sums_by_tree(double nodes, const quadrature::Options& options);
 
-/// The current surfaces in the form that a layer integrates over: panels, far nodes, and the rule that each target needs on each panel.
+/// Current surfaces, prepared for the integration of a layer: panels, far nodes, and the quadrature rule for each pair of a target and a panel.
 class LayerSurface {
  public:
   /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: the integrand grows like 1 / r^2 across gaps.
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
-  /// Lets targets also see images of the surfaces.
+  /// Includes periodic images of the surfaces.
   void repeat();
 
   /// Sets the symmetry that all later shapes have.
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Returns the panels of a far sum over fundamental panels, and their weights there.
+  /// Returns the fundamental panels, and their weights in a far sum over these panels.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
   /// Returns all symmetry images except the identity, about the centre of the current shape.
@@ -39,11 +39,11 @@ class LayerSurface {
   /// Sets the shape. Returns false, at no cost, if the shape is unchanged.
   bool place(const Net& x);
 
-  /// Returns the position of site i, and the value there of the field with these Bezier points.
+  /// Returns the position of site i, and the value at site i of the field with the Bezier points `of`.
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// Returns the panels that contain site i and need a singular rule for it. There are none under the rule `desingularised`.
+  /// Returns the panels that contain site i and need a singular rule for it. The rule `desingularised` needs no such panels.
   std::span<SelfPair> own(int i);
 
   /// Returns the panels that need a near rule for a target, without the panels of `own`, which contain it.

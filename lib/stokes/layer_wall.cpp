@@ -16,7 +16,7 @@ namespace {
 /// Factor on the tolerance for clusters of images, whose kernel has poles of two orders higher. Measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
-/// Returns Bezier points (`point`) or values of a panel in the wall's axes.
+/// Transforms the Bezier points of a panel (if `point` is true) or the Bezier coefficients of a vector field on it to the wall's axes.
 std::vector<double> turned(const PlaneWall& wall, const double* bezier, int n_b, bool point) {
   std::vector<double> own(static_cast<std::size_t>(3 * n_b));
   for (int b = 0; b < n_b; ++b) {

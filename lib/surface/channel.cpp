@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr int n_samples = 4000;
-constexpr double straight_end = 1.7;  // in R_T: neglected perturbations have decayed to 1e-5 at this distance
+constexpr double straight_end = 1.7;  // least length of a straight end divided by R_T; neglected perturbations decay to 1e-5 over it
 
 }  // namespace
 

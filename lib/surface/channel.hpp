@@ -15,7 +15,8 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 ///
 ///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the outline of factor 1, N = dC/ds turned towards x2 by a right angle
 ///
-/// One that repeats has no ends and no bend: f(s + L) = f(s), and start and end are those of one period around the middle of what changes.
+/// A channel that repeats has no ends and no bend, and f(s + L) = f(s). Its start and end are the ends of one period, which is centred on the range
+/// of s in which the factors change.
 class Channel {
  public:
   /// Throws UserError, with numbers in the message, if the channel is folded, closed or has no straight ends.
@@ -39,8 +40,8 @@ class Channel {
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 
-  /// Returns the knots of a surface of the wall in the longitudinal parameter u, from start to end. at() returns the section at any u between them.
-  /// At a step of the profile, f changes with u at constant s.
+  /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
+  /// this range. At a step of the profile, the factors f2 and f3 change with u while s is constant.
   std::vector<double> knots(int elements) const;
   int elements() const;  ///< number of elements whose length is about their width
   Section at(double u) const;

@@ -15,16 +15,16 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// A disc inside the outline, used for a piece: no point of the piece is nearer to the outline than `gap` returns.
+/// Disc that bounds the distance of a piece of an element to the outline. No part of the outline that may be nearest to the piece lies inside the
+/// disc. A point of the piece at this squared distance from `centre` is therefore at least gap() away from the outline.
 struct Disc {
   Vec2 centre;
   double radius;
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// Returns a disc for pieces within r of x. It touches the outline at `foot`, the nearest point to x, and its curvature is at least that of the
-/// outline there, so that no point of the outline that may be nearest to such a piece lies inside. Each trial disc passes through the outline point
-/// farthest inside the previous one.
+/// Returns a disc for pieces within the distance r of x. The disc touches the outline at `foot`, the point of the outline nearest to x. Its curvature
+/// is at least the curvature of the outline at `foot`. Each trial disc passes through the outline point that is farthest inside the previous disc.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -144,7 +144,7 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Bounds the squared distance to the disc's centre by its Bezier coefficients, which also show along which index it bends.
+  /// Sets the bound, corner and bending direction of a piece from the Bezier coefficients of the squared distance to the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);
@@ -170,7 +170,7 @@ class OutlineSearch {
   const Patches& surface_;
   const Outline& outline_;
   std::vector<ElementPart> pieces_;  // a heap
-  Eigen::MatrixXd products_;   // for the degree last used
+  Eigen::MatrixXd products_;   // products() for the degree used last
   Clearance best_;
 };
 

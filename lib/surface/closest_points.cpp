@@ -99,7 +99,7 @@ class PairSearch {
     double bound;
     int box[2];
     const Part* part[2];
-    bool operator<(const Pair& other) const { return bound > other.bound; }  // the first of the queue is the nearest
+    bool operator<(const Pair& other) const { return bound > other.bound; }  // the priority queue then returns the nearest pair first
   };
 
   void push(const Pair& pair) {

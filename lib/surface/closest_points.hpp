@@ -23,7 +23,7 @@ class ElementBoxes {
  public:
   struct Box {
     Eigen::Array3d low, high;
-    int first, last;    ///< its elements: element(first) .. element(last - 1)
+    int first, last;    ///< elements in the box: element(first) .. element(last - 1)
     int child[2] = {};  ///< children of a box with several elements
   };
 
@@ -51,8 +51,9 @@ double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 /// parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
-/// Refines the closest points `near` within their two elements, `first` and `second`, by Newton's method, to where the connecting line is normal to
-/// both surfaces. The points may lie up to a tenth of an element beyond its edges. If the method fails, returns the points at the sites of `near`.
+/// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the
+/// line that connects the points is normal to both surfaces. The points may lie up to a tenth of an element beyond its edges. If the method fails,
+/// returns the points at the sites of `near`.
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
 /// Returns, for each element of a surface, the width of the film between it and the other surfaces. The width is the smallest distance from 3 x 3

@@ -76,7 +76,7 @@ Vec2 start(const Patch& patch, int c, double sign) {
   return {double(highest % (p + 1)) / p, double(highest / (p + 1)) / p};
 }
 
-/// Returns the maximum of sign * x_c, which is at least `reached`; bounds[e] is an upper bound on element e.
+/// Returns the maximum of sign * x_c. `reached`: lower bound of the maximum. bounds[e]: upper bound on element e.
 double largest_coordinate(const Patches& surface, int c, double sign, double reached, const std::vector<double>& bounds) {
   double best = reached;
   std::vector<int> candidates;  // few elements remain
@@ -244,7 +244,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // of both kinds of extremes: on a nearly circular section, samples do not distinguish near from far
+  Range range;  // contains both kinds of extremes, because on a nearly circular section samples do not distinguish minima from maxima
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

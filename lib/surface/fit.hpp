@@ -33,7 +33,7 @@ class LeastSquaresFit {
   BezierMap map_;
   std::map<int, Table> tables_;  ///< tables by degree
   std::vector<double> area_;
-  std::unique_ptr<const Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_;  ///< at a fixed address, to which the solver refers
+  std::unique_ptr<const Eigen::SparseMatrix<double, Eigen::RowMajor>> matrix_;  ///< on the heap, because the solver keeps its address
   spline::IncompleteSolver solver_;
 };
 

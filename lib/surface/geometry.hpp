@@ -30,7 +30,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
 /// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area uses the same points.
 struct Measures {
   double area = 0, volume = 0;
-  Vec3 centroid;        ///< P-42
+  Vec3 centroid;        ///< centroid of the volume (P-42)
   Mat3 second_moments;  ///< M_ij = 1/5 oint y_i y_j (y.n) dG about the centroid (6.1)
 };
 
@@ -40,7 +40,7 @@ bool distinct(double longer, double shorter, double volume);
 
 /// Semi-axes of the ellipsoid with the same second moments (6.1).
 struct PrincipalAxes {
-  Vec3 lengths = Vec3::Zero();     ///< in descending order
+  Vec3 lengths = Vec3::Zero();     ///< lengths of the semi-axes in descending order
   Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along the semi-axes; the first nonzero component of each is positive
   bool longest_defined = false;    ///< the longest and the middle semi-axis are distinct
   bool shortest_defined = false;   ///< the middle and the shortest semi-axis are distinct
@@ -50,7 +50,8 @@ PrincipalAxes principal_axes(const Measures& measures);
 /// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-// Extreme coordinates of a closed surface and extreme distances on a plane section, by Newton's method on the exact polynomials.
+// The functions below compute extreme coordinates of a closed surface and extreme distances in a plane section. They apply Newton's method to the
+// exact polynomials of the surface.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
@@ -124,7 +125,7 @@ class Geometry {
   std::vector<int> all_, all_blocks_;  ///< 0 .. n_elements - 1, 0 .. n_blocks - 1
 };
 
-/// The same measures for a single evaluation.
+/// Computes measures of one control net.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
 

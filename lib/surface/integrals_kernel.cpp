@@ -161,7 +161,7 @@ struct Of {
     for (int k = 0; k < 6; ++k) store(second[k] / 5, result.second[k]);
   }
 
-  /// Computes v at the nodes, [s][t].
+  /// Computes the velocity v at the Gauss points, indexed [s][t].
   template <int n>
   static void node_values(const Table<p, n>& table, const Lanes& velocities, Register (&v)[n][n][3]) {
     each_node<p, n, true>(table, velocities, [&](int qs, int qt, const Register(&at)[3], const Register(&)[3], const Register(&)[3]) {

@@ -231,7 +231,8 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
   if (static_cast<int>(found.vertices.size()) > found.start + 1)
     result.length = (samples.at(found.vertices[found.start + 1]).now - samples.at(edge.vertex).now).norm();
   const int last = static_cast<int>(found.vertices.size()) - 5;
-  // Use the two windows with the edge in the middle. If there are none, use the nearest ones.
+  // A fourth difference needs a window of five successive vertices. Use the two windows in which the edge touches the middle vertex. If the line is
+  // too short for both, use the windows in which the edge is the first or the last one.
   std::vector<int> windows;
   for (const int first : {found.start - 2, found.start - 1})
     if (first >= 0 && first <= last) windows.push_back(first);

@@ -169,8 +169,8 @@ Nearest Outline::nearest(const Vec2& p) const {
   return best;
 }
 
-/// The point nearest to p, which lies within r of x, is no farther from p than `its`. A point y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is
-/// farther.
+/// Returns the point of the outline nearest to p. p lies within the distance r of x, and `its` is the nearest point to x. Chords that contain only
+/// points y with |y - x|^2 - |its - x|^2 > 2 r |y - its| are skipped, because such points are farther from p than `its`.
 Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
   Nearest best;
   best.distance = std::numeric_limits<double>::infinity();

@@ -56,11 +56,11 @@ struct Nearest {
   int side = 0;
   double u = 0;
   Vec2 x;               ///< nearest point
-  double distance = 0;  ///< distance to it; positive for a point inside the outline, negative outside
+  double distance = 0;  ///< distance to the nearest point; positive for a point inside the outline, negative outside
 };
 
-/// A closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), counter-clockwise: from x2 towards x3, seen against x1. It is either one
-/// closed smooth side, or several smooth sides that meet at corners, where each side starts at the end of the previous one.
+/// Closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), traversed in the direction of rotation from x2 towards x3. The curve has either
+/// one closed smooth side, or several smooth sides that meet at corners. Each side starts at the end of the previous side.
 class Outline {
  public:
   /// Throws UserError if sides cross or run clockwise. The message begins with `name`.
@@ -82,7 +82,7 @@ class Outline {
   double side_length(int k) const { return lengths_[static_cast<std::size_t>(k)]; }
   double area() const { return area_; }
   Vec2 centroid() const { return centroid_; }
-  double radius() const;                            ///< R_T = sqrt(area/pi)
+  double radius() const;                            ///< returns R_T = sqrt(area/pi)
   std::array<Vec2, 2> box() const { return box_; }  ///< smallest and largest coordinates
 
   Nearest nearest(const Vec2& p) const;

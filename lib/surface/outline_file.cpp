@@ -9,7 +9,7 @@ namespace tanktread::surface {
 namespace {
 
 constexpr int fewest_smooth = 8, fewest_with_corners = 3;
-constexpr double same_point = 1e-6;  // in units of the longest step
+constexpr double same_point = 1e-6;  // distance of points that count as equal, divided by the longest step
 
 struct Row {
   int line;
@@ -72,7 +72,7 @@ class File {
   std::vector<Row> rows_;
 };
 
-/// Returns the spline through n + 1 points from rows[first] on (n of them if closed), parametrised by chord length.
+/// Returns the spline through n + 1 points from rows[first] on (n points if closed), parametrised by chord length.
 CubicCurve fit(const std::vector<Row>& rows, std::size_t first, std::size_t n, bool closed) {
   std::vector<double> breaks{0};
   std::vector<Vec2> points{rows[first].x};

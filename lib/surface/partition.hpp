@@ -14,9 +14,10 @@ struct Partition {
   std::vector<int> element_owner, point_owner;
 };
 
-/// Returns connected parts of nearly equal cost: METIS on the graph of elements that share control points, with edges weighted by their number. A
-/// point belongs to the part that owns most of the elements around it, as long as the numbers of points stay balanced too. Deterministic. `cost`:
-/// cost of each element (empty: 1 each). Throws UserError if there are more parts than elements.
+/// Divides the elements into connected parts of nearly equal cost, by METIS. Elements that share control points are neighbours in the graph, and the
+/// number of shared points is the weight of the graph's edge. A control point belongs to the part that owns most of the elements around it, as long
+/// as the numbers of points stay balanced too. The result is deterministic. `cost`: cost of each element; if empty, every element costs 1. Throws
+/// UserError if there are more parts than elements.
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
 
 /// Returns a partition if only some points have work, for example the fundamental points of a symmetric surface. Only these points are balanced; the

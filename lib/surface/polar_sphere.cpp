@@ -83,7 +83,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // a single point stays on the axis
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the single point at a pole stays on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }
@@ -113,7 +113,8 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // Residuals: eps, and its gradient in an orthonormal frame. `slope`: their derivatives with respect to the profile of rows first .. last.
+    // residual: eps, and the gradient of eps in an orthonormal frame. slope: derivatives of `residual` with respect to the profile of rows first ..
+    // last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);

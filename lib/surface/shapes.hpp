@@ -34,9 +34,9 @@ class CubeSphere {
   Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
 };
 
-/// Returns the control points of the unit sphere: those of a smooth cube sphere, after `fits` least-squares fits of the surface to its own radial
-/// image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the projected
-/// cube.
+/// Returns the control points of the unit sphere: the control points of a smooth cube sphere after `fits` least-squares fits of the surface to its
+/// own radial image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the
+/// projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at +1 comes first. `space` is the space of the mesh.
@@ -61,17 +61,18 @@ Vec3 red_cell(const Vec3& on_unit_sphere);
 /// the fit. Lengths refer to the deck's radius.
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
 
-/// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the particle's own axis x_{axis+1}.
+/// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the body-fixed axis x_{axis+1} of the particle.
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
 /// Fits the resting shape `net` of a sphere or ellipsoid again on its current space. Returns any other shape unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
-/// Converts the resting shape `net` of one particle into that of another on the same mesh, with another size, position and orientation.
+/// Converts the resting shape `net` of the particle `from` to the resting shape of the particle `to` on the same mesh. `to` may have another size,
+/// position and orientation.
 Net placed_again(const Net& net, const ParticleShape& from, const ParticleShape& to);
 
-/// Returns the surface of a file, with its centroid moved to the deck's centre and rotated about it.
+/// Returns the surface read from a file. Its centroid is moved to the centre given in the deck, and the surface is rotated about this centre.
 Net imported_shape(const ParticleShape& shape);
 
 }  // namespace tanktread::surface

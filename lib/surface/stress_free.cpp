@@ -50,7 +50,7 @@ Meridian red_cell_meridian(double radius) {
   return {radius, [=](double z) { return radius * half_thickness(z); }, [=](double z) { return radius * slope(z); }};
 }
 
-/// Returns the particle's own axis of revolution, 2 for x3.
+/// Returns the index of the body-fixed axis of revolution of the particle, 2 for x3.
 int axis_of(const ParticleShape& shape) {
   if (shape.shape == "sphere" || shape.shape == "red cell") return 2;
   if (shape.semi_axes) {
@@ -85,7 +85,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// Returns the z of `other` whose area to the equator equals that of `one` at the given z.
+/// Returns the height on the meridian `other` that encloses the same area with the equator as the height z on the meridian `one`.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

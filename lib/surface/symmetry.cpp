@@ -273,7 +273,8 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
   return result;
 }
 
-/// If an element contributes to p, its image under g contributes the reflected value to g p. The factor is the number of images that keep the source.
+/// Adds the contributions of the images of elements to the sums at fundamental points. If an element contributes to a point p, its image under g
+/// contributes the reflected value to the point g p. The factor is the number of images that map the source of p onto itself.
 void fold(const Symmetry& symmetry, Net& sums) {
   if (symmetry.order() == 1) return;
   const std::vector<int>& source = symmetry.source();

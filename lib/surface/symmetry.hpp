@@ -80,8 +80,8 @@ class Symmetry {
 /// wall. `keeps` is called before the elements are compared; it receives the images of the points.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
-/// One element of each orbit, the one with most fundamental points, in ascending order. Its weight is 1 divided by the number of images, identity
-/// included, that map it onto itself.
+/// One element of each orbit of elements, in ascending order: the element with most fundamental points. The weight of an element is 1 divided by the
+/// number of images, including the identity, that map the element onto itself.
 struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;
@@ -101,11 +101,11 @@ class Parity {
  public:
   explicit Parity(const Symmetry& symmetry, const Vec3& of_planes = Vec3::Ones());
 
-  /// Return the factors that convert the vector, or the scalar, at a point's source to that at the point, as Symmetry::signs.
+  /// Return the factors that convert a vector, or a scalar, at the source of a point to the value at the point, like Symmetry::signs.
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
 
-  /// Complete fields of this parity from their rows at the fundamental points, as Symmetry::complete.
+  /// Complete fields of this parity from their rows at the fundamental points, like Symmetry::complete.
   void complete(Net& field) const;
   void complete(Eigen::VectorXd& field) const;
 

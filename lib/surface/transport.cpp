@@ -26,7 +26,7 @@ struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
-  bool onwards = false, backwards = false;  // whether a piece moves along the curve, or against it
+  bool onwards = false, backwards = false;  // true if a piece moves along the curve; true if a piece moves against it
 
   /// Adds the piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {
@@ -81,7 +81,7 @@ struct Sums {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
-  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // round-off must not decide on a side
+  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // points this close are in the plane
   const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {
     const auto [low, high] = hull(places[e], 1);

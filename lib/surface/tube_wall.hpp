@@ -27,14 +27,14 @@ struct TubeWall {
   int n_around = 0, n_along = 0;
   double widest = 0;                       ///< approximate longest side of the elements at x1 = 0, in a channel at its narrowest section
   std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
-  std::vector<std::vector<spline::Site>> sites;    ///< collocation points of densities; in an open wall those of the space
+  std::vector<std::vector<spline::Site>> sites;    ///< collocation points of densities; in an open wall the collocation points of the space
   std::vector<spline::Site> middles;               ///< midpoints of the elements of densities
   std::vector<int> middle_of;                      ///< index in `middles` for each element of the space
   double period = 0;                               ///< period L along x1; 0 for an open wall with two ends
-  Eigen::SparseMatrix<double> open_from_periodic;  ///< E: maps control values of a periodic density to those on the space; else empty
+  Eigen::SparseMatrix<double> open_from_periodic;  ///< E: control values of a periodic density to control values on the space; else empty
 
   double length() const { return end - start; }
-  double radius() const { return outline.radius(); }  ///< R_T
+  double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)
 };
 
 /// Returns the wall of a section over [-length/2, length/2], with the elements and the grading g of the options: the element density is proportional
@@ -54,8 +54,8 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
 /// exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
-/// Returns the number of elements along a period: that of the options, or by default the number that makes elements as dense as around a short
-/// particle in a tube that does not repeat.
+/// Returns the number of elements along a period. If the options do not set it, the elements are as dense as around a short particle in a tube that
+/// does not repeat.
 int elements_per_period(const TubeOptions& options, double radius, double period, double half_length);
 
 /// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 R_T to an end of the wall. At this distance the

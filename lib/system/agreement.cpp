@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::seconds patience(30);
 
-/// Communicator of all ranks; null if there is only one rank.
+/// Returns the communicator of all ranks; null if there is only one rank.
 MPI_Comm& everyone() {
   static MPI_Comm comm = MPI_COMM_NULL;
   return comm;

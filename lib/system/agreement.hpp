@@ -38,8 +38,8 @@ bool any_told_to_stop(bool told);
 /// round-off between ranks. If `choose` throws, every rank throws RunFailure. Collective.
 std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
-/// Replaces the values on every rank by those of the first rank. For data that should be bitwise equal, so that all ranks decide alike even if they
-/// are not. Collective.
+/// Replaces the values on every rank by the values of the first rank. If data should be bitwise equal but may not be, this lets all ranks make the
+/// same decisions. Collective.
 void take_first(std::span<double> numbers);
 double of_first(double mine);
 bool of_first(bool mine);

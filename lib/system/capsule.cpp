@@ -199,9 +199,8 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
   return latest_;
 }
 
-/// Computes (4.2) step by step: the load of membranes (membrane_load) and rigid bodies, the velocity due to this load and the ambient flow
-/// (explicit_velocity), the projection onto constant volumes (constrain), and if necessary (has_velocity_system) the solution of the system for the
-/// velocity (solve_velocity).
+/// Computes (4.2) step by step: the load (membrane_load and rigid bodies), its velocity and the ambient flow (explicit_velocity), the projection onto
+/// constant volumes (constrain), and the solution of the system for the velocity (solve_velocity), if there is one (has_velocity_system).
 Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   rigid_.place(x);
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
@@ -371,8 +370,9 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   return rows;
 }
 
-/// Solves P B P v = rhs, where rhs = P rhs; b and c are empty if the volume is not constrained. In a tube, B includes the response of the wall to v
-/// (schur), or all blocks are solved for. The initial guess is `guess`, or the right-hand side if `guess` is empty or bodies are rigid.
+/// Solves P B P v = rhs for v, where rhs = P rhs. P removes the change of volume; if b and c are empty, the volume is free and P = 1. In a tube, B
+/// includes the response of the wall to v (schur), or the block system is solved. If `guess` is empty or there are rigid bodies, the iteration starts
+/// from rhs instead of `guess`.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();

@@ -56,14 +56,14 @@ struct Work {
 /// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
-  std::vector<Particle> particles{1};                            ///< in stacking order; the space of a single particle need not be set
+  std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
   bool strong_load = false;                                      ///< true: load (P-3) at the collocation sites instead of (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; no points if there is none
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points: none
 };
 
 /// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
@@ -126,7 +126,7 @@ class Capsule : public Dynamics {
   void improve_start(Net& y, const Net& before, double shift) override;
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
-  double norm(const Net& displacement) const override;  ///< in a straight tube, without the mean displacement along x1, on which nothing depends
+  double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
   Net symmetric(Net field) const override;
 
   /// Sets the virtual work of forces for all later calls, one row per control point. `contacts`: contact forces, which keep their directions and
@@ -305,7 +305,7 @@ class Capsule : public Dynamics {
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift of the implicit system solved last
   Net flux_, flux_response_;            // b and c of the Jacobian's P; empty if the Jacobian has no P
-  std::vector<Mat3> gradients_;         // velocity gradients at the sites, where last linearised; only if the flow is not affine or in a tube
+  std::vector<Mat3> gradients_;         // velocity gradients at the sites, at the last linearisation; only in a tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;
   std::shared_ptr<Evaluation> latest_;

@@ -193,8 +193,8 @@ Net Capsule::defect(const Net& x, const Net& u) {
   return defect_here(in_cell, slower);
 }
 
-/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity) (3.14). The load of u in a viscous membrane is
-/// added to the elastic load, so that only one sum over the surface is needed.
+/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity) (3.14). The viscous load due to u is added to the
+/// elastic load, so that only one sum over the surface is needed.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());

@@ -13,7 +13,7 @@
 
 namespace tanktread::coupling {
 
-/// Two close points on two surfaces, or on a surface and its lattice image, and the contact force between them.
+/// Two close points, on two surfaces or on a surface and one of its lattice images, and the contact force between these points.
 struct Contact {
   std::array<std::size_t, 2> particle{};  ///< indices of the two particles
   std::array<spline::Site, 2> site;       ///< parametric point on the space of each particle

@@ -81,7 +81,7 @@ class CoupledMotion : public Dynamics {
     On on;
     Eigen::Index first, size;  // position and number of the coefficients within a state
     double scale;
-    spline::Block rows;        // rows of its particle in the net
+    spline::Block rows;        // rows of the particle in the net
     Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
   };
   Net left(const Net& delta);

@@ -29,13 +29,13 @@ class Evaluation {
   const Net& work();                                     ///< dE/dx of all loads minus the virtual work of forces; 0 for rigid bodies
   const std::vector<Net>& load_sums();                   ///< complete sums of the loads
 
-  /// Load of the fluids on the membranes, as control values, per unstressed or per current area, depending on the particle. For a rigid body it is
-  /// the load of equation (2.23), a rigid field with the force and torque on the fluid, and not the traction.
+  /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
+  /// rigid body this is the load df of (2.23), a rigid field with the force and torque on the fluid, and not the traction.
   const Net& load();
 
-  const RigidParticles& rigid();                         ///< rigid bodies with their motion at this shape
-  const Tube::Response& response();                      ///< response of the tube to load and velocity; leaves the tube set to this shape
-  Tube::Checks checks();                                 ///< checks of this response
+  const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
+  const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
+  Tube::Checks checks();                                 ///< returns the checks of the tube's response
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();

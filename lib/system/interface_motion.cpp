@@ -142,15 +142,15 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // in the frame of the initial shape, like A0
+    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, to which A0 refers
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();
   }
 }
 
-/// Returns the control values of W + n n.(v - W) + (1 - n n).w, with W at x where b = dV/dx, and w from the density f (no w if f is empty). Sets
-/// `rest` to v - W - w at the sites.
+/// Returns the control values of the mesh velocity (4.6), W + n n.(v - W) + (1 - n n).w, at the shape x. Here b = dV/dx, W is the rigid motion
+/// (4.14), and w is the relaxation velocity computed from the density f; if f is empty, w = 0. Sets `rest` to v - W - w at the sites.
 Net InterfaceMotion::combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const {
   Net u = sites_ * v;
   const Net places = sites_ * x;

@@ -75,14 +75,14 @@ class InterfaceMotion {
   bool relaxed_ = false;           // true if any drop relaxes
   double radius_ = std::numeric_limits<double>::infinity();  // R_C of the smallest drop
   std::vector<int> own_elements_;  // rank-owned elements of relaxing drops
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   const VelocityProjection* projection_;
   const membrane::SymmetricSolver &collocation_, &mass_;
   const Ranks& ranks_;
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // v - W - w at the sites where u is evaluated; M0^{-1} dE1/dx at the collocation sites
+    Net x, rest, density;  // rest: v - W - w at the sites where u is evaluated; density: M0^{-1} dE1/dx at the collocation sites
   };
   Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
   Net x_, flux_, normals_;  // values where the system was linearised

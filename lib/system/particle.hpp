@@ -27,8 +27,8 @@ struct Rigid {
 struct Particle {
   const spline::Space* space = nullptr;  ///< space of this particle; outlives the system
   spline::Block block;
-  double viscosity_ratio = 1;                 ///< lambda
-  double radius = 1;                          ///< R_C
+  double viscosity_ratio = 1;                 ///< lambda, viscosity of the inner fluid divided by mu
+  double radius = 1;                          ///< R_C, radius of the sphere of equal volume
   membrane::Material material;
   stokes::Measure measure = stokes::Measure::reference;  ///< measure of its weak load: (3.7) or (3.6); not used for a rigid body
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
@@ -51,10 +51,10 @@ membrane::Materials materials(std::span<const Particle> particles);
 /// Returns the common measure of the loads of all particles, or by_element if the measures differ.
 stokes::Measure measure(std::span<const Particle> particles);
 
-/// Returns for each element whether loads are measured on the current surface there.
+/// Returns, for each element, whether its load is per current area.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
-/// Returns the net on which loads are measured: for each particle the rows of `x` or `unstressed`, depending on the particle's measure.
+/// Returns the net whose area defines the loads, force per area. The rows of a particle are rows of `x` or `unstressed`, depending on its measure.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
 /// Returns the factor of the particle's double layer: 1 - lambda, or -1 for a rigid body, whose density is w of (2.23).

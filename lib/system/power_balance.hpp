@@ -21,7 +21,7 @@ struct Powers {
   double forces = 0;       ///< input of weights, forces on membranes and bodies, and contacts
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
-  double fluids = 0;       ///< dissipation in the fluids beyond that of the undisturbed ambient flow, computed as the remainder of the balance (6.12)
+  double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow: remainder of the balance (6.12)
   double left_over = 0;    ///< power of the residual of (2.22) between the collocation sites (6.13)
 
   void add_columns(Columns& to) const;

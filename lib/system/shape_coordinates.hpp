@@ -58,7 +58,7 @@ class ShapeCoordinates {
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates, or the change of a state
   Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of the field with these control values, or of the change of a state
   bool admits(const Net& field) const;                  ///< true if the field nearly has the symmetry of the coordinates
-  Net admitted(Net field) const;                        ///< the field with this symmetry that has the same values at fundamental points
+  Net admitted(Net field) const;                        ///< field with the symmetry of the coordinates, equal at fundamental points
 
  private:
   struct Coordinate {
@@ -88,13 +88,13 @@ class ShapeCoordinates {
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;
   surface::Parity parity_;
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
   Net normals_;  // normals of drops at the sites of the projection
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
-  Net state_;                           // state that changes are relative to
-  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the part of a state after its control net, one column each
+  Net state_;                           // state y relative to which add_fields() defines changes
+  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the field coefficients of a state, one column each
 };
 
 }  // namespace tanktread::coupling

@@ -14,14 +14,15 @@
 
 namespace tanktread::coupling {
 
-/// Least-squares fit of a spline field to values at points between the collocation sites,
+/// Least-squares fit of a spline field, with control values v, to a field u at points q between the collocation sites:
 ///
-///   v = (sum_q w_q N(q) N(q)^T)^-1 sum_q w_q N(q) u(q),   w_q the share of the unstressed area                            (4.21)
+///   v = (sum_q w_q N(q) N(q)^T)^-1 sum_q w_q N(q) u(q)                                                                     (4.21)
 ///
-/// The cubic spline that fits a smooth u best has the error h^4 B4(t)/24 times the fourth derivative of u on an element of length h, with the
-/// Bernoulli polynomial B4 = t^4 - 2 t^3 + t^2 - 1/30. Collocation at the knots has an error proportional to B4(t) + 1/30, whose mean is not 0 and
-/// which therefore affects the load of the next shape, the volume and every layer at a distance. The points q are the zeros of B4, two per parametric
-/// direction, where the best fit has no error.
+/// N(q) are the values of the basis functions at q, and w_q is the part of the unstressed area that belongs to q. The cubic spline that fits a smooth
+/// u best has the error h^4 B4(t)/24 times the fourth derivative of u. Here h is the length of an element, t in [0, 1] is the position on the
+/// element, and B4 = t^4 - 2 t^3 + t^2 - 1/30 is a Bernoulli polynomial. Collocation at the knots has an error proportional to B4(t) + 1/30. The mean
+/// of this error is not 0, so it affects the load of the next shape, the volume and the layers at distant points. The points q are the zeros of B4,
+/// two per parametric direction, because the best fit has no error there.
 class VelocityProjection {
  public:
   /// If the scene is symmetric, velocities are evaluated in the fundamental part only.

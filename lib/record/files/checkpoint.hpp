@@ -57,11 +57,11 @@ struct Damaged {
 struct Saved {
   Snapshot file;
   Checkpoint checkpoint;
-  std::vector<Damaged> damaged;  ///< damaged snapshots that are newer, the newest first
+  std::vector<Damaged> damaged;  ///< damaged snapshots that are newer than `file`, the newest first
 };
 
-/// Returns the newest undamaged checkpoint of a directory; nothing if there is none. Throws RunFailure if the system cannot read a newer one
-/// (permission, a failing disk), because that one may be undamaged.
+/// Returns the newest undamaged checkpoint of a directory; nothing if there is none. Throws RunFailure if the system cannot read a newer snapshot
+/// (permission, a failing disk), because the newer snapshot may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
 /// Adds all of `state` to the checkpoint, for example the number "time".

@@ -24,7 +24,7 @@ void write(hid_t file, const std::string& name, const Rows& rows, std::size_t di
 void write(hid_t file, const Checkpoint& checkpoint) {
   hdf::write_group(file, "checkpoint");
   for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
-  std::string names;  // one dataset per number would take longer than all fields of a small mesh
+  std::string names;  // all in one dataset, because one per number would take longer to write than all fields of a small mesh
   std::vector<double> numbers;
   for (const auto& [name, number] : checkpoint.numbers) names += name + "\n", numbers.push_back(number);
   hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});

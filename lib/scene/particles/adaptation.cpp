@@ -158,8 +158,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
 
-/// Removes the marks of elements of the T-mesh with a side at a pole, if poles stay degenerate or the paper's rule is used, which does not cut them.
-/// These elements are then only cut as neighbours of cut elements.
+/// Removes the marks of T-mesh elements with a side at a pole, if poles stay degenerate or `Adaptation/indicator` is not `error`. The paper's rule
+/// does not cut these elements. They are then cut only as neighbours of cut elements.
 void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
   if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);

@@ -31,7 +31,8 @@ struct Adapted {
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
-/// Returns warnings about limits of Adaptation that prevented cuts at this time, and about a surface that refinement has moved.
+/// Returns the warnings about an adaptation at this time. There is a warning for each limit of the section Adaptation that prevented cuts, and a
+/// warning if the refinement moved the surface.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of an isolated rigid body in its initial position, as Adaptation requires for its shape, the film to a wall and the traction, and

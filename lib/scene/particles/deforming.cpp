@@ -225,8 +225,8 @@ class Deforming : public ParticleSystem {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
-  /// Returns the stresslet of the two forces of a contact if they act at the centroids. The stresslet of each particle is about its own centroid and
-  /// does not contain this part.
+  /// Returns the stresslet of the two forces of a contact if the forces act at the centroids of the particles. The stresslet of each particle refers
+  /// to the centroid of the particle and does not contain this part.
   Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
     const auto centroid = [&](std::size_t k) {
       const Member& member = members_[contact.particle[k]];

@@ -70,7 +70,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// Returns the contact of the same pair less than half an element away, or null.
+/// Returns the known contact of the pair that is less than half an element away; null if there is no such contact.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
@@ -96,7 +96,8 @@ double Limiter::error() const {
   return most;
 }
 
-/// Computes the displacement that a unit force causes in the step, for contacts without one. Returns false if the evaluation fails.
+/// Computes the displacement that a unit contact force causes in the step, for each contact whose displacement is not known yet. Returns false if the
+/// evaluation fails.
 bool Limiter::respond(const motion::State& state) {
   const Net& start = state.x;
   const bool stiff = state.frozen.size() > 0;
@@ -116,7 +117,7 @@ bool Limiter::respond(const motion::State& state) {
   return true;
 }
 
-/// Computes the forces of the contacts. Returns the shape that they move the particles to.
+/// Computes the contact forces. Returns the shape after the displacement that these forces cause.
 Net Limiter::moved(const Net& start) {
   const auto n = static_cast<Eigen::Index>(held_.size());
   Eigen::MatrixXd a(n, n);

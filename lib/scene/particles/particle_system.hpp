@@ -33,7 +33,7 @@ struct SurfacePicture {
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
-/// Particles as the time loop sees them. Every call is collective, except where the fields of a snapshot are sampled.
+/// Interface of the particles to the time loop. Every call is collective, except where the fields of a snapshot are sampled.
 class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;

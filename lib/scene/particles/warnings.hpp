@@ -39,7 +39,7 @@ class Warnings {
   /// Data with which a resumed run continues.
   struct Memory {
     double waves = 0;            ///< number of e-folds by which the shortest waves can have grown
-    int limited = 0;             ///< number of latest consecutive steps as long as stability allows
+    int limited = 0;             ///< number of consecutive latest steps whose size was limited by stability
     std::vector<Warning> said;  ///< warnings shown so far
   };
 

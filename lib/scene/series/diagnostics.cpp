@@ -44,15 +44,15 @@ void add_centroid(const Vec3& centroid, Columns& to) {
 /// Returns the cosine of the angle between y and the first direction of the plane.
 double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
 
-/// Returns the site of one element in the first direction of the plane as seen from `from`, by Newton's method from a starting site.
+/// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // the iteration could not leave a pole
+  // Keeps sites inside the element, because the iteration could not leave a pole.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // at a pole one of the derivatives may be exactly zero
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // true at a pole, where a derivative may be exactly zero
     site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
     site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
   }
@@ -62,14 +62,14 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
 /// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. In a fluid at rest it is R_C per unit of time.
 double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
 
-/// Returns one number per rank, of which only this rank's is set yet; the others are 0.
+/// Returns an array with one number per rank. The number of this rank is `mine`; the numbers of other ranks are 0.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
   std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
   all[static_cast<size_t>(ranks.rank())] = mine;
   return all;
 }
 
-/// Returns the smallest number of the ranks that own blocks.
+/// Returns the smallest of the numbers of the ranks that own blocks.
 double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
   double result = std::numeric_limits<double>::infinity();
   for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);
@@ -159,7 +159,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // the columns of a single particle have the same names
+  const bool only = scene.particles.empty();  // true for a single particle, whose columns have the same names
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);
@@ -273,7 +273,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
                            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
-  const std::vector<int>& sites = body.symmetry.fundamental();  // the other sites are images of these
+  const std::vector<int>& sites = body.symmetry.fundamental();  // all other sites are images of these sites
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);

@@ -75,8 +75,8 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
 /// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves by v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
-/// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane is that of the longest and the shortest
-/// semi-axis of inertia. If one of these does not differ from the middle one, the inclination is NaN. Ranks share the elements. Collective.
+/// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane contains the longest and the shortest
+/// semi-axis of inertia. If one of these two equals the middle semi-axis, the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
@@ -90,7 +90,7 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);
 
-/// Returns the site of the surface that is seen from the point `from` in the first direction of the plane.
+/// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest |v.n| at these collocation sites, divided by rate x R_C: zero if the shape is steady. In a tube, v is relative to the axial

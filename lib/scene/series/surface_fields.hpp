@@ -44,11 +44,12 @@ class SurfaceFields {
   /// Copies shapes and slopes of `own`, a modified copy of of_shape(), back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
-  /// Returns the state `old` on the current meshes: with the shapes of `own` and the fields of `before`, whose meshes are those of `old`. Slopes and
-  /// secants are left out if there are fields. `bodies`: previous body of each particle; null if its mesh is unchanged.
+  /// Returns the state `old` on the current meshes, with the shapes of `own` and the fields of `before`. The meshes of `before` and `old` are the
+  /// same. Slopes and secants are left out if there are fields. `bodies`: previous body of each particle; null if its mesh is unchanged.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
-  /// Passes the state to the capsule and the fields; only to the fields if the capsule was evaluated within `distance` of it.
+  /// Passes the state to the capsule and the fields. If the capsule was evaluated last within `distance` of this state, passes the state only to the
+  /// fields.
   void set_state(const Net& y, double distance = 0);
 
   /// Returns a function that evaluates all fields of particle p in the state set last, scaled to order 1. It is empty if there are none.

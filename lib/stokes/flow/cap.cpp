@@ -41,7 +41,8 @@ Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   return {0, nu[0], nu[1]};
 }
 
-/// Returns the integral of f over a part of one side, which is bisected until each piece is no longer than its distance from the point.
+/// Returns the integral of f over a part of one side, begin <= u <= end, for a point at p in the plane and at the height h above it. The part is
+/// bisected until each piece is no longer than its distance from the point or than `smallest`.
 template <class Integrand>
 Vec3 stretch(const Integrand& f, const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h,
              double smallest) {
@@ -123,9 +124,10 @@ Net Cap::integral(const Net& x) const {
   return c;
 }
 
-/// 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS, s = x - y, which by the divergence theorem in the plane equals
-///   M_1a = -h^2/3 oint nu_a / s^3,   M_ab = -h/3 oint rho_a nu_b / s^3 + delta_ab W/3,   M_11 = W - M_22 - M_33,
-/// where W is the solid angle of the cap, sign(h) oint rho.nu / (s (s + |h|)).
+/// Returns 6 n_k M_jk / 8 pi with M_jk = int h s_j s_k / s^5 dS and s = x - y. By the divergence theorem in the plane of the cap,
+///   M_1a = -h^2/3 oint nu_a / s^3,   M_ab = -h/3 oint rho_a nu_b / s^3 + delta_ab W/3,   M_11 = W - M_22 - M_33.
+/// Here h = s_1, rho = (s_2, s_3), nu is the outward normal of the outline in the plane, and a and b are 2 or 3. W is the solid angle of the cap,
+/// sign(h) oint rho.nu / (s (s + |h|)).
 Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   const double h = place_ - y[0];
   const Nodes& nodes = nodes_for(std::abs(h));

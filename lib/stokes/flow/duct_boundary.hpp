@@ -39,8 +39,8 @@ class OutlineSpace {
     double first, last;
   };
 
-  /// Constructs about `elements` elements, distributed over the sides by the square root of their lengths, and uniform in t on a side except for the
-  /// side's own knots.
+  /// Constructs about `elements` elements. The number of elements on a side is proportional to the square root of its length. Elements of a side are
+  /// uniform in t, but also end at the knots of the outline's spline.
   OutlineSpace(const surface::Outline& outline, int elements);
 
   int size() const { return static_cast<int>(sites_.size()); }  ///< number of functions, equal to the number of collocation points

@@ -27,9 +27,10 @@ class EllipseProfile : public DuctProfile {
   double top_;
 };
 
-/// With half sides A, B and k_n = (2n + 1) pi/(2 B):
+/// Velocity profile of a rectangle with half sides A along y and B along z, where k_n = (2n + 1) pi/(2 B):
 ///   u = (B^2 - z^2)/2 - sum_n (-1)^n 2/(B k_n^3) cos(k_n z) cosh(k_n y)/cosh(k_n A)
-/// The terms decay like exp(-k_n (A - |y|)), so that y is taken along the direction in which the wall is farther away, in units of the other side.
+/// The terms decay like exp(-k_n (A - |y|)). The direction with the larger A - |y|, divided by the half side B of the other direction, is chosen as
+/// y.
 class RectangleProfile : public DuctProfile {
  public:
   explicit RectangleProfile(const surface::Vec2& sides) : half_(sides / 2) {}
@@ -52,7 +53,7 @@ class RectangleProfile : public DuctProfile {
   }
 
  private:
-  static constexpr int most_terms = 20000;  // only within 1e-3 of a corner
+  static constexpr int most_terms = 20000;  // limit on the number of terms; reached only within 1e-3 half sides of a corner
 
   /// Returns u, u_,y and u_,z. Powers are computed by recurrence.
   static std::array<double, 3> series(double a, double b, double y, double z) {

@@ -14,7 +14,7 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
-constexpr double far = 1.2, smallest = 1e-5;  // in radii of the end: distance from which the far nodes suffice; size of cells that are not halved
+constexpr double far = 1.2, smallest = 1e-5;  // divided by the radius of the end: distance at which the far nodes suffice; size of the smallest cells
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;

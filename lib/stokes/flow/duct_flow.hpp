@@ -49,9 +49,9 @@ class DuctFlow {
   const DuctProfile& profile() const { return *profile_; }
   double viscosity() const { return viscosity_; }
   double mean_velocity() const { return mean_velocity_; }
-  double flow_rate() const { return mean_velocity_ * outline_.area(); }  ///< Q
+  double flow_rate() const { return mean_velocity_ * outline_.area(); }  ///< returns Q
   double pressure_gradient() const { return pressure_gradient_; }        ///< G = -p_,1, units pressure/length
-  double radius() const { return outline_.radius(); }                    ///< R_T
+  double radius() const { return outline_.radius(); }                    ///< returns R_T = sqrt(area/pi)
 
   struct Maximum {
     surface::Vec2 place;

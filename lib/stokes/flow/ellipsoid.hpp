@@ -5,7 +5,7 @@
 
 namespace tanktread::stokes {
 
-/// An ellipsoid in a quiescent fluid, in its principal axes. With Delta(l) = sqrt((a^2 + l)(b^2 + l)(c^2 + l)),
+/// Rigid ellipsoid in a quiescent fluid, in its principal axes. The semi-axes are a, b, c, and Delta(l) = sqrt((a^2 + l)(b^2 + l)(c^2 + l)):
 ///
 ///   chi = int_0^inf dl/Delta,   alpha_i = int_0^inf dl/((a_i^2 + l) Delta)
 ///
@@ -16,10 +16,11 @@ struct Ellipsoid {
   /// Returns the force that the body exerts on the fluid when it translates with U: F_i = 16 pi mu U_i / (chi + alpha_i a_i^2).
   Vec3 force(double viscosity, const Vec3& velocity) const;
 
-  /// Returns the torque that it exerts when it rotates with omega: T_3 = (16 pi mu/3)(a^2 + b^2) omega_3 / (a^2 alpha_1 + b^2 alpha_2), cyclic.
+  /// Returns the torque that the body exerts on the fluid when it rotates with omega:
+  /// T_3 = (16 pi mu/3)(a^2 + b^2) omega_3 / (a^2 alpha_1 + b^2 alpha_2), cyclic.
   Vec3 torque(double viscosity, const Vec3& angular_velocity) const;
 
-  /// Returns the force per area that it exerts at a point x of the surface, with h = (sum x_i^2/a_i^4)^(-1/2) = n.x:
+  /// Returns the force per area that the body exerts on the fluid at a point x of the surface, with h = (sum x_i^2/a_i^4)^(-1/2) = n.x:
   /// f = h/(4 pi abc) (F + 3 (K omega) x x), where K_3 = T_3 / (omega_3 (a^2 + b^2)), cyclic. As Jeffery found, the second part has the moment of a
   /// uniform stress. Its antisymmetric part is the torque; its symmetric part follows from the torque by the reciprocal theorem.
   Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const;

@@ -23,7 +23,7 @@ struct ChebyshevBox {
 /// Computes the positions of the nodes.
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 
-/// Computes source strengths at the nodes whose far field equals that of the points in the box: node_q[c] += sum_k L_abc(x_k) q_k for the first n
+/// Computes source strengths at the nodes with the same far field as the points in the box: node_q[c] += sum_k L_abc(x_k) q_k for the first n
 /// components, with the Lagrange polynomials L_abc of the nodes. `scratch`: n n_nodes packs.
 void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q);
 

@@ -9,14 +9,14 @@ namespace tanktread::stokes {
 /// Factor of the integrals of both kernels.
 constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 
-/// Free-space Stokeslet: velocity at x0 due to a unit point force at x, times 8 pi mu.
+/// Returns the free-space Stokeslet: velocity at x0 due to a unit point force at x, times 8 pi mu.
 ///
 ///   G_ij = delta_ij/|r| + r_i r_j/|r|^3,   r = x - x0                     (2.1)
 ///
 /// Units 1/length. Pozrikidis 1992, eq. 2.2.8.
 Mat3 stokeslet(const Vec3& r);
 
-/// Stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Units 1/length^2.
+/// Returns the stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Units 1/length^2.
 Mat3 stresslet(const Vec3& r, const Vec3& n);
 
 /// Number of kernel evaluations so far, by the kind of rule: far-field, near-singular and singular.

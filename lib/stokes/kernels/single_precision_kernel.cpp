@@ -63,8 +63,8 @@ void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
 }
 
-/// Adds to u, times a factor, the sums over n nodes of term(first, k, r, inverse, sum), which adds the term of node k for the targets of the register
-/// that starts with target `first`; `inverse` is 1/|r|.
+/// Adds the sums over n nodes, times a factor, to u. term(first, k, r, inverse, sum) adds the term of node k to `sum`, for the targets of the
+/// register that starts with target `first`; `inverse` is 1/|r|.
 template <class Term>
 inline void add_terms(const Sight& sight, int n, double factor, double* u, const Term& term) {
   for (int first = 0; first < far_block; first += wide) {

@@ -36,8 +36,8 @@ class ImageSum {
   /// the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
-  /// Returns the sum over a few nodes, starting with node `first`, at one target. It is subtracted when a better rule replaces these nodes.
-  /// `carried`: strengths of these nodes.
+  /// Returns the sum over a few nodes, starting with node `first`, at one target. The caller subtracts this sum if a better rule replaces the nodes.
+  /// `carried`: source strengths of these nodes.
   Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
@@ -52,8 +52,8 @@ class ImageSum {
   Kind kind_;
   PlaneWall wall_;
   std::optional<TreeSum> tree_;
-  std::vector<double> node_[3];  // in the wall's axes
-  std::vector<Vec3> targets_;    // in the laboratory frame
+  std::vector<double> node_[3];  // far nodes in the axes of the wall
+  std::vector<Vec3> targets_;    // targets in the laboratory frame
   std::vector<int> wanted_;
   bool placed_ = false;          // true if the targets were set since the nodes were
   long long interactions_ = 0;

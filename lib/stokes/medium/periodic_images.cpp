@@ -37,7 +37,8 @@ void reduce(Mat3& vectors, int n) {
   }
 }
 
-/// Coefficients of I and r r of the smooth part G - A of the Stokeslet, and of its derivative. g is that of (2.25).
+/// Coefficients of the smooth part G - A of the Stokeslet (a of I, b of r r) and of the smooth part of the stresslet T (g and slope). The function g
+/// is defined in (2.25).
 struct Smooth {
   double a, b, g, slope;  // G - A = a I + b r r;   T = -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k
 

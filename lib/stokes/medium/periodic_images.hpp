@@ -12,13 +12,13 @@ namespace tanktread::stokes {
 /// them.
 class PeriodicCell {
  public:
-  /// The first n columns of `vectors` are linearly independent lattice vectors. `reference`, for one period: distance from the row at which the axial
-  /// velocity of a row of unit forces changes sign (2.43), which fixes the constant of the Stokeslet; 0 leaves the constant undefined.
+  /// `vectors`: the first n columns are linearly independent lattice vectors. `reference` fixes the constant of the Stokeslet with one period. It is
+  /// the distance from a row of unit forces at which the axial velocity changes sign (2.43). If it is 0, the constant is undefined.
   PeriodicCell(const Mat3& vectors, int n, double reference = 0);
 
   int n() const { return n_; }
-  const Mat3& vectors() const { return vectors_; }  ///< columns
-  double volume() const { return volume_; }         ///< for two periods the area, for one the length
+  const Mat3& vectors() const { return vectors_; }  ///< lattice vectors as columns
+  double volume() const { return volume_; }         ///< volume of the cell; area if n = 2, length if n = 1
   double reference() const { return reference_; }
 
   /// Returns the lattice coordinates of a position. In directions that do not repeat they are lengths.

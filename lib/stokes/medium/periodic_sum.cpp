@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns the numbers of steps to near images for which every other image is about `far` lengths of the box away from any pair of points in the box,
-/// and that distance.
+/// Returns, for each lattice vector, up to how many steps images count as near, and the distance of the nearest other image. This distance is about
+/// `far` lengths of the box for any pair of points in the box.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -35,8 +35,8 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
   return {steps, distance};
 }
 
-/// Returns a smaller tolerance for the stresslet. Its kernel is steeper by one order, and its error is up to three times as large; measured on cubic,
-/// tilted and oblong cells.
+/// Returns the tolerance, reduced for the stresslet. The kernel of the stresslet is steeper by one order. On cubic, tilted and oblong cells, its
+/// error was up to three times as large as the error of the Stokeslet.
 double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
 /// Returns the number of Chebyshev nodes on [-1, 1] for a function whose nearest pole is y half-lengths away.

@@ -14,7 +14,7 @@ struct Cluster : ChebyshevBox {
   int first = 0, last = 0;       ///< range of its points, in the order of the tree
   int child[2] = {-1, -1};       ///< indices of the children; -1 for a leaf
   int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
-  int first_block = 0;           ///< index of its first block of far_block nodes
+  int first_block = 0;           ///< index of its first block among those of all clusters; a block has far_block nodes
   double radius = 0, reach = 0;  ///< half the diagonal; distance from the centre beyond which the nodes are accurate
   bool bare = false;             ///< true if the box has no nodes, because it has no more points than nodes; its parent then uses its points
 
@@ -33,8 +33,8 @@ struct Cluster : ChebyshevBox {
 /// along the other axes from reach.
 class Clusters {
  public:
-  /// Leaves hold at most `leaf` points (or one group). Both halves of a cluster start at a multiple of `quantum` groups. Numbers of points and nodes
-  /// cost as much as the next multiple of `quantum`.
+  /// `leaf`: largest number of points in a leaf; a leaf may have more points if it is a single group. `quantum`: both halves of a cluster start at a
+  /// multiple of `quantum` groups, and n points or nodes are assumed to cost as much as n rounded up to a multiple of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
   /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only.

@@ -26,7 +26,7 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
 
 /// Numbers the connected surfaces, whose panels share control points, and returns how many there are.
 int connected(const Panels& panels, std::vector<int>& surface) {
-  std::vector<int> first;  // for each control point a panel that contains it, or -1
+  std::vector<int> first;  // for each control point, the first panel that depends on it; -1 if not found yet
   std::vector<int> root(static_cast<std::size_t>(panels.size()));
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int e) {

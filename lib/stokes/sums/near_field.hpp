@@ -27,18 +27,18 @@ class NearField {
   /// its panel if it is an image.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// Lets targets also see images of the panels, which are treated like other surfaces. Must be called before update().
+  /// Includes periodic images of the panels. An image is treated as a different surface. Must be called before update().
   void repeat() { across_gaps_ = true; }
 
-  /// Returns the index of the surface that a panel belongs to; below, the number of surfaces.
+  /// Returns the index of the closed surface that contains a panel.
   int surface(int panel) const { return surface_[static_cast<std::size_t>(panel)]; }
-  int n_surfaces() const { return n_surfaces_; }
+  int n_surfaces() const { return n_surfaces_; }  ///< number of closed surfaces
 
   /// Lists the panels whose far rule does not reach the tolerance at the target, in ascending order, except the panels of `own`, which contain the
   /// target.
   void list(const Vec3& target, std::span<const SelfPair> own, std::vector<int>& near);
 
-  /// Returns the rule for one of these panels, with equal `own`. The table is valid until the next call.
+  /// Returns the rule for a panel that list() found for this target with the same `own`. The table is valid until the next call.
   const PointTable& rule(int panel, const Vec3& target, std::span<const SelfPair> own);
 
  private:

@@ -53,7 +53,8 @@ class Panels {
   std::size_t bezier_size_ = 0;
 };
 
-/// Panels that are symmetry images of others: panel e is the image of source[e] in reflection image[e], or its own source if image[e] = -1.
+/// Panels that are symmetry images of other panels. Panel e is the image of panel source[e] under reflection image[e]. If image[e] = -1, panel e is
+/// not an image and source[e] = e.
 struct PanelImages {
   std::vector<int> source, image;
   std::vector<surface::Reflection> reflections;

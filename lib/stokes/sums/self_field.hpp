@@ -48,7 +48,7 @@ class SelfField {
   Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
   std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
 
-  /// Returns the first panel of site i, and the values N_A there of the basis functions supported on it.
+  /// Returns the first panel that contains site i, and the values N_A at the site of the basis functions supported on this panel.
   std::pair<int, Eigen::VectorXd> basis(int i, const Panels& panels) const;
 
  private:

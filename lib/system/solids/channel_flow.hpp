@@ -32,10 +32,12 @@ class ChannelFlow : public stokes::DuctFlow {
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
               const std::string& wall_solver = "factored");
 
-  /// Accurate up to the wall; undefined at points outside. The values at the latest points are cached. Collective.
+  /// Returns the velocities at x, accurate up to the wall. At points outside they are undefined. The values at the latest points are cached.
+  /// Collective.
   Net velocities(const Net& x) const override;
 
-  /// By one-sided differences with a step of a hundredth of the channel's smallest half width. Accurate enough for Jacobians only.
+  /// Computes the velocity gradients by one-sided differences with a step of a hundredth of the channel's smallest half width. Their accuracy
+  /// suffices only for Jacobians.
   std::vector<Mat3> gradients(const Net& x) const override;
 
   double pressure_drop() const;        ///< pressure drop between the ends

@@ -80,10 +80,10 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest width of a film, divided by the smaller radius. Across wider films, modes of that wavelength are damped by a third or more.
+/// Largest width of a film, divided by the smaller radius. Across wider films, modes whose wavelength is the width are damped by a third or more.
 constexpr double widest = 0.5;
 
-/// A body, its sites, and a ball about their mean that contains them.
+/// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.
 struct Side {
   std::size_t particle;
   spline::Block block;

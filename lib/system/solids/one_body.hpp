@@ -17,18 +17,19 @@
 
 namespace tanktread::coupling {
 
-/// Inverses of (2.23) for each isolated rigid body, in body-fixed axes, so that they remain valid when the body moves. Equal bodies share an inverse.
-/// A body of more than `most_points` control points has none. Stored in double precision, because GMRES mistakes the rounding of single precision
-/// for a residual that does not decrease.
+/// Inverse of the system (2.23) for each isolated rigid body. The inverse is stored in body-fixed axes, so that it remains valid when the body moves.
+/// Equal bodies share an inverse. A body with more than `most_points` control points has no inverse. The inverse is stored in double precision,
+/// because GMRES mistakes the rounding of single precision for a residual that does not decrease.
 class OneBodyInverses {
  public:
   static constexpr int most_points = 2000;
 
-  /// `rest`: net of all particles with `bodies` at rest.
+  /// `rest`: control net of all particles, with the rigid bodies in their positions at rest.
   OneBodyInverses(std::span<const Particle> particles, const RigidParticles& bodies, const Net& rest, const quadrature::Options& quadrature);
 
   bool empty() const { return factors_.empty(); }
 
+  /// Returns whether particle p has an inverse.
   bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
 
   /// Replaces the rows of bodies, control values, by values at the collocation sites.
@@ -43,7 +44,7 @@ class OneBodyInverses {
  private:
   struct Factors {
     bool prescribed;
-    Eigen::SparseMatrix<double> sites;  // R
+    Eigen::SparseMatrix<double> sites;  // collocation matrix R
     Eigen::MatrixXd inverse;
   };
   struct Use {
@@ -80,7 +81,7 @@ class FilmInverses {
  private:
   struct Film {
     std::vector<int> sites;         // sites of one body, then of the other
-    DenseFactors one_and_coupling;  // 1 + C
+    DenseFactors one_and_coupling;  // LU factors of 1 + C
   };
   std::vector<Film> films_;
 };

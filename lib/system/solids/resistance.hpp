@@ -64,8 +64,8 @@ class Resistance {
   /// Returns the pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 
-  /// Returns the correction of the pressure drop if the flow is a duct flow. It consists of the interpolation error of v_inf and `work`, the residual
-  /// work of the density for the velocity v_inf on the surface (2.41).
+  /// Returns the correction of pressure_drop(f) if the flow is a duct flow (2.41). The correction has two parts: the interpolation error of v_inf,
+  /// and `work`, the residual work of f for the velocity v_inf on the surface.
   double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0);
 
   /// Returns int z.(u - (1/mu) A f) dG for each density z: the weighted residual velocity of a discrete f, at Gauss points away from the collocation
@@ -79,13 +79,13 @@ class Resistance {
   Vec3 torque(const Net& f, const Vec3& centre) const;     ///< int (x - centre) x f dG
   Mat3 stresslet(const Net& f, const Vec3& centre) const;  ///< symmetric, traceless part of int f (x - centre) dG
 
-  /// Returns the control values c of n, by projection: the null vector of A, a density that produces no velocity.
+  /// Returns the control values of the normal n, fitted by projection. This density is the null vector of A: it produces no velocity.
   const Net& normal() const { return normal_; }
 
   stokes::Evaluations kernel_evaluations() const;  ///< total since construction
   int last_iterations() const { return last_iterations_; }
   long solver_iterations() const { return iterations_; }
-  void forget_recycled() const;  ///< discards the data that preconditioners `recycled`, including that of the wall, keep from earlier solves
+  void forget_recycled() const;  ///< discards the data that the preconditioners `recycled` of the body and the wall keep from earlier solves
   const Net& surface() const { return surface_; }
 
  private:
@@ -102,11 +102,11 @@ class Resistance {
   Phases& phases_;
   std::vector<int> own_points_;
   stokes::Layer layer_;
-  Eigen::SparseMatrix<double> sites_;  // R
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;
   Net flux_, normal_;  // b and c
-  double weight_ = 0;  // s / (b.c)
+  double weight_ = 0;  // factor s / (b.c) of the term c b^T (2.10)
   stokes::Rows<double> rows_;
   Tube* tube_;
   std::optional<stokes::PlaneWall> wall_;

@@ -75,7 +75,7 @@ class LoneRigidBody : public Dynamics {
   Net surface_;
   Vec3 centre_;
   double radius_;
-  stokes::AmbientFlow flow_;  // at the time set last
+  stokes::AmbientFlow flow_;  // flow at the time set last
   Rigid driven_;
 
  private:
@@ -143,7 +143,7 @@ class FreeBodyInTube : public LoneRigidBody {
   double viscosity_;
   Krylov krylov_;
   double tolerance_;
-  mutable Net place_;  // latest position, its solution, and the unknowns of its linear system
+  mutable Net place_;  // latest position, the solution at this position, and the unknowns of the linear system
   mutable Solution solution_;
   mutable Eigen::VectorXd unknowns_;
   mutable long iterations_ = 0;

@@ -263,7 +263,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
 }
 
-/// Uses df = -(a + b x r).
+/// Computes the integral from df = -(a + b x r).
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.load();

@@ -52,22 +52,22 @@ class RigidParticles {
   /// Moves every body to the position that fits its rows of x best, and sets its rows to this position.
   void place(Net& x);
 
-  /// Sets the virtual work of forces on the bodies in addition to the given ones, one row per control point of all particles, for forces on material
-  /// points with fixed directions. No rows: no such forces.
+  /// Sets forces on the bodies in addition to the given ones, by their virtual work with one row per control point of all particles. The forces act
+  /// on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
   void push(const Net& work);
 
   void add_load(Net& load) const;            ///< adds the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< adds the collocation correction of -R^-1 A f/mu on the bodies themselves, f their load (OwnLacking)
+  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of -R^-1 A f/mu, f the load of the body
   void subtract_prescribed(Net& v) const;          ///< subtracts V of the bodies with prescribed motion
   void complete(const Net& w, Net& v) const;  ///< subtracts w, adds <w> if force and torque are given, and adds the collocation correction of
                                               ///< R^-1 D w, in the rows of v
   Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> for bodies with prescribed motion, 0 in other rows
   void move(Net& v);                         ///< replaces w in the rows of v by V; w is stored
-  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);  ///< sets the motion and force found by another
-                                                                                                       ///< equation; updates rows of v
-  /// On a lattice, velocities are those of images in the cell. `enter`: from now on bodies are replaced by images, from which the particles p differ
-  /// by `shifts[p]`, in a flow of this gradient. `carry`: moves the image of body p, if p is a body, back to the body's own centre, and changes its
-  /// velocity accordingly.
+  /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
+  void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
+  /// On a lattice, the system is solved for the images of the bodies in the cell. `enter` replaces the bodies by these images: shifts[p] is the
+  /// position of particle p minus the position of its image, and `gradient` is the gradient of the flow. `carry` moves the image of particle p, if it
+  /// is a body, by `along` back to the position of the body, and adds `faster` to its velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -87,11 +87,11 @@ class RigidParticles {
   /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// Returns the collocation correction of the velocity of unit load k on its own body, in the axes at rest (OwnLacking).
+  /// Returns the collocation correction of the velocity that the unit load k on the body induces on the same body, in the axes at rest (OwnLacking).
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns component k of <w> (velocity, then angular velocity) as a linear functional of the body's rows of w, row after row, in the position at
-  /// rest.
+  /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
+  /// The body is in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -105,7 +105,7 @@ class RigidParticles {
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // of the surface: force and torque integrals of the six rigid motions
+    Eigen::Matrix<double, 6, 6> inertia;  // integrals over the surface: forces and torques of the six rigid motions as loads
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
@@ -117,11 +117,11 @@ class RigidParticles {
 
     Rigid given() const;
     RigidMotion mean(const Net& w) const;      // <w>, from w of all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // the rigid field with these integrals
-    Net field(const RigidMotion& of) const;                             // rows of a rigid field
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // rigid field a + b x r with this integral and moment over the surface
+    Net field(const RigidMotion& of) const;                             // values of a rigid field at the control points of the body
     RigidMotion load() const;                                           // a and b of the force on the fluid
-    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f
-    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w
+    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f, f = a + b x r
+    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w, w of all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

@@ -31,7 +31,7 @@ void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& cen
   for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
-/// Returns the changes of the free motions that produce the missing forces and torques; 0 for the other motions.
+/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Motions that are not free do not change.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
   if (free.empty()) return motion;
@@ -55,7 +55,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
       layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       sites_(collocation_matrix(space)),
-      mass_(space, 8),  // eight points, because the area element is not a polynomial
+      mass_(space, 8),  // eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
       bodies_(particles.size()) {
@@ -82,7 +82,7 @@ void RigidTractions::make_regular(const Net& x, const Net& at) {
   }
 }
 
-/// Returns A of the bodies at the sites, without lattice or tube, made regular.
+/// Returns the regularised single-layer operator A of the bodies at the sites, without the images on a lattice and the response of a tube.
 Eigen::MatrixXd RigidTractions::system() {
   const Eigen::Index n = flux_.size();
   Eigen::MatrixXd all = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& own) {

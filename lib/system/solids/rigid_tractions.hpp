@@ -32,12 +32,13 @@ namespace tanktread::coupling {
 /// where either the motion or the force and torque of each body is given. The operator is assembled at every position, made regular by one flux
 /// condition per body as in (2.10), and factored, so that films cost no iterations. f is a sum of the densities z_k of unit motions and the density
 /// of the flow. By the reciprocal theorem (2.11) the collocation error of a force or torque is corrected by adding int z_k.(v - (1/mu) A f) dG over
-/// all bodies, and the error of a stresslet likewise with the z of its body's unit strains (except in a tube). The remaining errors are products of
-/// two density errors, whereas errors of (2.23) are linear in one. The matrix is dense: for up to some thousands of points.
+/// all bodies. The error of a stresslet is corrected in the same way with the densities of unit strains of its body, except in a tube. The remaining
+/// errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which limits the
+/// number of control points to a few thousand.
 ///
-/// On a lattice A includes all images; in a tube mu times the response of wall and pressure drop is subtracted. These additions are smooth, so that
-/// each density takes a few iterations, preconditioned by the factors of the bodies without them. The pressure drop of a duct flow is corrected in
-/// the same way as a force, including the interpolation error of v_inf (2.41).
+/// On a lattice, A includes all images. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. These additions are
+/// smooth. Each density is therefore found by a few iterations, and the preconditioner is the factored operator without these additions. The pressure
+/// drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
@@ -46,7 +47,7 @@ class RigidTractions {
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
                  Ranks& ranks);
 
-  /// Sets the lattice, from now on.
+  /// Sets the lattice on which the bodies repeat, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
   struct Body {
@@ -84,7 +85,7 @@ class RigidTractions {
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;
-  stokes::Layer layer_, between_layer_;  // at the collocation sites, and between them
+  stokes::Layer layer_, between_layer_;  // layers at the collocation sites, and at points between the sites
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
   bool repeats_ = false;

@@ -26,7 +26,7 @@ struct BetweenSites;
 
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
-  double viscosity_ratio = 1;        ///< lambda, if all particles have the same
+  double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
   surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points: none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
@@ -41,8 +41,8 @@ struct TubeParameters {
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
 /// G are single layers divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is the disturbance of the traction on the wall,
-/// and dp that of the pressure drop between the ends. v_inf is here the duct's flow with any mean velocity, whatever the actual
-/// ambient flow is. Q is its flow rate.
+/// and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the duct with any mean velocity, even if the
+/// ambient flow of the scene is another flow. Q is the flow rate of v_inf.
 ///
 /// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
 /// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
@@ -55,8 +55,8 @@ struct TubeParameters {
 /// the empty duct's flow v_inf per unit pressure drop of a period. It vanishes on the wall, so that the response without it is that of a prescribed
 /// pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on the particle.
 ///
-/// The wall of a channel is fixed in the laboratory frame, and v_inf is that of ChannelFlow. The contribution of v to dp then follows, without f_inf,
-/// from the condition that the flow rate of the disturbance vanishes (2.14).
+/// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
+/// f_inf, from the condition that the disturbance has zero flow rate (2.14).
 class Tube {
  public:
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
@@ -72,7 +72,8 @@ class Tube {
   /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body it is -1, and `v` is w of (2.23).
+  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body the contrast is -1, and the argument `v`
+  /// of other functions is w of (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
@@ -86,7 +87,7 @@ class Tube {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< f^D, control values on the wall
     double pressure_drop = 0;
-    Net load, moves;  ///< f and v, only in a duct that repeats
+    Net load, moves;  ///< load f and velocity v of the particle, only in a duct that repeats
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: known correction of the pressure drop.
@@ -96,8 +97,9 @@ class Tube {
   /// Not collective.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
-  /// Stores the operators of the current shape, as low-precision blocks, for `frozen_response`, which returns u at the particle's collocation points.
-  /// If the wall's system is solved by iteration, `frozen_response` returns 0, because u is a small and smooth part of a Jacobian.
+  /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
+  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. This is accurate enough, because u is a small and
+  /// smooth part of a Jacobian.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
@@ -107,10 +109,12 @@ class Tube {
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
-  const Net& inlet_on_particle() const;  ///< c; in a duct that repeats, the empty duct's flow per unit pressure drop of a period
-  const Net& ambient() const;            ///< v_inf at the collocation points, with amplitude 1
-  Net inlet_on_wall() const;
-  double pressure_of(const Net& f, const Net& v = {});  ///< dp (2.7)
+
+  /// Returns c on the particle. In a duct that repeats, this is v_inf of the empty duct per unit pressure drop of a period.
+  const Net& inlet_on_particle() const;
+  const Net& ambient() const;                           ///< v_inf at the collocation points, with amplitude 1
+  Net inlet_on_wall() const;                            ///< c on the wall
+  double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
   /// Returns the correction of `pressure_of` for a force density f, if the ambient flow is a duct flow with this amplitude. `work`: residual work of
   /// the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the points of
@@ -135,7 +139,8 @@ class Tube {
   };
   Leak leak(const Net& f);
 
-  /// Returns the part of (2.42) that is due to the wall and the inlet: the work of the leak with the response `of` to another load.
+  /// Returns the contribution of the wall and the inlet to the correction (2.42). It is the work f^D.leak.velocity - dp leak.flow, where the leak is
+  /// due to one load, and f^D and dp belong to the response `of` to another load.
   double work(const Leak& leak, const Response& of) const;
 
   /// Returns the flow rate if the particle's pressure drop has this value: Q, or the reduced flow rate if the pressure drop is prescribed.
@@ -173,9 +178,9 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall's traction; these and the next two lines are computed at first use
-  Net flow_of_wall_;  // weights of a velocity on the wall, for the flow rate through the inlet of the traction that cancels it
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of c times mu; with the wall's response
+  Net flow_weights_, force_weights_;  // weights of the wall's traction; computed at first use, like the next three members
+  Net flow_of_wall_;  // weights of a velocity on the wall: give the flow rate through the inlet due to the traction that cancels the velocity
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of mu c; of mu c and the wall's response
 };
 
 }  // namespace tanktread::coupling

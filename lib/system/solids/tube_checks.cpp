@@ -12,7 +12,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // first target that sees only images: no target
+constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only() with which no target excludes the surface
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // tolerance of integrals over the wall with large pressures: factor and upper limit
 
 /// Adds those points between the centroid and the outline of a section that are inside the outline. `place`: maps points of the section into space.

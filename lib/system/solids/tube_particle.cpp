@@ -125,7 +125,8 @@ const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
 }
 
 /// Computes the weights of (2.7) divided by Q. In a straight tube v_inf and f_inf are evaluated at the layers' nodes, so that the flow rate of the
-/// disturbance is 0 for every load. In a channel they would require integrals over the wall, so that v_inf is interpolated at the collocation points.
+/// disturbance is 0 for every load. In a channel, evaluating v_inf at the nodes would require integrals over the wall, and v_inf is interpolated at
+/// the collocation points instead.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   const auto n = static_cast<std::size_t>(single.n_nodes());

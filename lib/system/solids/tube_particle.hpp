@@ -48,8 +48,8 @@ struct Tube::Particle {
   /// duct that repeats. Empty nets are skipped.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Velocities caused by f and v in a duct that repeats, rank-owned rows only: at the wall's targets by the particle and its images, and at the
-  /// collocation points only by its images. Empty nets are skipped.
+  /// Velocities that the load f and the velocity v of the particle cause in a duct that repeats, for rank-owned rows. At the targets on the wall,
+  /// both the particle and its images contribute. At the collocation points of the particle, only the images contribute. Empty nets are skipped.
   struct Cause {
     Net at_wall, at_sites;
   };
@@ -66,20 +66,20 @@ struct Tube::Particle {
   std::vector<int> own;                                  ///< rank-owned points
   Ranks ranks;
   surface::Geometry geometry;
-  Eigen::SparseMatrix<double> collocation;  ///< R
-  membrane::DirectSolver from_sites;        ///< R^-1
+  Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
+  membrane::DirectSolver from_sites;        ///< factored R, to compute control values from values at the sites
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
   std::optional<Period> period;       ///< set in a duct that repeats
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
-  Net shape;                                                       ///< in the wall's frame
-  double centroid = 0;                                             ///< position along x1 of the origin of that frame
-  Net sites;                                                       ///< collocation points, in the wall's frame
-  Net inlet;                                                       ///< (1/mu) c at the sites
-  Net ambient, interpolated_ambient;                               ///< duct flow at the sites; in a channel also its control values
-  Net pressure_of_load, pressure_of_velocity;                      ///< weights of f and v in (2.7); those of v are empty if lambda = 1
-  std::vector<int> nearest;                                        ///< nearest site for each target on the wall
+  Net shape;                                   ///< net of the particle in the frame of the wall
+  double centroid = 0;                         ///< position along x1 of the origin of that frame
+  Net sites;                                   ///< collocation points, in the wall's frame
+  Net inlet;                                   ///< (1/mu) c at the sites
+  Net ambient, interpolated_ambient;           ///< duct flow at the sites; in a channel also its control values
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of f and v in (2.7); the weights of v are empty if lambda = 1
+  std::vector<int> nearest;                    ///< nearest site for each target on the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
 
   struct Frozen {

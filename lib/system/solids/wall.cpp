@@ -79,7 +79,7 @@ namespace {
 constexpr double residual = 1e-2;        // residual of the iterative solve divided by the tolerance of integrals
 constexpr double mean_of_wave = 0.516;  // m of (2.39); harmonics k^-5, as in the single layer of the interpolation error of cubic splines
 
-/// Returns options with a smaller tolerance for the wall's own matrix, which is assembled only once.
+/// Returns options with a smaller tolerance, for the matrix of the wall on itself. This matrix is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
   return options;

@@ -59,8 +59,8 @@ class WallPatches {
 /// control values per site. A constant pressure q n produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
-  /// Collective. `phases`: if given, records the time of exchanges, including those of `apply`; must outlive this object. `solver`: "factored",
-  /// "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
+  /// Assembles and factors the operator. Collective. `phases`: if given, records the time of exchanges, also in `apply`; must outlive this object.
+  /// `solver`: "factored", "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
        const surface::Symmetry& symmetry = surface::Symmetry(), const std::string& solver = "factored");
 
@@ -83,14 +83,15 @@ class Wall {
   /// read. Collective.
   Net collocated(const Net& u) const;
 
-  /// Computes rows of an operator, three per collocation point of `sites`, by the means of `collocated`. `assemble`: fills the rows of given targets.
+  /// Computes the rows of an operator for `solve`, three per collocation point of `sites`, from its rows at the targets. `assemble` fills the rows of
+  /// given targets. `collocate` combines them with the same weights with which `collocated` combines velocities.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
   const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
   stokes::Layer& layer() { return layer_; }             ///< layer of the wall at points off it, for control values on its space
-  const stokes::Cap& inlet() const { return *inlet_; }  ///< only of an open wall
+  const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a wall that repeats
 
   /// Returns the lattice of a wall that repeats; not set for an open wall.
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
@@ -98,13 +99,16 @@ class Wall {
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const;
 
-  /// Returns control values on the space from those of a traction f, one row per site, and the transpose of this map.
+  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. The two differ only if the wall repeats:
+  /// f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< transforms the columns of an operator, three per control point
 
-  Net apply(const Net& f) const;    ///< A f, A_iB = (1 / 8 pi) int G(x, x_i) N_B dG, in the means of `collocated`
-  Net solve(const Net& rhs) const;  ///< A^-1 rhs
+  /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
+  /// a wall that repeats, A includes the condition int f.n dG = 0.
+  Net apply(const Net& f) const;
+  Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
   /// Returns A^-T weights: its product with any rhs equals the product of `weights` with solve(rhs). Only if the operator is factored.
@@ -118,12 +122,14 @@ class Wall {
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Returns the flow rate along the duct, times mu, due to a unit force along each axis at these points. In an open wall it is c of the inlet
-  /// (2.13). In a wall that repeats, for forces whose sum vanishes, it is -rho^2/(4 L) e1, where rho is the distance from the axis x1 (2.44).
+  /// Returns mu times the flow rate along the duct that a unit force at each of these points causes, one column per axis of the force. In an open
+  /// wall this is c of the inlet (2.13). In a wall that repeats, the sum of the forces must vanish, and the result is -rho^2/(4 L) e1, where rho is
+  /// the distance from the axis x1 (2.44).
   Net flow_of_forces(const Net& at) const;
 
-  /// Returns the flow rate due to a unit strength of the double layer along each axis, at a point with normal n. In an open wall it is the flow rate
-  /// through the inlet. In a wall that repeats, for strengths without flux, it is (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
+  /// Returns the flow rate that a double layer of unit strength at a point with normal n causes, one component per axis of the strength. In an open
+  /// wall this is the flow rate through the inlet. In a wall that repeats, the strengths must have no flux, and the result is
+  /// (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Returns the bounding boxes of the elements of a channel wall, to compute distances.
@@ -153,9 +159,9 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;                       // only of a wall that repeats: w n at the sites with a weight w, and int N_A n dG
+  Net pressure_, flux_;  // only of a wall that repeats: traction w n of a constant pressure w, at the sites; int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // layer of the wall at the targets
-  DenseFactors factors_;                      // LU factors of A; if not set, the next two solve by iteration
+  DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;
   double tolerance_;  // relative residual of krylov_

@@ -50,11 +50,11 @@ class Corotation {
  public:
   Corotation() = default;
 
-  /// Computes the rotations that map `from` to `to`, control nets of shape (N, 3). `particles` give the rows of each rotation.
+  /// Computes, for each particle, the rotation that maps its rows of `from` best to its rows of `to`. Both are control nets of shape (N, 3).
   Corotation(std::span<const Particle> particles, const Net& from, const Net& to);
 
-  Net back(const Net& f) const;    ///< Q^T f
-  Net forth(const Net& f) const;  ///< Q f
+  Net back(const Net& f) const;    ///< returns Q^T f
+  Net forth(const Net& f) const;  ///< returns Q f
 
   /// Returns the displacement to - from without the best-fitting rigid motion of each particle.
   static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);

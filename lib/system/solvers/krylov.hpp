@@ -27,7 +27,7 @@ using Apply = std::function<void(const double* in, double* out)>;
 struct LinearSystem {
   Blocks blocks;
   Apply product;
-  Apply precondition;  ///< approximate inverse of the product, optional; applied from the right, so that residuals are those of the original system
+  Apply precondition;  ///< approximate inverse of the product, optional; applied from the right, so that residuals refer to the original system
 };
 
 /// Result of a linear solve.

@@ -28,11 +28,11 @@ namespace tanktread::coupling {
 class NodalOperator {
  public:
   struct Surface {
-    Net sites;                          ///< x_B
-    Eigen::SparseMatrix<double> values;  ///< R, shape (N, N)
-    Eigen::VectorXd weights;             ///< w_B
+    Net sites;                          ///< x_B, collocation sites
+    Eigen::SparseMatrix<double> values;  ///< R, collocation matrix, shape (N, N)
+    Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
     Eigen::VectorXd areas;               ///< current areas: a control point C is near if |x_C - x_i| < reach sqrt(area_C)
-    surface::Symmetry symmetry;          ///< symmetry of surface and densities; no points if there is none
+    surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 
   /// Computes blocks A_iC of near control points as Layer::assemble does.

@@ -167,7 +167,7 @@ Teuchos::ParameterList defaults(const std::string& method, int depth) {
 
 struct FixedPoint::Impl {
   Teuchos::ParameterList given, list;
-  Teuchos::RCP<Teuchos::ParameterList> last;  // list after the last solve
+  Teuchos::RCP<Teuchos::ParameterList> last;  // parameter list after the last solve
   Teuchos::RCP<const Thyra::LinearOpWithSolveFactoryBase<double>> linear_solver;
   std::string preconditioner;
 };

@@ -10,7 +10,8 @@ namespace tanktread::coupling {
 
 /// Options `Volume/*` of the deck: how the volume of the particle is conserved.
 struct VolumeOptions {
-  /// exact: zero net flux in every evaluation, and the volume restored after every step; flux: zero net flux only (2.8); none: neither.
+  /// Volume constraint. flux: zero net flux in every evaluation (2.8). exact: in addition, the volume is restored after every step. none: no
+  /// constraint.
   std::string constraint = "exact";
 
   void declare(deck::Section& section);
@@ -60,7 +61,7 @@ struct SolverOptions {
   /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// Returns the system's own options, completed by the solver and list for all systems.
+  /// Returns the options of a system. Where they are not set, the solver and the list for all systems are used.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);

@@ -23,8 +23,8 @@ struct BlockSystem {
   std::function<Net(const Net&)> viscous;          ///< B v
   std::function<Net(const Net&)> control_values;   ///< applies R^-1
   const Net& flux;                                 ///< b; empty if the volume is not constrained, which sets pi = 0
-  const Net& normal;                               ///< n
-  double unit = 1;                                 ///< R_T/mu
+  const Net& normal;                               ///< n = M0^-1 b
+  double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
 
   /// Returns the system with one of the preconditioners. All use B = 1 and the factored wall. `block triangular` solves for v and pi, then dp, then
   /// f^D, each with the contributions of the unknowns before it. `block diagonal` omits these contributions. `block` uses no preconditioner. The
