@@ -22,7 +22,7 @@ void Options::declare(deck::Section& section) {
   section.key("far precision", far_precision, deck::Choice{"auto", "single", "double"},
               "floating-point precision of the terms of far-field sums. `single`: 1.5 times as fast, with errors of about 1e-7 of the sum of the "
               "magnitudes of the terms, and of about 1e-8 in the shape; symmetry, order and position-independence then hold to 1e-8 instead of "
-              "1e-10. `double`: no such error. `auto`: `double` for a `tolerance` up to 1e-3, otherwise `single`");
+              "1e-10. `double`: no such error. `auto`: `single` if `tolerance` is at least 1e-3");
 }
 
 void Options::check() const {
