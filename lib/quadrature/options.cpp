@@ -9,7 +9,7 @@ namespace tanktread::quadrature {
 void Options::declare(deck::Section& section) {
   section.key("tolerance", tolerance, deck::between(1e-13, 0.1), "1",
               "relative accuracy requested of every layer integral with the rule `adaptive`. The error of the velocity is mostly less than a fifth "
-              "of it, and less than a hundredth for tolerances of 1e-3 and above");
+              "of the tolerance, and less than a hundredth for tolerances of 1e-3 and above");
   section.key(
       "rule", rule, deck::Choice{"adaptive", "fixed", "desingularised"},
       "quadrature of layer integrals. `adaptive`: singular, near-singular and far panels are integrated to the tolerance. `fixed`: tensor-product "

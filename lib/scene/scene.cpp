@@ -258,8 +258,7 @@ void Scene::declare(deck::Section& root) {
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   domain.present =
-      root.optional_section("Domain", domain,
-                            "the periodic lattice of the scene, which the flow convects; the fluid is unbounded without this section");
+      root.optional_section("Domain", domain, "the periodic lattice, which the flow convects; unbounded fluid without this section");
   if (tube.present && !tube.channel && tube.periodic_length) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
