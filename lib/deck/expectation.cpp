@@ -13,21 +13,22 @@ void Expectation::declare(Section& section) {
   if (name.front() != '<')  // `<name>` is the placeholder in the manual
     for (const char* key : {"value", "tolerance"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
-  section.key("series", series, Choice{}, "the series of the results, if it is not the list's own name");
+  section.key("series", series, Choice{}, "name of the series of the results that is compared; by default the name of the expectation");
   section.key("value", value, any(), "of the series", "expected value (required)");
-  section.key("tolerance", tolerance, positive(), "of the series, or 1", "largest error that passes (required)");
-  section.key("kind", kind, Choice{"absolute", "relative"}, "whether the tolerance is for the error, or for the error over the value");
-  section.key("at", at, not_negative(), "time", "when; the last moment if not given");
-  section.key("source", source, Choice{}, "where the value comes from");
+  section.key("tolerance", tolerance, positive(), "of the series, or 1", "largest allowed error of the expected value (required)");
+  section.key("kind", kind, Choice{"absolute", "relative"},
+              "meaning of the tolerance. `absolute`: for the error. `relative`: for the error divided by the expected value");
+  section.key("at", at, not_negative(), "time", "time at which the series is compared; the final time of the run if not given");
+  section.key("source", source, Choice{}, "source of the expected value, for example a publication");
   section.key(
       "not binding", not_binding, Choice{},
-      "why a miss is reported without failing the run; the program says so itself where a later deck or --set changes a key that results "
-      "depend on, and does not state this expectation anew");
+      "reason why a missed expectation is reported but does not fail the run. The program sets it if a later deck or --set changes a key that "
+      "results depend on, without stating the expectation again");
   if (kind == "relative" && value == 0.0) throw UserError(section.path("kind") + " `relative` and the value 0 contradict each other.");
 }
 
 void Expectations::declare(Section& section) {
-  section.each("a value that the results must have; the run ends with exit code 1 when one is off",
+  section.each("a value that the results must have. The run ends with exit code 1 if a value is missed",
                [this](const std::string& name, Section& inner) {
                  Expectation expectation;
                  expectation.name = expectation.series = name;

@@ -43,11 +43,11 @@ std::string replaced(std::string_view kind, const std::vector<std::pair<std::str
 }  // namespace
 
 void UnitOptions::declare(Section& section) {
-  section.key("length", length, Choice{}, "that 1 stands for, a number and a unit");
-  section.key("time", time, Choice{}, "that 1 stands for");
+  section.key("length", length, Choice{}, "unit of length of the deck: the length, a number and a unit, that the value 1 means");
+  section.key("time", time, Choice{}, "unit of time of the deck: the time, a number and a unit, that the value 1 means");
   section.key("force", force, Choice{},
-              "that 1 stands for: with those of length and time as they are preset, stresses are in Pa, moduli of a surface in uN/m, viscosities in "
-              "Pa s");
+              "unit of force of the deck: the force, a number and a unit, that the value 1 means. With the default units, stresses are in Pa, "
+              "surface moduli in uN/m, viscosities in Pa s");
 }
 
 Units::Units(const UnitOptions& options) : options_(options) {

@@ -25,10 +25,10 @@ struct Constants {
   std::map<std::string, double>& all;
 
   void declare(deck::Section& section) {
-    section.each("a number of that name in Membrane/energy", [this](const std::string& name, deck::Section& inner) {
+    section.each("value of a named constant in Membrane/energy", [this](const std::string& name, deck::Section& inner) {
       if (!inner.documenting() && !inner.given("value"))
         throw UserError(inner.path("value") + " is missing: it is the number that `" + name + "` stands for.");
-      inner.key("value", all[name], deck::any(), "1", "what the name stands for (required)");
+      inner.key("value", all[name], deck::any(), "1", "value of the named constant in Membrane/energy (required)");
     });
     if (section.documenting()) all.clear();
   }
@@ -36,31 +36,32 @@ struct Constants {
 
 void declare_energy(Options& options, deck::Section& section) {
   section.key("energy", options.energy, deck::Choice{},
-              "of the law `expression`: the strain energy per unstressed area over G_s, in I1 = l1^2 + l2^2 - 2 and I2 = l1^2 l2^2 - 1 of the "
-              "principal stretches l1 and l2, J = l1 l2, numbers and `constants`, by + - * / ^ exp log sqrt and parentheses. It is "
-              "differentiated exactly; `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
+              "strain energy per unstressed area divided by G_s, for Membrane/law `expression`. It is an expression in I1 = l1^2 + l2^2 - 2, I2 = "
+              "l1^2 l2^2 - 1 (l1, l2: principal stretches), J = l1 l2, numbers and Membrane/constants, with + - * / ^ exp log sqrt and "
+              "parentheses. It is differentiated exactly. `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
   Constants named{options.constants};
-  section.optional_section("constants", named, "numbers with names in `energy`, none without this list");
+  section.optional_section("constants", named, "named constants for Membrane/energy; none without this section");
 }
 
 void declare_bending(Options& options, deck::Section& section) {
   if (!section.given("bending number")) options.bending_modulus = 0;
   section.key("bending modulus", options.bending_modulus, deck::not_negative(), "force x length",
-              "E_b of Helfrich's energy; 0: no resistance to bending");
+              "E_b of Helfrich's bending energy; 0: no resistance to bending");
   section.key("bending number", options.bending_number, deck::not_negative(), "1",
-              "E_b/(G_s R_C^2), instead of `bending modulus`; over the surface tension for a drop");
+              "dimensionless bending modulus E_b/(G_s R_C^2), instead of `bending modulus`; for a drop the surface tension replaces G_s");
   if (section.given("spontaneous curvature")) options.bending_reference = "flat";
   section.key("bending reference", options.bending_reference, deck::Choice{"unstressed", "flat"},
-              "curvature at which no bending moment acts: that of the unstressed surface, or, `flat`, the spontaneous curvature everywhere");
+              "curvature at which the bending moment vanishes. `unstressed`: curvature of the unstressed surface. `flat`: Membrane/spontaneous "
+              "curvature everywhere");
   section.key("spontaneous curvature", options.spontaneous_curvature, deck::any(), "1/length",
-              "c0 of Helfrich's energy (3.8), where the bending reference is `flat`: a sum of principal curvatures, positive where the surface is "
-              "bulged outwards; 0 if not given");
+              "c0 of Helfrich's bending energy (3.8), for the bending reference `flat`: sum of the principal curvatures, positive where the "
+              "surface bulges outwards; 0 if not given");
   section.key("area difference modulus", options.leaf_modulus, deck::not_negative(), "1",
-              "kbar/E_b of area-difference elasticity (3.27): the two leaves of a bilayer slide on each other, but keep the number of their "
-              "molecules; 0: none");
+              "kbar/E_b of area-difference elasticity (3.27). The two leaflets of a bilayer slide on each other, but each keeps its number of "
+              "molecules; 0: no such elasticity");
   section.key("area difference", options.leaf_difference, deck::positive(), "1",
-              "N0/(8 pi R): the difference of the areas of leaves without stress over that of a sphere of the area A0 = 4 pi R^2; if not given, the "
-              "unstressed surface's own");
+              "N0/(8 pi R): stress-free difference of the leaflet areas, divided by that of a sphere of area A0 = 4 pi R^2; if not given, the "
+              "value of the unstressed surface");
 }
 
 void check_energy(const Options& options) {
@@ -76,52 +77,59 @@ void check_energy(const Options& options) {
 
 void Options::declare(deck::Section& section) {
   section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression", "surface tension"},
-              "constitutive law (3.3): rubber of constant volume, `neo-Hookean` (P-7) or `Mooney-Rivlin`; resistance to a change of area, "
-              "`Skalak` (P-8) or `Evans-Skalak`; an `expression` of your own, the `energy`; or a fluid interface (3.4)");
+              "constitutive law (3.3). `neo-Hookean` (P-7), `Mooney-Rivlin`: rubber of constant volume. `Skalak` (P-8), `Evans-Skalak`: resistance "
+              "to a change of area. `expression`: user-defined strain energy Membrane/energy. `surface tension`: fluid interface of a drop (3.4)");
   declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
-              "Ca = viscosity x rate x R_C / G_s (over the surface tension for a drop); R_C: radius of the sphere of equal volume, rate: "
-              "Flow/shear rate, or the largest singular value of Flow/gradient. 0.3 if no alternative is given");
-  section.key("shear modulus", shear_modulus, deck::positive(), "force/length", "G_s, instead of `capillary number`");
-  section.key("surface tension", surface_tension, deck::positive(), "force/length", "of a drop, instead of `capillary number`");
+              "Ca = viscosity x rate x R_C / G_s; for a drop the surface tension replaces G_s. R_C: radius of the sphere of equal volume. rate: "
+              "Flow/shear rate, or the largest singular value of Flow/gradient. 0.3 if neither `capillary number`, `shear modulus` nor `surface "
+              "tension` is given");
+  section.key("shear modulus", shear_modulus, deck::positive(), "force/length",
+              "surface shear modulus G_s of the membrane, instead of `capillary number`");
+  section.key("surface tension", surface_tension, deck::positive(), "force/length", "surface tension of a drop, instead of `capillary number`");
   if (dilates()) area_dilatation = 1.0;
   section.key("area dilatation", area_dilatation, deck::not_negative(), "1",
-              "C of the laws `Skalak` and `Evans-Skalak`, whose area modulus is (1 + 2 C) G_s for small strains; 1 if not given");
+              "C of the laws `Skalak` and `Evans-Skalak`, whose area modulus at small strains is (1 + 2 C) G_s; 1 if not given");
   section.key("area points", area_order, deck::between(0, 8), "1",
-              "of the laws `Skalak` and `Evans-Skalak`: Gauss points a direction of an element at which their resistance to a change of area is "
-              "integrated; 1 for C of 50 and more, whose area no mesh can keep at 16 points an element without locking; 0: as the rest of the law");
+              "Gauss points per direction of an element for the area resistance of the laws `Skalak` and `Evans-Skalak`. Use 1 for C of 50 and "
+              "more, because the mesh locks if the area is resisted at 16 points per element. 0: the quadrature of the rest of the law");
   section.key("global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-              "K/G_s of a resistance to a change of the whole area, K (A - A0)^2/(2 A0), A0 the unstressed surface's (3.26), beside what the law "
-              "resists in each place; K over the surface tension for a drop, with bending a vesicle; 0: none. What is left of the change falls "
-              "like 1/K; beyond some 1e4 steps become many");
+              "K/G_s of the energy K (A - A0)^2/(2 A0) of a change of the total area A, in addition to the local law; A0: area of the unstressed "
+              "surface (3.26). For a drop K is divided by the surface tension; a drop with bending is a vesicle. 0: no such energy. The relative "
+              "area change decreases like 1/K; above about 1e4 many steps are needed");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
-              "m of the law `Mooney-Rivlin`: 1 is the neo-Hookean one; what is left of 1 hardens");
+              "m of the law `Mooney-Rivlin`: the neo-Hookean fraction of the energy, 1 for the neo-Hookean law; the fraction 1 - m hardens");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
-              "of the membrane: the `resting` shape; an oblate `spheroid` or a `sphere` of the resting shape's area, axis and center, on which "
-              "every piece of the membrane has the area that it has at rest; or the surface in the `stress-free file`. Under stress the resting "
-              "shape is not one of equilibrium: a run without flow finds that");
+              "stress-free shape of the membrane. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis and center of "
+              "the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free file`. Unless it "
+              "is `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
-              "v = 6 sqrt(pi) V/A^1.5 of the stress-free `spheroid`, 1 for a sphere; 0.646 is a red cell's own");
+              "reduced volume v = 6 sqrt(pi) V/A^1.5 of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
   section.key("stress-free file", stress_free_file, deck::Choice{},
-              "name of a Bezier-extraction text (.iga) on the particle's own mesh, looked for as Particle/file");
+              "path of a Bezier-extraction text (.iga) on the particle's mesh with the stress-free surface. The path is relative to the working "
+              "directory or to the deck");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
-              "alpha: the resting shape is the unstressed one blown up by 1 + alpha about its centre; a stress-free shape of its own shrinks by as "
-              "much");
+              "alpha: the resting shape is the unstressed shape inflated by the factor 1 + alpha about its centre. A `stress-free shape` that is "
+              "not `resting` is divided by the same factor");
   section.key("load", load, deck::Choice{"weak", "strong"},
-              "`weak`: by virtual work (3.5); `strong`: the surface divergence (P-3), which the paper shows to fail");
+              "form of the membrane load. `weak`: virtual work (3.5). `strong`: surface divergence of the tensions (P-3), which the paper shows to "
+              "fail");
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
-              "the weak load per area of the unstressed surface (3.7), or of the current one (3.6), the paper's and a drop's");
+              "area to which the weak membrane load refers. `reference`: area of the unstressed surface (3.7). `current`: current area (3.6), as "
+              "in the paper and for drops");
   declare_bending(*this, section);
   section.key("shear viscosity", viscosity.shear, deck::not_negative(), "viscosity x length",
-              "eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10); the velocity then solves a system");
+              "shear viscosity eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10). If it is not 0, every "
+              "velocity needs the solution of a linear system");
   section.key("dilatational viscosity", viscosity.dilatational, deck::not_negative(), "viscosity x length",
-              "kappa_s: resistance of the membrane or interface to the rate at which its area changes");
+              "dilatational viscosity kappa_s of the membrane or interface, its resistance to the rate of change of area");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
-              "T: the membrane forgets within it what its viscosity resists: springs eta_s/T and kappa_s/T in series with the dashpots, a Maxwell "
-              "element (3.23) beside the elastic membrane; if not given, the dashpots are alone (Kelvin and Voigt)");
-  section.optional_section("forces", forces, "forces on patches of the membrane, none without this list");
+              "T: time within which the viscous stress of the membrane relaxes. Springs eta_s/T and kappa_s/T are in series with the dashpots "
+              "eta_s and kappa_s, a Maxwell element (3.23) in parallel with the elastic membrane. If not given, there are only the dashpots "
+              "(Kelvin and Voigt)");
+  section.optional_section("forces", forces, "forces on patches of the membrane; none without this section");
 }
 
 void Options::check() const {
@@ -186,11 +194,12 @@ double Options::bending(double modulus, double radius) const {
 
 void DirectSolverOptions::declare(deck::Section& section) {
   section.key("sparse systems", sparse_systems, deck::Choice{"auto", "direct", "iterative"},
-              "mass and collocation matrices: factored by the `direct solver`; `iterative`: BiCGSTAB with incomplete factors, to rounding, whose "
-              "set-up grows with the number of control points where a direct solver's grows like its power 1.7; `auto`: that from 5000 unknowns on");
+              "solver of the systems with mass and collocation matrices. `direct`: factored by Solvers/direct solver. `iterative`: BiCGSTAB with "
+              "incomplete factors, to rounding accuracy. Its set-up cost is proportional to the number of control points; that of a direct solver "
+              "grows like the power 1.7. `auto`: `iterative` from 5000 unknowns on");
   section.key("direct solver", name, deck::Choice{},
-              "Amesos2's name of the solver of the sparse systems: `KLU2`, or another that it was built with");
-  section.foreign("Amesos2", amesos2, "list handed to the direct solver as it is");
+              "Amesos2's name of the direct solver of the sparse systems: `KLU2`, or another one that Amesos2 was built with");
+  section.foreign("Amesos2", amesos2, "parameters that are passed to the direct solver unchanged");
 }
 
 }  // namespace tanktread::membrane

@@ -17,14 +17,18 @@ void PatchForce::declare(deck::Section& section) {
     for (const char* key : {"direction", "radius", "force"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
   section.key("direction", direction, deck::any(), "1",
-              "from the centroid of the unstressed shape to the middle of the patch, of any length (required)");
-  section.key("radius", radius, deck::positive(), "length", "of the patch of the unstressed surface, seen along the direction (required)");
+              "vector from the centroid of the unstressed shape towards the middle of the patch that the force acts on; its length has no effect "
+              "(required)");
+  section.key("radius", radius, deck::positive(), "length",
+              "radius of the patch of the unstressed surface that the force acts on, seen along `direction` (required)");
   section.key("force", force, deck::any(), "force",
-              "on the patch, three numbers; spread like (1 - d^2/radius^2)^2 over the distance d from its middle (required)");
+              "total force on the patch, three numbers. Its density varies like (1 - d^2/radius^2)^2 with the distance d from the middle of the "
+              "patch (required)");
 }
 
 void PatchForces::declare(deck::Section& section) {
-  section.each("a force on a patch of the membrane, as of a bead in tweezers: it stays on its material points and keeps its direction",
+  section.each("a force on a patch of the membrane, for example by a bead in optical tweezers. It acts on fixed material points and keeps its "
+               "direction",
                [this](const std::string& name, deck::Section& inner) {
                  all.emplace_back().name = name;
                  all.back().declare(inner);

@@ -10,14 +10,17 @@ namespace tanktread::membrane {
 
 void SurfactantOptions::declare(deck::Section& section) {
   section.key("equation of state", equation_of_state, deck::Choice{"linear", "Langmuir"},
-              "tension over that of the clean interface, which Membrane says, at the concentration c over the initial one: 1 - E c, or, "
-              "`Langmuir`, 1 + E ln(1 - x c)");
+              "surface tension divided by that of the clean interface (Membrane/surface tension or capillary number), as a function of the "
+              "concentration c divided by the initial concentration. `linear`: 1 - E c. `Langmuir`: 1 + E ln(1 - x c)");
   section.key("elasticity number", elasticity, deck::positive(), "1",
-              "E: gas constant x temperature x initial concentration (`Langmuir`: the largest one) over the tension of the clean interface");
+              "E: gas constant x temperature x initial concentration (`Langmuir`: largest possible concentration) / surface tension of the clean "
+              "interface");
   section.key("coverage", coverage, deck::between(1e-6, 0.999999), "1",
-              "x of `Langmuir`: the initial concentration over the largest one; needed there");
-  section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time", "D_s along the interface; 0 if none is given");
-  section.key("Peclet number", peclet_number, deck::positive(), "1", "rate R_C^2/D_s, instead of `diffusivity`");
+              "x of the equation of state `Langmuir`, which needs it: initial concentration of surfactant divided by the largest possible "
+              "concentration");
+  section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time",
+              "surface diffusivity D_s of the surfactant; 0 if neither `diffusivity` nor `Peclet number` is given");
+  section.key("Peclet number", peclet_number, deck::positive(), "1", "Peclet number rate R_C^2/D_s of the surfactant, instead of `diffusivity`");
 }
 
 void SurfactantOptions::check() const {

@@ -12,39 +12,42 @@
 namespace tanktread::motion {
 
 void AdaptationOptions::declare(deck::Section& section) {
-  section.key("enabled", enabled, "refine the mesh as the particle deforms (P-37)");
+  section.key("enabled", enabled, "whether the mesh is refined as the particle deforms (P-37)");
   section.key("indicator", indicator, deck::Choice{"error", "variation"},
-              "what is looked at: estimated `error`s (1.5) against tolerances, or the `variation` of fields against references (P-37)");
+              "criterion for refinement. `error`: estimated errors (1.5) compared with tolerances. `variation`: variation of fields compared with "
+              "reference values (P-37)");
   for (double* length : {&surface_tolerance, &minimum_length, &coarsening_tolerance}) *length *= radius;
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
-              "`error`: largest estimated error of the surface on an element; the default is in R_C. Divided by R_C, it also limits the error of the "
-              "surfactant concentration, per mean concentration, and of the Maxwell strain");
+              "largest estimated error of the surface on an element, for the indicator `error`; default 4e-4 R_C. Divided by R_C, it also limits "
+              "the errors of the surfactant concentration (divided by the mean concentration) and of the Maxwell strain");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
-              "`error`: largest estimated error of the load per present area; if not given, the load is not looked at");
+              "largest estimated error of the load per current area, for the indicator `error`; if not given, load errors cause no refinement");
   section.key("reference length", reference_length, deck::positive(), "length",
-              "L_ref: longest element where nothing varies; 0.35 R_C if not given");
+              "L_ref: largest element length where fields do not vary, for the indicator `variation`; 0.35 R_C if not given");
   section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
-              "chi_ref; if not given, curvature is not looked at");
+              "chi_ref: reference variation of the curvature, for the indicator `variation`; if not given, curvature causes no refinement");
   section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
-              "T_ref; if not given, traction is not looked at");
+              "T_ref: reference variation of the traction, for the indicator `variation`; if not given, traction causes no refinement");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
-              "V_ref; if not given, velocity is not looked at");
+              "V_ref: reference variation of the velocity, for the indicator `variation`; if not given, velocity causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
-              "D_ref: an element that is longer than this times its width is cut; 2.5 if not given");
-  section.key("order", order, deck::positive(), "1", "kappa: how strongly a variation above its reference shortens elements; 1 if not given");
+              "D_ref: ratio of length to width above which an element is refined, for the indicator `variation`; 2.5 if not given");
+  section.key("order", order, deck::positive(), "1",
+              "kappa: exponent with which a variation above its reference value shortens elements, for the indicator `variation`; 1 if not given");
   section.key("film resolution", film_resolution, deck::positive(), "1",
-              "among several particles, in a lattice or beside a wall: longest element beside a film, over the square root of its width times R_C; "
-              "0.7 if not given. Halvings beside a film end with `levels` only");
-  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: no shorter element is cut; the default is in R_C");
-  section.key("interval", interval, deck::at_least(1), "steps", "accepted steps between two looks at the mesh");
-  section.key("levels", levels, deck::between(0, 8), "1", "how often an element of the first mesh may be halved in a direction");
+              "largest length of elements next to a film between particles, or between a particle and a wall or periodic image, divided by the "
+              "square root of film width times R_C; 0.7 if not given. Only `levels` limits this refinement, `minimum length` does not");
+  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: elements shorter than this are not refined; default 0.035 R_C");
+  section.key("interval", interval, deck::at_least(1), "steps", "number of accepted time steps between two checks of the mesh");
+  section.key("levels", levels, deck::between(0, 8), "1", "largest number of times that an element of the initial mesh is halved in a direction");
   section.key("largest number of points", largest_number_of_points, deck::at_least(56), "1",
-              "no mesh has more control points: only the most urgent cuts are made, and in the end none");
-  section.key("coarsen", coarsen, "take cuts back where they are no longer needed");
-  section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1", "part of every limit below which a doubled element must stay");
+              "largest number of control points of the mesh. Near this limit only the most urgent refinements are made, at the limit none");
+  section.key("coarsen", coarsen, "whether refinements are undone where they are not needed any more");
+  section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1",
+              "fraction of every tolerance and limit below which an element must stay after coarsening to twice the length");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
-              "largest change of a surface by one coarsening; the default is in R_C");
+              "largest change of the surface by one coarsening; default 1e-4 R_C");
 }
 
 void AdaptationOptions::check(int first_points, double first_length) const {

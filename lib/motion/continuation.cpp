@@ -19,20 +19,24 @@ constexpr double noise = 30;  // a correction smaller than this multiple of the 
 
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
-              "path of the key of this deck that changes along the branch, say Membrane/capillary number: a number");
+              "path of the numerical deck key that varies along the branch of steady shapes, for example Membrane/capillary number");
   section.key("to", to, deck::any(), "that of the key",
-              "where the branch ends, unless a fold leads it back to where it starts: at the value that the deck gives to the key");
+              "value of the parameter at which the branch ends. The branch starts at the value in the deck, and also ends if a fold leads it back "
+              "there");
   section.key("method", method, deck::Choice{"arclength", "natural"},
-              "`arclength`: around folds, where the parameter turns back; `natural`: up to the first");
-  section.key("step", step, deck::positive(), "that of the key", "first step of the parameter; if not given, a twentieth of the way");
+              "method of continuation. `arclength`: continues around folds, where the parameter turns back. `natural`: stops at the first fold");
+  section.key("step", step, deck::positive(), "that of the key",
+              "first step of the parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
   section.key("largest change", largest_change, deck::between(1e-5, 1), "1",
-              "of the shape from one point to the next: root mean square displacement of the control points over R_C");
-  section.key("points", points, deck::between(2, 100000), "1", "most points, folds included");
-  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative, of the parameter at a fold");
+              "largest change of the shape between two points of the branch: root mean square displacement of the control points divided by R_C");
+  section.key("points", points, deck::between(2, 100000), "1", "largest number of points on the branch, folds included");
+  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative tolerance of the parameter at a fold of the branch");
   section.key("second parameter", second_parameter, deck::Choice{},
-              "path of another number, along which the first fold goes on, say Particle/viscosity ratio; the branch ends with that fold");
+              "path of a second numerical deck key, along which the first fold is continued, for example Particle/viscosity ratio. The branch ends "
+              "at this fold");
   section.key("second values", second_values, deck::any(), "that of the key",
-              "of the second parameter, one fold each, in this order: evenly spaced, or by even factors, they are found with least work");
+              "values of the second parameter, in this order; one fold is computed for each. Evenly spaced values, or values with a constant "
+              "ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
 }

@@ -22,17 +22,19 @@ namespace tanktread::motion {
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
   section.key("period", expected, deck::positive(), "time",
-              "expected (required); the one that is found lies between half and one and a half of it. With Flow/history that of the flow, which "
-              "repeats what it is from time 0 to there");
+              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history: period of "
+              "the flow, which repeats its course from time 0 to this time");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
-              "about x2, by which the shape is turned when it is back: 180 after half a round of a membrane in shear, which is half the work");
+              "angle about x2 by which the shape is rotated after a period. With 180 a period is half a revolution of a membrane in shear, at half "
+              "the cost");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
-              "what the shape misses of being back: root mean square displacement of the control points over R_C; some ten times Time/tolerance. "
-              "Where disturbances decay within a period the shape found errs by less than a hundredth of it");
-  section.key("iterations", iterations, deck::between(1, 1000), "1", "most iterations of NOX, a period each");
+              "tolerance of the difference between the shape and its return after a period: root mean square displacement of the control points "
+              "divided by R_C; about ten times Time/tolerance. If disturbances decay within a period, the error of the shape is less than a "
+              "hundredth of the tolerance");
+  section.key("iterations", iterations, deck::between(1, 1000), "1", "largest number of NOX iterations, each of which integrates over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
-              "displacements whose returns the multipliers are made of, at the largest, with Spectrum");
+              "largest displacement of the perturbed shapes whose returns after a period give the multipliers by finite differences, with Spectrum");
 }
 
 namespace {

@@ -16,21 +16,26 @@
 namespace tanktread::motion {
 
 void SpectrumOptions::declare(deck::Section& section) {
-  section.key("number", number, deck::between(1, 500), "1", "modes that are reported, those first that grow fastest or decay most slowly");
-  section.key("near", near, deck::any(), "1/time", "report those whose rate is nearest to this one instead");
+  section.key("number", number, deck::between(1, 500), "1",
+              "number of reported modes. They are ordered from the fastest growing to the fastest decaying one");
+  section.key("near", near, deck::any(), "1/time",
+              "growth rate; if given, the modes with the rates nearest to it are reported instead of the fastest growing modes");
   section.key("method", method, deck::Choice{"dense", "krylov"},
-              "`dense`: the whole Jacobian, a column by two velocities, and all its eigenvalues; `krylov`: the leading ones by block Krylov-Schur on "
-              "(I - J/shift)^-1, each product a solve by Solvers/spectrum, preconditioned by the frozen Jacobian");
+              "method for the eigenvalues of the Jacobian. `dense`: the whole Jacobian, two velocities per column, and all eigenvalues. `krylov`: "
+              "the leading eigenvalues by block Krylov-Schur on (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
+              "preconditioned by the frozen Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
-              "`krylov`: modes come in the order of |shift - rate|; if not given, the rate of the flow, or of the membrane at rest");
+              "shift of the method `krylov`, which finds modes in the order of |shift - rate|; if not given, the rate of the flow, or of the "
+              "membrane without flow");
   section.key("block", block, deck::between(1, 50), "1",
-              "`krylov`: vectors that are multiplied together: how many modes of one rate are sure to be seen");
+              "block size of the method `krylov`: number of vectors multiplied together. At most this many modes of equal rate are found reliably");
   section.key("parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
-              "modes of another symmetry than the shape's: which mirror planes, across x1, x2, x3, turn them into themselves (1) and which into "
-              "their opposite (-1), half turns and the point symmetry by the product of their axes; if not given, all 1. Unknowns are those of the "
-              "fundamental points, as without this key, where Symmetry/use `none` has all of them at once; velocities are of the whole surface");
+              "parity of the modes under the mirror planes across x1, x2, x3, if it differs from that of the shape: 1 for symmetric, -1 for "
+              "antisymmetric; half turns and point symmetry have the product of their axes' parities. If not given, all 1. Only fundamental points "
+              "are unknowns, as without this key, while velocities are computed on the whole surface. With Symmetry/use `none` modes of all "
+              "parities are found at once");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
-              "displacements whose velocities the Jacobian is made of, at the largest");
+              "largest displacement of the perturbed shapes whose velocities give the Jacobian by finite differences");
 }
 
 const char* name(ModeKind kind) {

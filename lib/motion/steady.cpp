@@ -13,13 +13,15 @@ namespace tanktread::motion {
 
 void SteadyOptions::declare(deck::Section& section) {
   section.key("method", method, deck::Choice{"anderson", "newton-krylov"},
-              "of NOX, with Solvers/NOX: the fixed point of implicit steps accelerated, or found by Newton's method with Solvers/steady");
+              "method of NOX (parameters Solvers/NOX) for the steady shape. `anderson`: Anderson acceleration of the fixed-point iteration by "
+              "implicit steps. `newton-krylov`: Newton's method with the linear solver Solvers/steady");
   section.key("tolerance", tolerance, deck::between(1e-13, 1e-2), "1",
-              "estimated error of the shape (4.32), on a branch the last correction: root mean square displacement of the control points over R_C");
-  section.key("iterations", iterations, deck::between(1, 100000), "1", "most iterations of NOX");
+              "tolerance of the estimated error of the steady shape (4.32), or of the last correction if Continuation follows a branch: root mean "
+              "square displacement of the control points divided by R_C");
+  section.key("iterations", iterations, deck::between(1, 100000), "1", "largest number of NOX iterations in the search for the steady shape");
   section.key("step", step, deck::positive(), "time",
-              "the implicit step that preconditions; if not given, half of one over the rate of the flow (of the membrane where nothing flows), at "
-              "most ten times viscosity x R_C/modulus of each membrane");
+              "length of the implicit time step that preconditions the steady equations; if not given, 0.5 divided by the rate of the flow "
+              "(without flow, of the membrane), but at most ten times viscosity x R_C/modulus of each membrane");
 }
 
 namespace {

@@ -242,20 +242,26 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "comma-separated values: a copy a row, its centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees; the first row "
-              "may name the columns; looked for where the program is started and beside the deck");
-  section.key("lattice", lattice, deck::at_least(1), "1", "how many along x1, x2 and x3, about the particle's centre");
-  section.key("spacing", spacing, deck::positive(), "length", "of the lattice, between centres");
+              "path of a file of comma-separated values with one row per copy: centre x1,x2,x3, optionally followed by a rotation vector of three "
+              "numbers in degrees. The first row may hold column names. The path is relative to the working directory or to the deck");
+  section.key("lattice", lattice, deck::at_least(1), "1", "number of copies along x1, x2 and x3 on a lattice centred at the particle's centre");
+  section.key("spacing", spacing, deck::positive(), "length",
+              "distances along x1, x2 and x3 between the centres of neighbouring copies on a `lattice`");
   section.key("number", number, deck::at_least(1), "1",
-              "how many at random in `box` or `ball`; in a Domain of three directions without these in all of its cell, across its faces, as hard "
-              "spheres in thermal equilibrium");
+              "number of copies at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain that is periodic "
+              "in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
   section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
-              "of `box` or `ball`, in place of their number, where spheres go up to 0.3; of the cell, where they go up to 0.55");
-  section.key("box", box, deck::positive(), "length", "side lengths of the box about the particle's centre that they lie in");
-  section.key("ball", ball, deck::positive(), "length", "radius of the ball about the particle's centre that they lie in");
+              "volume fraction of the copies in `box`, `ball` or the periodic cell, from which their number follows. Spheres can be placed up to "
+              "about 0.3 in `box` or `ball`, up to about 0.55 in the cell");
+  section.key("box", box, deck::positive(), "length",
+              "side lengths of a box that contains all copies at random positions; its centre is the particle's centre");
+  section.key("ball", ball, deck::positive(), "length",
+              "radius of a ball that contains all copies at random positions; its centre is the particle's centre");
   section.key("least gap", least_gap, deck::not_negative(), "R",
-              "between the spheres around two particles at random, over the radius R of the larger one");
-  section.key("seed", seed, deck::at_least(0), "1", "of the random places: the same seed gives the same places");
+              "smallest gap between the circumscribed spheres of two particles if copies are placed at random, divided by the radius R of the "
+              "larger sphere");
+  section.key("seed", seed, deck::at_least(0), "1",
+              "seed of the random number generator for copies at random positions. Equal seeds give equal positions");
 }
 
 void CopiesOptions::check(const std::string& list, bool cell) const {

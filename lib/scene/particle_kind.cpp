@@ -37,30 +37,36 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
-              "lambda: viscosity inside over viscosity outside; at most 1e14 x Solvers/tolerance, and from 1e5 on the particle hardly deforms: "
-              "one that does not at all is rigid, Particle/motion `free`");
+              "lambda: inner over outer viscosity, at most 1e14 x Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle "
+              "use Particle/motion `free`");
   section.key("motion", motion, motion_words,
-              "`deforming`: by the velocity of the fluid on its surface; `prescribed`: rigid, with `velocity` and `angular velocity`, of one "
-              "particle a steady problem; `free`: rigid, with `force` and `torque`, by themselves zero");
-  section.key("velocity", velocity, deck::any(), "length/time", "of the centre, for a `prescribed` motion; zero if not given");
-  section.key("angular velocity", angular_velocity, deck::any(), "1/time", "about the centre, for a `prescribed` motion; zero if not given");
-  section.key("force", force, deck::any(), "force", "on a `free` body, three numbers; zero if not given");
-  section.key("torque", torque, deck::any(), "force x length", "on a `free` body, about the centre of its volume; zero if not given");
+              "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves with "
+              "Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and moves under "
+              "Particle/force and Particle/torque, which are zero by default");
+  section.key("velocity", velocity, deck::any(), "length/time",
+              "velocity of the centre of a particle with Particle/motion `prescribed`; zero if not given");
+  section.key("angular velocity", angular_velocity, deck::any(), "1/time",
+              "angular velocity about the centre of a particle with Particle/motion `prescribed`; zero if not given");
+  section.key("force", force, deck::any(), "force", "external force on a particle with Particle/motion `free`, three numbers; zero if not given");
+  section.key("torque", torque, deck::any(), "force x length",
+              "external torque on a particle with Particle/motion `free`, about the centre of its volume; zero if not given");
   section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
-              "density inside less that of the fluid: with Flow/gravity, a force on each unit of volume; zero if not given");
+              "density inside the particle minus density outside. Multiplied by Flow/gravity it is a force per unit volume; zero if not given");
   section.key("drift", drift, deck::Choice{"free", "held"},
-              "`held`: the centroid is put back after every step, which in an affine flow changes no shape; the default at the point of rest of a "
-              "flow that draws away from it, where rounding grows into a drift; otherwise `free`");
+              "`free`: the centroid moves with the flow. `held`: the centroid is put back after every step; in an affine flow this does not change "
+              "the shape. The default is `held` for a particle at the stagnation point of a flow with a diverging direction, where rounding errors "
+              "grow into a drift, and `free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "force and torque on a `prescribed` body: `integral` of the traction alone, as the paper has it, or with what that lacks by the "
-              "`reciprocal` theorem, the default under Quadrature/rule `adaptive`; the other rules are too coarse for it");
+              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as in the "
+              "paper. `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule `adaptive`, because the other "
+              "rules are too coarse for it");
 }
 
 void ParticleKind::declare(deck::Section& section) {
   section.mention("like");
   copies.present = section.given("copies");
   if (copies.present || section.documenting())
-    section.section("copies", copies, "many of it, at the rows of a file, on a lattice, or at random without overlap");
+    section.section("copies", copies, "copies of the particle: at positions from a file, on a lattice, or at random without overlap");
   else
     section.mention("copies");
   if (section.documenting()) return;
@@ -76,7 +82,7 @@ struct MembraneList {
 
   void declare(deck::Section& section) {
     kind.membrane.declare(section);
-    kind.loads = kind.registry->loads.read(section, "loads", "loads that this program adds to those of the library, none without this list");
+    kind.loads = kind.registry->loads.read(section, "loads", "loads that this program adds to the loads of the library; none without this section");
   }
 };
 
@@ -87,9 +93,11 @@ struct InterfaceList {
   void declare(deck::Section& section) {
     kind.interface.declare(section);
     membrane::SurfactantOptions given;
-    if (section.optional_section("surfactant", given, "an insoluble surfactant on a drop; a clean interface without this list"))
+    if (section.optional_section("surfactant", given,
+                                 "an insoluble surfactant on the interface of a drop; without this section the interface is clean"))
       kind.surfactant = given;
-    kind.fields = kind.registry->fields.read(section, "fields", "fields on the interface or membrane that this program adds, none without this list");
+    kind.fields = kind.registry->fields.read(section, "fields",
+                                             "fields on the interface or membrane that this program adds; none without this section");
   }
 };
 
@@ -98,15 +106,15 @@ struct InterfaceList {
 void ParticleKind::declare_lists(deck::Section& section) {
   if (particle.rigid()) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
   membrane_given = section.given("Membrane");
-  if (MembraneList list{*this}; !particle.rigid() || membrane_given) section.section("Membrane", list, "what its surface is made of");
-  if (particle.shape.shape != "file") section.section("Surface", surface, "the spline space of its surface");
+  if (MembraneList list{*this}; !particle.rigid() || membrane_given) section.section("Membrane", list, "material of the particle's surface");
+  if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
               "the spline space is the file's");
   InterfaceList list{*this};
-  section.section("Interface", list, "the interface of a drop: how its mesh moves along it, and what is on it");
+  section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
   if (!name.empty()) adaptation.film_resolution = 0.7;
-  section.section("Adaptation", adaptation, "refinement and coarsening of the mesh");
+  section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
 void ParticleKind::reject(const Scene& scene, Rejections& to) const {
@@ -135,10 +143,12 @@ void ContactOptions::reject(const Scene& scene, Rejections& to) const {
 
 void ContactOptions::declare(deck::Section& section) {
   section.key("limit", limit, deck::between(1e-6, 1), "R_C",
-              "smallest gap between two particles, over the R_C of the smallest one, at which the run goes on; below, it ends with a checkpoint");
+              "smallest allowed gap between two particles, divided by the R_C of the smallest particle. If a gap is smaller, the run ends with a "
+              "checkpoint");
   section.key("limiter", limiter,
-              "whether the gaps between particles are held at the limit instead, by forces along the normals at their nearest points that never pull "
-              "(4.23), which are series and 0 as long as the fluid alone holds the gaps; gaps to a wall are not");
+              "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act along the "
+              "normals at the nearest points of two particles and never pull (4.23). They are written as series and vanish while the fluid keeps "
+              "the gaps open. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))
     throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
 }

@@ -27,7 +27,7 @@ struct OutputList {
 
   void declare(deck::Section& section) {
     scene.output.declare(section);
-    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record, none without this list");
+    scene.series = scene.registry->series.read(section, "series", "series that this program adds to the record; none without this section");
   }
 };
 
@@ -48,8 +48,8 @@ struct Kinds {
 
   void declare(deck::Section& section) {
     section.each(
-        "one of several particles: keys of Particle, and lists Membrane, Surface, Interface and Adaptation as they stand in a deck with one. What "
-        "it does not say itself it takes from the list that its key `like` names, or from Particles/defaults",
+        "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
+        "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
           all.emplace_back().name = name;
           all.back().registry = registry;
@@ -228,8 +228,8 @@ void check_adaptation(const Scene& scene) {
 
 void Scene::declare(deck::Section& root) {
   if (deck::UnitOptions given; root.optional_section("Units", given,
-                                                     "what 1 of the deck's units is; with this list a value may have a unit of its own, "
-                                                     "`5.3 uN/m`, and results say what they are in SI units"))
+                                                     "physical units of the deck: the meaning of a length, time or force of 1. With this section a "
+                                                     "value may have a unit, `5.3 uN/m`, and results are labelled with SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
   OutputList results{*this};
   flow.registered = &registry->flows;
@@ -240,47 +240,49 @@ void Scene::declare(deck::Section& root) {
       refuse(root.given(list), std::string(list), "Particles",
              "each particle has its own, in Particles/<name>, and what they share is said once in Particles/defaults");
   } else {
-    root.section("Particle", particle, "the particle at rest");
+    root.section("Particle", particle, "resting shape, initial shape and motion of the particle");
     declare_lists(root);
   }
   if (Kinds kinds{particles, registry}; several || root.documenting())
-    root.section("Particles", kinds, "several particles, in place of the lists Particle, Membrane, Surface, Interface and Adaptation");
+    root.section("Particles", kinds, "several particles, instead of the sections Particle, Membrane, Surface, Interface and Adaptation");
   else
     root.mention("Particles");
   if (several || root.given("Domain") || root.documenting())
-    root.section("Contact", contact, "what happens where particles come close, several of them or images in a lattice");
+    root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
   const bool deforming = !particle.rigid();
-  tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this list");
+  tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
   ChannelList channel{root.given("Channel") ? tube : documented};
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one wall");
-  if (root.optional_section("Channel", channel, "a tube whose section changes along a centre line, which may bend; none without this list"))
+  if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
   domain.present =
-      root.optional_section("Domain", domain, "the lattice that particles repeat on, moved along by the flow; unbounded space without this list");
+      root.optional_section("Domain", domain, "the periodic lattice, which the flow convects; unbounded fluid without this section");
   if (tube.present && !tube.channel && tube.periodic_length) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
-  wall.present = root.optional_section("Wall", wall, "a plane wall that the fluid sticks to; none without this list");
+  wall.present = root.optional_section("Wall", wall, "a plane no-slip wall; none without this section");
   if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
-  if (deforming || volume_given) root.section("Volume", volume, "how its volume is kept");
-  root.section("Quadrature", quadrature, "how integrals of the fluid are taken");
+  if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
+  root.section("Quadrature", quadrature, "quadrature of the boundary integrals of the fluid");
   root.section("Time", time, "integration in time");
-  steady.present = root.optional_section("Steady", steady, "in place of a run in time: the shape at rest that the initial one leads to");
+  steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
   continuation.present =
-      root.optional_section("Continuation", continuation, "of the steady shape along a number of the deck; a row and a snapshot each point");
+      root.optional_section("Continuation", continuation,
+                            "continuation of the steady shape along a parameter of the deck; every point of the branch gives one row of the series "
+                            "and one snapshot");
   periodic.present = root.optional_section(
-      "Periodic", periodic, "in place of a run in time: the shape that the initial one leads to and that comes back after a period");
+      "Periodic", periodic, "search for a periodic motion that the initial shape leads to, instead of a run in time");
   spectrum.present = root.optional_section(
       "Spectrum", spectrum,
-      "in place of a run in time: how fast small changes of the steady shape, or without Steady of the initial one, which should be at rest, grow or "
-      "decay");
+      "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
+      "initial shape, which should be steady");
   periodic.driven = flow.history.has_value();
-  root.section("Symmetry", symmetry, "what of the scene is solved for");
-  root.section("Solvers", solvers, "solvers of linear systems");
+  root.section("Symmetry", symmetry, "use of the symmetries of the scene");
+  root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   root.section("Output", results, "results");
   root.section("Expect", expect, "expected results");
 }

@@ -10,11 +10,12 @@
 namespace tanktread {
 
 void WallOptions::declare(deck::Section& section) {
-  section.key("shape", shape, deck::Choice{"plane"}, "a plane without end");
-  section.key("point", point, deck::any(), "length", "one of the plane");
-  section.key("normal", normal, deck::any(), "1", "of the plane, into the fluid; of any length");
+  section.key("shape", shape, deck::Choice{"plane"}, "shape of the wall. `plane`: an infinite plane");
+  section.key("point", point, deck::any(), "length", "position of any point on the plane wall");
+  section.key("normal", normal, deck::any(), "1", "normal vector of the plane wall, pointing into the fluid; its length has no effect");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
-              "smallest gap between a particle and the wall, over the R_C of the smallest particle; a run that comes closer stops with a checkpoint");
+              "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
+              "run stops with a checkpoint");
 }
 
 void WallOptions::check(const stokes::FlowOptions& flow) const {

@@ -17,26 +17,31 @@ namespace tanktread::surface {
 
 void MeshOptions::declare(deck::Section& section) {
   section.key("mesh", mesh, deck::Choice{"cube", "polar"},
-              "`cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points; `polar`: structured, two poles, (r + 1)m + 2");
+              "mesh of the particle's surface. `cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points with n = Surface/elements "
+              "per side. `polar`: structured, two poles, (r + 1)m + 2 control points with m and r elements around and along the pole axis");
   if (polar()) {
     azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
   } else {
     elements_per_side = 6, extraordinary_points = "g1";
   }
-  section.key("elements per side", elements_per_side, deck::between(3, 200), "1", "n: 6n^2 elements on the cube mesh");
+  section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
+              "n: number of elements along each side of the cube mesh, which has 6n^2 elements");
   section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
-              "rule where three elements meet: `g1`, the paper's constrained extraction with degree 4 around the point; `catmull-clark`, "
-              "bicubic pieces towards the point, unchanged by refinement");
+              "rule at points of the cube mesh where three elements meet. `g1`: the paper's constrained extraction with degree 4 around the point. "
+              "`catmull-clark`: bicubic pieces towards the point, unchanged by refinement");
   section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
-              "m: elements around the pole axis of the polar mesh; 32 if not given");
-  section.key("meridional elements", meridional_elements, deck::between(4, 200), "1", "r: elements from pole to pole; 16 if not given");
-  section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"}, "the particle's own axis on which the poles lie; `x3` if not given");
+              "m: number of elements around the pole axis of the polar mesh; 32 if not given");
+  section.key("meridional elements", meridional_elements, deck::between(4, 200), "1",
+              "r: number of elements from pole to pole of the polar mesh; 16 if not given");
+  section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"},
+              "body-fixed axis of the particle on which the poles of the polar mesh lie; `x3` if not given");
   section.key("poles", poles, deck::Choice{"bezier transform", "plain", "c1"},
-              "`bezier transform`, the default: the paper's, degenerate elements replaced by others (P-A.1, P-A.2); `plain`: degenerate "
-              "elements as they are; `c1`: tangent planes continuous at the poles, (r - 1)m + 6 control points");
+              "treatment of the poles of the polar mesh. `bezier transform`: the paper's method, which replaces degenerate elements by regular "
+              "ones (P-A.1, P-A.2); the default. `plain`: degenerate elements are kept. `c1`: tangent planes are continuous at the poles; (r - 1)m "
+              "+ 6 control points");
   if (poles == "bezier transform") pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
-              "times that the elements at the poles are halved in azimuth before the transform; 2 if not given");
+              "how many times elements at the poles of the polar mesh are halved in azimuth before the Bezier transform; 2 if not given");
 }
 
 void MeshOptions::check() const {
@@ -72,39 +77,49 @@ double MeshOptions::n_elements() const {
 
 void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
-              "resting shape; `red cell`: the biconcave disc of Evans and Fung, whose axis is its own x3; `file`: the closed surface in "
-              "Particle/file");
+              "resting shape of the particle. `red cell`: the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `file`: the "
+              "closed surface in Particle/file");
   section.key("file", file, deck::Choice{},
-              "name of a Bezier-extraction text (.iga), looked for where the program is started and beside the deck; its surface and spline space "
-              "are taken, in the deck's unit of length");
+              "path of a Bezier-extraction text (.iga) with the resting shape in the deck's unit of length. The run uses its surface and spline "
+              "space. The path is relative to the working directory or to the deck");
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
-  section.key("radius", radius, deck::positive(), "length", "of the sphere, or of the red cell's disc, whose R_C is 0.7224 of it; 1 if not given");
+  section.key("radius", radius, deck::positive(), "length",
+              "radius of the `sphere` or of the disc of the `red cell`, whose R_C is 0.7224 times this radius; 1 if not given");
   section.key("semi-axes", semi_axes, deck::positive(), "length",
-              "three, along the particle's own x1, x2, x3, of a spheroid (two of them equal) or an ellipsoid");
-  section.key("center", center, deck::any(), "length", "centroid of the resting shape");
+              "semi-axes of the `spheroid` (two of them equal) or `ellipsoid`, three numbers along the particle's body-fixed x1, x2, x3");
+  section.key("center", center, deck::any(), "length", "position of the centroid of the resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
-              "rotation vector (axis times angle, by the right-hand rule) that turns the particle's own axes into place: [0, 90, 0] brings "
-              "its own x3 to x1, and its own x1 to -x3");
+              "rotation vector (axis times angle, right-hand rule) that turns the axes of space into the particle's body-fixed axes: [0, 90, 0] "
+              "turns the body-fixed x3 to x1, and the body-fixed x1 to -x3");
   if (section.given("initial shape") || section.documenting()) {
     initial.emplace();
-    section.section("initial shape", *initial, "the shape that the run starts with; without this list the resting one");
+    section.section("initial shape", *initial, "initial shape of the particle; the resting shape without this section");
     if (section.documenting()) initial.reset();
   }
 }
 
 void InitialShape::declare(deck::Section& section) {
-  section.key("stretch", stretch, deck::positive(), "1", "three factors along the particle's own x1, x2, x3, of the resting shape about its center");
-  section.key("map", map, deck::any(), "1", "nine numbers row by row, by which the resting shape is mapped about its center, in the axes of space");
+  section.key("stretch", stretch, deck::positive(), "1",
+              "three factors by which the initial shape is stretched along the particle's body-fixed x1, x2, x3, relative to the resting shape and "
+              "about its center");
+  section.key("map", map, deck::any(), "1",
+              "nine numbers row by row: matrix in space-fixed axes that maps the resting shape to the initial shape, about the center");
   section.key("file", file, deck::Choice{},
-              "name of a Bezier-extraction text (.iga) on the particle's own mesh, looked for as Particle/file; its surface is taken where it is");
+              "path of a Bezier-extraction text (.iga) on the particle's mesh with the initial surface, whose position is kept. The path is "
+              "relative to the working directory or to the deck");
   section.key("run", run, deck::Choice{},
-              "results of another run on the same mesh, the directory for its newest checkpoint, or one of its snapshots: its shape is taken where "
-              "it is, and its mesh, where that adapts; looked for as Particle/file");
-  section.key("mode", mode, deck::at_least(1), "1", "added to the shape of `run`: this one of its Spectrum, of a complex one the real part");
-  section.key("mode amplitude", mode_amplitude, deck::any(), "R_C", "largest displacement of the mode, which itself is 1 at its largest");
+              "results of another run on the same mesh, whose shape is the initial shape and keeps its position: a directory, whose newest "
+              "checkpoint is used, or one of its snapshots. An adapted mesh is used as well. The path is relative to the working directory or to "
+              "the deck");
+  section.key("mode", mode, deck::at_least(1), "1",
+              "index, from 1, of a mode in the Spectrum of the other `run`, which is added to the shape of that run; of a complex mode the real "
+              "part is used");
+  section.key("mode amplitude", mode_amplitude, deck::any(), "R_C",
+              "largest displacement by the `mode` that is added to the shape of another `run`; modes are scaled to a largest displacement of 1");
   section.key("volume", volume, deck::Choice{"resting", "own"},
-              "that the particle has and keeps: that of the `resting` shape, to which the initial one is scaled, or the initial shape's `own`");
+              "volume that the particle has during the run. `resting`: volume of the resting shape, to which the initial shape is scaled. `own`: "
+              "volume of the initial shape");
 }
 
 void InitialShape::check() const {
@@ -180,66 +195,75 @@ double ParticleShape::equivalent_radius() const {
 void TubeOptions::declare(deck::Section& list) {
   list.key(
       "section", section, deck::Choice{"circle", "ellipse", "rectangle", "file"},
-      "cross-section, in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes`, `rectangle` of `sides`, all about "
-      "the origin; `file`: any closed `outline`");
+      "cross-section of the duct in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes` or `rectangle` of `sides`, centred at the "
+      "origin; `file`: any closed `outline`");
   if (section == "circle") radius = 1;
-  list.key("radius", radius, deck::positive(), "length", "of the `circle`; 1 if not given");
-  list.key("semi-axes", semi_axes, deck::positive(), "length", "two, along x2 and x3, of the `ellipse`");
-  list.key("sides", sides, deck::positive(), "length", "two, along x2 and x3, of the `rectangle`");
+  list.key("radius", radius, deck::positive(), "length", "radius of the cross-section `circle`; 1 if not given");
+  list.key("semi-axes", semi_axes, deck::positive(), "length", "semi-axes along x2 and x3 of the cross-section `ellipse`, two numbers");
+  list.key("sides", sides, deck::positive(), "length", "side lengths along x2 and x3 of the cross-section `rectangle`, two numbers");
   list.key("outline", outline, deck::Choice{},
-           "file of the section `file`, looked for where the program is started and beside the deck: one point a row, x2,x3, "
-           "counter-clockwise, the first not repeated; a third column holds the word `corner` where two smooth sides meet. A cubic spline "
-           "goes through the points");
+           "path of a file with the outline of the cross-section `file`, one row x2,x3 per point, counter-clockwise, without a repetition of the "
+           "first point. A third column holds the word `corner` where two smooth sides meet. A cubic spline interpolates the points. The path is "
+           "relative to the working directory or to the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
-           "of the wall, around; a few more where sides of one length would not have equally many");
+           "number of elements around the wall; it is increased slightly if sides of equal length would otherwise have different numbers");
   if (channel) {
     channel->declare(list);
   } else {
     list.key("length", length, deck::positive(), "length",
-             "of the tube's piece that is modelled; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length "
-             "and 4.6 R_T where that is more");
+             "length of the modelled piece of the tube; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length plus "
+             "4.6 R_T if that is more");
     list.key("periodic length", periodic_length, deck::positive(), "length",
-             "period L after which tube and particles repeat along x1, as a train without end; short for a Domain that is periodic along x1");
-    list.key("images", images, deck::between(1, 100), "1", "no effect any more: a tube that repeats has all images");
+             "period L along x1 of tube and particles, an infinite train. Short form of a Domain that is periodic along x1");
+    list.key("images", images, deck::between(1, 100), "1", "obsolete key without effect: a periodic tube has all its images");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1",
-             "number of elements of the wall along the tube, or along one period; 25 if not given, and of a period as dense as they would be in a "
-             "tube that does not repeat");
+             "number of elements along the wall of the tube, or along one period. If not given 25; in a periodic tube as many as give the density "
+             "of a tube that is not periodic");
     list.key("grading", grading, deck::between(1.0, 20.0), "1",
-             "g: the wall's elements along the tube are denser around the particles, as 1 + (g - 1)/(1 + (x1/R_T)^4); 1: uniform");
+             "g: the density of wall elements along the tube varies as 1 + (g - 1)/(1 + (x1/R_T)^4) around the particles; 1: uniform");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
-           "smallest gap between particle and wall; a run that comes closer stops with a checkpoint. Integrals keep their accuracy down to "
-           "0.02");
+           "smallest allowed gap between particle and wall. If the gap is smaller, the run stops with a checkpoint. Integrals keep their accuracy "
+           "down to a gap of 0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "of membranes by the wall of a straight `circle`: p, the force per unstressed area being p exp(-g/d) at the gap g across (3.22); none if "
-           "not given. It keeps a film open where the fluid alone would drain from it for ever");
-  list.key("repulsion range", repulsion_range, deck::positive(), "length", "d: the film is held open by a few of it");
+           "p: strength of the repulsion of membranes by the wall of a straight `circle`. The force per unstressed area is p exp(-g/d) at the gap "
+           "g (3.22); none if not given. It keeps a film open that the fluid would drain without end");
+  list.key("repulsion range", repulsion_range, deck::positive(), "length",
+           "d: decay length of the repulsion by the wall. It keeps a film of a few d open");
   list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
-           "the flow of a straight duct of this section: `exact`, in closed form or as a series where it has one; `boundary elements` (P-33, P-34, "
-           "P-35) otherwise, and on demand");
-  list.key("flow elements", flow_elements, deck::between(8, 4000), "1", "boundary elements of that flow");
+           "computation of the flow in a straight duct of this cross-section. `exact`: in closed form or as a series, if one exists for the "
+           "cross-section, otherwise as `boundary elements` (P-33, P-34, P-35)");
+  list.key("flow elements", flow_elements, deck::between(8, 4000), "1",
+           "number of boundary elements for the computation of the duct flow by `boundary elements`");
 }
 
 void ChannelOptions::declare(deck::Section& list) {
   list.key("profile", profile, deck::Choice{"straight", "constriction", "expansion", "step", "file"},
-           "how the section changes with the way s along the centre line: it is that of `section` times a factor f, `constriction`: "
-           "f = 1 - d (1 + cos(pi s/w))/2 for |s| < w, `expansion`: f = 1 + d (1 + cos(pi s/w))/2, `step`: f = 1 - d for |s| < w with rounded edges, "
-           "f = 1 elsewhere; `file`: f by `points`");
+           "profile of the channel: factor f by which the cross-section is scaled at arc length s of the centre line. `constriction`: f = 1 - d (1 "
+           "+ cos(pi s/w))/2 for |s| < w. `expansion`: f = 1 + d (1 + cos(pi s/w))/2 for |s| < w. `step`: f = 1 - d for |s| < w with rounded "
+           "edges. Outside f = 1. `file`: f from the file `points`");
   if (profile == "constriction") depth = 0.5;
-  list.key("depth", depth, deck::any(), "1", "d of `constriction` (0.5 if not given), `expansion` and `step`, where less than 0 widens");
-  list.key("half length", half_length, deck::positive(), "length", "w of `constriction`, `expansion` and `step`");
-  list.key("corner radius", corner_radius, deck::positive(), "length", "of the rounded edges of a `step`");
-  list.key("directions", directions, deck::Choice{"x2 x3", "x2", "x3"}, "in which f changes the section; in the other one f = 1");
+  list.key("depth", depth, deck::any(), "1",
+           "d: relative depth of the profile `constriction` (0.5 if not given), `expansion` or `step`; a negative depth of a step widens the "
+           "channel");
+  list.key("half length", half_length, deck::positive(), "length", "w: half the length of the profile `constriction`, `expansion` or `step`");
+  list.key("corner radius", corner_radius, deck::positive(), "length", "radius of the rounded edges of the profile `step`");
+  list.key("directions", directions, deck::Choice{"x2 x3", "x2", "x3"},
+           "directions in which the profile scales the cross-section; the factor of any other direction is 1");
   list.key("points", points, deck::Choice{},
-           "file of the profile `file`, looked for as `outline`: s,f a row, or s,f2,f3 with factors of their own in x2 and x3; s ascending. A cubic "
-           "spline goes through them, and beyond them the section stays what it is");
-  list.key("bend radius", bend_radius, deck::positive(), "length", "of the centre line's arc; straight if not given");
-  list.key("bend start", bend_start, deck::any(), "length", "s where the arc begins");
-  list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "by which it turns, from x1 towards x2");
-  list.key("start", start, deck::any(), "length", "s where the modelled piece begins; if not given 4 R_T before the first change");
-  list.key("end", end, deck::any(), "length", "s where it ends; if not given 4 R_T after the last change");
+           "path of a file with the factors of the profile `file`: one row s,f per point, or s,f2,f3 with different factors in x2 and x3; s "
+           "ascending. A cubic spline interpolates the points; beyond them the section is constant. The path is relative to the working directory "
+           "or to the deck");
+  list.key("bend radius", bend_radius, deck::positive(), "length", "radius of the arc along which the centre line bends; straight if not given");
+  list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line at which the bend begins");
+  list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "angle of the bend of the centre line, from x1 towards x2");
+  list.key("start", start, deck::any(), "length",
+           "arc length s at which the modelled piece of the channel begins; if not given 4 R_T before the first change of the channel");
+  list.key("end", end, deck::any(), "length",
+           "arc length s at which the modelled piece of the channel ends; if not given 4 R_T after the last change of the channel");
   list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
-           "of the wall, along, denser where the channel is narrow, bends or has an edge; if not given as fine as those around");
+           "number of elements along the wall of the channel. Elements are shorter where the channel is narrow, bends or has an edge; if not "
+           "given, elements are about as long as wide");
 }
 
 void ChannelOptions::check() const {

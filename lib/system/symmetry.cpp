@@ -10,9 +10,10 @@ namespace tanktread::coupling {
 
 void SymmetryOptions::declare(deck::Section& section) {
   section.key("use", use, deck::Choice{"auto", "none"},
-              "`auto`: mirror planes, half turns and the point symmetry that flow, particle and mesh have in common are found, and only the control "
-              "points that are not images of others are evaluated and solved for. The particle keeps these symmetries for the whole run: an "
-              "instability that breaks them, as wrinkles or a drift may, is left out. `none`: everything is evaluated, and rounding may grow");
+              "use of symmetries. `auto`: finds mirror planes, half turns and the point symmetry that flow, particle and mesh have in common, and "
+              "solves only for control points that are not images of other control points. The particle keeps these symmetries for the whole run, "
+              "which excludes instabilities that break them, for example wrinkles or a drift. `none`: solves for all control points; rounding "
+              "errors may then grow");
 }
 
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net) {

@@ -5,18 +5,19 @@
 namespace tanktread::output {
 
 void Options::declare(deck::Section& section) {
-  section.key("interval", interval, deck::positive(), "time",
-              "simulated time between snapshots; if not given, a twentieth of the final time");
+  section.key("interval", interval, deck::positive(), "time", "simulated time between snapshots; if not given, a twentieth of the final time");
   section.key("between steps", between_steps, deck::Choice{"land", "interpolate"},
-              "`land`: steps are shortened so that one ends at each snapshot; `interpolate`: steps keep their length, and pictures are of the cubic "
-              "through places and velocities at both ends of a step (`checkpoint` is its end); the default with Time/fixed step");
+              "treatment of snapshot times between time steps. `land`: steps are shortened so that a step ends at each snapshot time. "
+              "`interpolate`: steps keep their length; a snapshot shows the cubic interpolant of positions and velocities at both ends of a step, "
+              "and its `checkpoint` is the end of the step; default with Time/fixed step unless the mesh adapts");
   section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
-              "the run stops with a checkpoint after this time; if not given, never");
+              "wall-clock time after which the run stops with a checkpoint; no limit if not given");
   section.key("power balance", power_balance,
-              "whether each row holds what flow and forces put in, what the fluids dissipate (6.12), and what the velocities lack of it (6.13), at "
-              "the price of the layers at four places an element a row; of what deforms, and rigid bodies among it, in flows of one gradient, in "
-              "tubes");
-  section.key("surface text", surface_text, "write the last surface as Bezier-extraction text, `surface.iga`, which Particle/file reads");
+              "whether each row of the series contains the power input by flow and forces, the dissipation in the fluids (6.12), and the residual "
+              "of the balance due to the error of the velocities (6.13). Each row costs an evaluation of the layers at four points per element. "
+              "For deformable particles, and rigid bodies among them, in flows with a uniform gradient or in tubes");
+  section.key("surface text", surface_text,
+              "whether the final surface is written as Bezier-extraction text `surface.iga`, which Particle/file reads");
 }
 
 }  // namespace tanktread::output

@@ -21,22 +21,26 @@ constexpr double degree = std::numbers::pi / 180;
 
 void FlowHistory::declare(deck::Section& section) {
   section.key("type", type, deck::Choice{"table", "sine"},
-              "`table`: `amplitudes` and `angles` at `times`, straight in between; `sine`: mean + amplitude sin(2 pi frequency t + phase)");
+              "time dependence of the flow. `table`: `amplitudes` and `angles` at `times`, linear in between. `sine`: factor mean + amplitude "
+              "sin(2 pi frequency t + phase)");
   section.key("times", times, deck::not_negative(), "time",
-              "of the `table`, in order; two equal ones make a jump, say where the flow stops; before the first and after the last nothing changes");
-  section.key("amplitudes", amplitudes, deck::any(), "1", "at `times`: what the velocity of the flow is multiplied by; 1 if not given");
-  section.key("angles", angles, deck::any(), "degree", "at `times`: by which the flow is turned about `axis`; 0 if not given");
+              "times of the `table`, in ascending order. Two equal times make a jump, for example a sudden stop of the flow. Before the first and "
+              "after the last time the flow is constant");
+  section.key("amplitudes", amplitudes, deck::any(), "1", "factors by which the velocity of the flow is multiplied at `times`; 1 if not given");
+  section.key("angles", angles, deck::any(), "degree", "angles by which the flow is rotated about `axis` at `times`; 0 if not given");
   section.key("file", file, deck::Choice{},
-              "of the `table`, instead of these three: rows of a time, its amplitude and, if all have one, its angle, with commas in between, below "
-              "a row of names that begins with `time` or none; looked for where the program is started and beside the deck");
+              "path of a file with the `table`, instead of the keys `times`, `amplitudes` and `angles`. A row holds time, amplitude and optionally "
+              "(in all rows or none) angle, separated by commas; a header row that begins with `time` is allowed. The path is relative to the "
+              "working directory or to the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
-              "through the origin, about which `angles` turn the flow, by the right hand; `x2` if not given");
+              "axis through the origin about which `angles` rotate the flow, by the right-hand rule; `x2` if not given");
   if (type == "sine") mean = 0, amplitude = 1, phase = 0;
-  section.key("mean", mean, deck::any(), "1", "of the `sine`; 0 if not given");
-  section.key("amplitude", amplitude, deck::any(), "1", "of the `sine`; 1 if not given");
-  section.key("frequency", frequency, deck::positive(), "1/time", "of the `sine`: periods in a unit of time");
-  section.key("phase", phase, deck::any(), "degree", "of the `sine` at time 0; 0 if not given");
+  section.key("mean", mean, deck::any(), "1", "mean value of the `sine` factor that multiplies the flow; 0 if not given");
+  section.key("amplitude", amplitude, deck::any(), "1", "amplitude of the `sine` factor that multiplies the flow; 1 if not given");
+  section.key("frequency", frequency, deck::positive(), "1/time",
+              "frequency of the `sine` factor that multiplies the flow, periods per unit of time");
+  section.key("phase", phase, deck::any(), "degree", "phase of the `sine` factor that multiplies the flow, at time 0; 0 if not given");
 }
 
 void FlowHistory::read() {

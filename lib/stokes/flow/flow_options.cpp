@@ -15,33 +15,38 @@ void FlowOptions::declare(deck::Section& section) {
   if (registered) std::ranges::copy(registered->names(), std::back_inserter(types));
   section.key(
       "type", type, types,
-      "ambient flow: `simple shear` is rate (x3, 0, 0), in a straight Tube too, whose wall goes along with it then, `planar hyperbolic` "
-      "rate (x1, 0, -x3), `uniaxial extension` rate (-x1/2, -x2/2, x3), `four-roll` (P-48) with `roll parameter`, `linear` by `gradient`, "
-      "`uniform` by `velocity`, `parabolic` along x1 with `profile`, `maximum velocity` and `half width`, without a wall, `duct` along x1 "
-      "through the section of the Tube, with `mean velocity`");
-  section.key("shear rate", shear_rate, deck::positive(), "1/time", "rate of the flow; for `linear` it stays 1, the gradient says all");
-  section.key("viscosity", viscosity, deck::positive(), "stress x time", "of the outer fluid");
+      "ambient flow, with rate = Flow/shear rate. `simple shear`: rate (x3, 0, 0), also in a straight Tube, whose wall then moves with the flow. "
+      "`planar hyperbolic`: rate (x1, 0, -x3). `uniaxial extension`: rate (-x1/2, -x2/2, x3). `four-roll` (P-48): with `roll parameter`. `linear`: "
+      "with `gradient`. `uniform`: with `velocity`. `parabolic`: along x1 without a wall, with `profile`, `maximum velocity` and `half width`. "
+      "`duct`: through a Tube or Channel along x1, with `mean velocity`. `quiescent`: no flow");
+  section.key("shear rate", shear_rate, deck::positive(), "1/time",
+              "rate of the ambient flow. For Flow/type `linear` it must stay 1, because `gradient` contains the rate");
+  section.key("viscosity", viscosity, deck::positive(), "stress x time", "viscosity of the outer fluid");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
-              "a of (P-48), for `four-roll`: 1 is planar hyperbolic flow, 0 simple shear turned by 45 degrees, -1 rotation");
-  section.key("gradient", gradient, deck::any(), "1/time", "dv_i/dx_j of the `linear` flow, nine numbers row by row, without trace");
-  section.key("velocity", velocity, deck::any(), "length/time", "of the `uniform` flow, three numbers");
-  section.key("gravity", gravity, deck::any(), "length/time^2", "acceleration, three numbers, that acts on Particle/density difference");
+              "a of the `four-roll` flow (P-48): 1 is planar hyperbolic flow, 0 is simple shear rotated by 45 degrees, -1 is rotation");
+  section.key("gradient", gradient, deck::any(), "1/time",
+              "velocity gradient dv_i/dx_j of the `linear` flow, nine numbers row by row; its trace must be 0");
+  section.key("velocity", velocity, deck::any(), "length/time", "velocity of the `uniform` flow, three numbers");
+  section.key("gravity", gravity, deck::any(), "length/time^2",
+              "gravitational acceleration, three numbers. It acts on particles with a Particle/density difference");
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
-              "of the `duct` flow: flow rate over area of the section, in a channel at its inlet; 1 if not given");
+              "mean velocity of the `duct` flow: flow rate divided by the area of the cross-section, in a channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "what of the `duct` flow stays whatever particles do: the `flow rate`, or the `pressure drop` between the ends of the modelled piece, "
-              "with which the empty tube or channel has the mean velocity");
+              "quantity of the `duct` flow that particles do not change: `flow rate`, or `pressure drop` over the modelled piece. The prescribed "
+              "pressure drop is the one that gives the mean velocity in the empty tube or channel");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("profile", profile, deck::Choice{"round", "plane"},
-              "of the `parabolic` flow: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2), or (1 - x3^2/half width^2); `round` if not given");
-  section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time", "of the `parabolic` flow, on its axis; 1 if not given");
+              "velocity profile of the `parabolic` flow. `round`: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2). `plane`: v1 = maximum "
+              "velocity (1 - x3^2/half width^2). `round` if not given");
+  section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time",
+              "velocity of the `parabolic` flow on its axis or mid-plane; 1 if not given");
   section.key("half width", half_width, deck::positive(), "length",
-              "of the `parabolic` flow: distance from the axis or mid-plane at which its velocity vanishes");
+              "distance from the axis or mid-plane at which the velocity of the `parabolic` flow vanishes");
   if (registered) declare_registered(section);
   if (section.given("history") || section.documenting()) {
     history.emplace();
-    section.section("history", *history, "how the flow changes in time; without this list it does not");
+    section.section("history", *history, "time dependence of the ambient flow; the flow is steady without this section");
     if (section.documenting()) history.reset();
   }
 }

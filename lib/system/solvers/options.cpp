@@ -9,25 +9,27 @@ namespace tanktread::coupling {
 void VolumeOptions::declare(deck::Section& section) {
   section.key(
       "constraint", constraint, deck::Choice{"exact", "flux", "none"},
-      "`flux`: no net flux through the surface in every evaluation (2.8); `exact`: that, and the volume restored after every step; `none`");
+      "conservation of the particle's volume. `flux`: no net flux through the surface in every velocity evaluation (2.8). `exact`: no net flux, "
+      "and the volume is restored after every step. `none`: no constraint");
 }
 
 void InterfaceOptions::declare(deck::Section& section) {
   section.key("motion", motion, deck::Choice{"material", "normal", "relaxed"},
-              "control points of a drop move with the fluid, across the interface only, or along it so that elements keep their shape (the "
-              "default for a surface tension)");
+              "motion of the control points of a drop. `material`: with the fluid. `normal`: only normal to the interface. `relaxed`: with the "
+              "fluid in the normal direction, and tangentially so that elements keep their shape; the default for a surface tension");
   section.key("relaxation", relaxation, deck::not_negative(), "1",
-              "`relaxed`: the mesh slides as an elastic bag of capillary number 1/relaxation would");
+              "speed of the mesh relaxation for the motion `relaxed`: the mesh slides like an elastic membrane of capillary number 1/relaxation");
 }
 
 void IterativeOptions::declare(deck::Section& section) {
   path = section.path();
-  section.key("iterative solver", solver, deck::Choice{}, "Belos' name of its solver, in place of Solvers/iterative solver");
-  section.foreign("Belos", belos, "list handed to it as it is, in place of Solvers/Belos");
+  section.key("iterative solver", solver, deck::Choice{}, "Belos' name of the iterative solver of this system, instead of Solvers/iterative solver");
+  section.foreign("Belos", belos, "parameters that are passed to the iterative solver of this system unchanged, instead of Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
-              "`own`: what the system brings (rigid bodies inverted alone and across films; the blocks of Solvers/tube), or none; `neumann`: "
-              "2 - A for the system A, scaled, a product more in each application; `recycled`: what products of the solves before tell, and "
-              "elsewhere `own`");
+              "preconditioner of this linear system. `own`: preconditioner specific to the system (inverted isolated rigid bodies and films "
+              "between them; the blocks of Solvers/tube), or none if it has none. `none`: no preconditioner. `neumann`: 2 - A for the scaled "
+              "matrix A, one more product per application. `recycled`: exact for directions whose products are known from earlier solves, and "
+              "`own` for the remainder");
 }
 
 IterativeOptions SolverOptions::of(IterativeOptions system) const {
@@ -38,37 +40,43 @@ IterativeOptions SolverOptions::of(IterativeOptions system) const {
 }
 
 void SolverOptions::declare(deck::Section& section) {
-  section.key("iterative solver", krylov, deck::Choice{}, "Belos' name of the iterative solver of linear systems");
-  section.foreign("Belos", belos, "list handed to the iterative solver as it is; what it says, and how, cannot be set");
-  section.section("velocity", velocity, "the system of a velocity: viscosity ratio other than 1, rigid bodies among others, the blocks in a tube");
-  section.section("traction", traction, "the system of the traction of a single rigid particle, and of its motion in a tube");
-  section.section("implicit step", implicit_step, "the system of an implicit step");
-  section.section("spectrum", spectrum, "the shift-inverted system of Spectrum/method `krylov`");
-  section.section("steady", steady, "the system of a Newton step of Steady/method `newton-krylov`");
+  section.key("iterative solver", krylov, deck::Choice{},
+              "Belos' name of the iterative solver of all linear systems that do not have a different one");
+  section.foreign("Belos", belos,
+                  "parameters that are passed to the iterative solver unchanged. Verbosity, Output Style and Output Frequency cannot be set");
+  section.section("velocity", velocity,
+                  "linear system for the velocity: with a viscosity ratio other than 1, rigid bodies among other particles, or the blocks in a "
+                  "tube");
+  section.section("traction", traction, "linear system for the traction on a single rigid particle, and for its motion in a tube");
+  section.section("implicit step", implicit_step, "linear system of an implicit time step");
+  section.section("spectrum", spectrum, "shift-inverted linear system of Spectrum/method `krylov`");
+  section.section("steady", steady, "linear system of a Newton step of Steady/method `newton-krylov`");
   section.foreign("NOX", nox,
-                  "list handed as it is to the nonlinear solver: of Steady, and of Time/scheme `crank-nicolson`, where that is not `plain`");
+                  "parameters that are passed to the nonlinear solver NOX unchanged: for Steady, and for Time/scheme `crank-nicolson` with a "
+                  "Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
-              "relative residual of the systems that a velocity (viscosity ratio other than 1) or a traction (rigid particle) comes from");
+              "relative residual of the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid particles)");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
-              "viscosity ratio other than 1: `assembled` once a velocity, or summed in every iteration of its solver; `auto`: the latter where far "
-              "sums are taken by clusters and there are no rigid bodies, or more than 1 GB of it");
+              "double layer in velocity systems with a viscosity ratio other than 1. `assembled`: assembled once per velocity. `matrix-free`: "
+              "summed in every iteration of the solver. `auto`: `matrix-free` if far sums use clusters, unless there are rigid bodies and the "
+              "assembled layer takes less than 1 GB");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
-              "in a tube: `schur` solves for the particle's velocity alone, wall and pressure drop eliminated by the factored wall (nothing is "
-              "left to solve at viscosity ratio 1); the others solve for all blocks (2.5)-(2.8) at once, preconditioned by the factored wall or "
-              "(`block`) not at all");
+              "form of the velocity system in a tube. `schur`: only the particle's velocity is unknown; wall and pressure drop are eliminated with "
+              "the factored wall, so that no system is left at viscosity ratio 1. `block triangular`, `block diagonal`, `block`: all blocks "
+              "(2.5)-(2.8) are unknown; the factored wall is the preconditioner, except for `block`, which has none");
   section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
-              "of a Channel: `factored` once, or `iterative`, found by GMRES and clusters in each velocity and left out of the Jacobian; "
-              "`auto`: the latter where the factors would take more than 4 GB");
+              "treatment of the wall of a Channel. `factored`: factored once. `iterative`: wall tractions are found by GMRES and clusters for each "
+              "velocity, and are neglected in the Jacobian. `auto`: `iterative` if the factors would take more than 4 GB");
   section.key("rigid bodies", rigid_bodies, deck::Choice{"second kind", "first kind"},
-              "several: `second kind`, by a double layer (2.23), an iterative solver and clusters; or, where all particles are rigid, `first kind`, "
-              "by their tractions (2.40), dense and factored at every place, whose forces and motions are far more accurate in films");
+              "equation for several rigid bodies. `second kind`: a double layer (2.23), an iterative solver and clusters. `first kind`: tractions "
+              "as unknowns (2.40), a dense matrix factored for every configuration; only if all particles are rigid. Its forces and motions are "
+              "far more accurate in films");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
-              "of velocities onto the splines: one place a control point, or the best fit to four places an element, whose error falls with the "
-              "sixth power of the element in place of the fourth, for four times the kernel evaluations; the latter not in a tube or with rigid "
-              "bodies");
+              "projection of velocities onto the splines. `collocation`: one site per control point, error O(h^4). `least squares`: best fit at "
+              "four sites per element, error O(h^6), four times the kernel evaluations; not in a tube, at a wall or with rigid bodies");
   section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
-              "the single layer that the Jacobian (4.3) keeps: one node a control point, summed in every product, with corrections for near ones; or "
-              "assembled, 12 bytes a pair of points");
+              "single layer in the frozen Jacobian (4.3). `nodal`: one node per control point, summed in every product, with near-field "
+              "corrections. `assembled`: stored as a matrix, 12 bytes per pair of points");
   direct.declare(section);
 }
 
