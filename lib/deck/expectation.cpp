@@ -14,7 +14,7 @@ void Expectation::declare(Section& section) {
     for (const char* key : {"value", "tolerance"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
   section.key("series", series, Choice{}, "name of the series of the results that is compared; by default the name of the expectation");
-  section.key("value", value, any(), "of the series", "expected value (required)");
+  section.key("value", value, any(), "of the series", "expected value of the series (required)");
   section.key("tolerance", tolerance, positive(), "of the series, or 1", "largest allowed error of the expected value (required)");
   section.key("kind", kind, Choice{"absolute", "relative"},
               "meaning of the tolerance. `absolute`: for the error. `relative`: for the error divided by the expected value");
