@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -39,14 +40,34 @@ Mat3 DomainOptions::vectors() const {
   return vectors;
 }
 
+namespace {
+
+/// Returns whether the flow is affine, or has the same velocity in all cells whatever its direction. `vectors`: the lattice vectors as columns.
+bool repeats(const stokes::AmbientFlow& flow, const Eigen::Ref<const Eigen::MatrixXd>& vectors) {
+  if (flow.affine()) return true;
+  const Net places = vectors.norm() * (Net(4, 3) << 0.1, 0.2, -0.3, 0.5, -0.1, 0.2, -0.4, 0.3, 0.6, 0.2, 0.7, 0.1).finished();
+  for (const stokes::AmbientFlow& one : flow.directions())
+    for (Eigen::Index d = 0; d < vectors.cols(); ++d) {
+      const Net here = one.velocities(places), there = one.velocities(places.rowwise() + vectors.col(d).transpose());
+      if ((there - here).norm() > 1e-9 * here.norm()) return false;
+    }
+  return true;
+}
+
+}  // namespace
+
+bool DomainOptions::deforms(const stokes::FlowOptions& flow) const {
+  const auto columns = vectors().leftCols(directions());
+  const Mat3 gradient = stokes::AmbientFlow(flow).cell_gradient();
+  return (gradient * columns).norm() > 1e-12 * gradient.norm() * columns.norm();
+}
+
 void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& duct) const {
   if (!duct.empty()) return check_duct(duct);
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  refuse(flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()), "Domain", flow.choice(),
-         "a lattice can follow no flow but one whose gradient is the same everywhere");
-  refuse(flow.history.has_value(), "Domain", "Flow/history", "a lattice can follow no flow but one that stays as it is");
+  refuse(flow.type == "duct", "Domain", flow.choice(), "the flow of a duct needs a list Tube or Channel");
   if (side_lengths && side_lengths->size() != 3) throw UserError("Domain/side lengths needs three numbers, along x1, x2 and x3.");
   const Mat3 all = vectors();
   const auto columns = all.leftCols(directions());
@@ -58,6 +79,8 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
   const double volume = std::sqrt(std::max(0., (columns.transpose() * columns).determinant()));
   if (!(volume > 1e-6 * std::sqrt(product)))
     throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
+  refuse(!repeats(stokes::AmbientFlow(flow), columns), "Domain/periodic `" + periodic + "`", flow.choice(),
+         "the flow differs from cell to cell by more than a uniform gradient");
 }
 
 /// Throws UserError if the keys do not describe a periodic duct. Ducts can only be periodic along x1: tubes of constant cross-section, and channels
@@ -72,7 +95,8 @@ void DomainOptions::check_duct(const std::string& duct) const {
 void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
-  to.pair(!scene.runs_in_time(), scene.sought(), "Domain", "the lattice moves along with the flow");
+  to.pair(!scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow.choice(),
+          "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   to.pair(directions() < 3 && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
           told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
@@ -84,16 +108,16 @@ std::optional<stokes::PeriodicCell> DomainOptions::cell() const {
   return stokes::PeriodicCell(vectors(), directions());
 }
 
-void DomainRow::set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
-                           const Vec3& force) {
-  const Mat3 gradient = stokes::AmbientFlow(scene.flow).gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
+void DomainRow::set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume,
+                           const Mat3& stresslet, const Vec3& force) {
+  const Mat3 strain = (gradient + gradient.transpose()) / 2;
   volume_fraction = volume / of.volume();
   stress = stresslet / of.volume();
   const Vec3 normal = (plane * stress * plane.transpose()).diagonal();
   normal_stress_differences << normal[0] - normal[2], normal[2] - normal[1];
   pressure_gradient = force / of.volume();
-  if (strain.isZero(0)) return;
-  relative_viscosity = 1 + stress.cwiseProduct(strain).sum() / (2 * scene.flow.viscosity * strain.squaredNorm());
+  relative_viscosity = strain.isZero(0) ? std::numeric_limits<double>::quiet_NaN()
+                                        : 1 + stress.cwiseProduct(strain).sum() / (2 * viscosity * strain.squaredNorm());
 }
 
 void DomainRow::add_columns(const Scene& scene, Columns& to) const {
@@ -107,7 +131,7 @@ void DomainRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(pressure_gradient, "x1 x2 x3", {"pressure_gradient_", "force/length^3", "uniform one that balances the force of the particles on the fluid, "
          "component #"});
   if (!to.when(strains(scene))) return;
-  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)"});
+  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)", "the flow does not strain at this time"});
   to.add(normal_stress_differences, "1 2", {"normal_stress_difference_", "force/length^2", "number # of the particle stress, 11 - 33 and 33 - 22 "
          "where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane"});
 }

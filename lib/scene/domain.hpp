@@ -38,6 +38,8 @@ struct DomainOptions {
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
+  /// Returns whether the flow at amplitude 1 changes the lattice vectors.
+  bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;
 };
@@ -51,8 +53,10 @@ struct DomainRow {
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all members except `cell` (6.9), (6.10) from the total volume and stresslet of all particles and their total force on the fluid. `of`:
-  /// the cell. `plane`: axes of the plane of the flow, as rows.
-  void set_stress(const Scene& scene, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet, const Vec3& force);
+  /// the cell. `plane`: axes of the plane of the flow, as rows. `gradient`: of the flow at this time. The relative viscosity is NaN if the flow does not
+  /// strain at this time.
+  void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
+                  const Vec3& force);
 
   void add_columns(const Scene& scene, Columns& to) const;
 };

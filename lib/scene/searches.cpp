@@ -27,6 +27,15 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
   return all;
 }
 
+/// Returns the lattice vectors of a periodic scene; none if it is not periodic, or in a duct.
+std::vector<Vec3> lattice_vectors(const Scene& scene) {
+  std::vector<Vec3> all;
+  if (!scene.domain.present || scene.tube.present) return all;
+  const stokes::PeriodicCell cell = scene.domain.cell().value();
+  for (int d = 0; d < cell.n(); ++d) all.push_back(cell.vectors().col(d));
+  return all;
+}
+
 /// Returns true if the flow has a uniform gradient with nonzero vorticity.
 bool turns(const Scene& scene) {
   if (scene.flow.type == "duct") return false;
@@ -60,9 +69,12 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
+  // A rotation about a point turns lattice vectors h into other ones, unless it is about h itself.
+  const std::vector<Vec3> lattice = lattice_vectors(scene);
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
-  Eigen::MatrixXd change(12 + of_loads.rows(), 6);
+  const auto of_lattice = static_cast<Eigen::Index>(3 * lattice.size());
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(12 + of_lattice + of_loads.rows(), 6);
   change.bottomRows(of_loads.rows()) = scene.rate() * of_loads;
   change.bottomRightCorner(of_loads.rows(), 3) /= size;
   for (int k = 0; k < 6; ++k) {
@@ -72,6 +84,8 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
     for (int i = 0; i < 4; ++i)
       change.block<3, 1>(3 * i, k) =
           unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
+    for (std::size_t d = 0; d < lattice.size(); ++d)
+      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(d), k) = scene.rate() / size * motion.angular_velocity.cross(lattice[d]);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
   std::vector<coupling::RigidMotion> free;

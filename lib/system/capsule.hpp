@@ -188,7 +188,7 @@ class Capsule : public Dynamics {
   std::vector<Vec3> put_into_cell(Net& x);
 
   /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus that at the point. 0 in a duct, whose flow is periodic.
-  Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.gradient(Vec3::Zero()) * shift); }
+  Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.cell_gradient() * shift); }
 
   const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers

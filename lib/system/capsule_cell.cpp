@@ -2,18 +2,17 @@
 
 #include <vector>
 
-#include "base/small_matrices.hpp"
 #include "system/capsule.hpp"
 
 namespace tanktread::coupling {
 
-/// Deforms the cell to this time, dH/dt = L H. Returns whether it has changed. The cell of a duct is constant.
+/// Deforms the cell to this time (2.46). Returns whether it has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (tube_) {
     cell_ = tube_->cell();
     return false;
   }
-  const stokes::PeriodicCell now(exponential(time * flow_.gradient(Vec3::Zero())) * parameters_.cell->vectors(), parameters_.cell->n());
+  const stokes::PeriodicCell now(flow_.deformation(time) * parameters_.cell->vectors(), parameters_.cell->n());
   if (cell_ && *cell_ == now) return false;
   cell_ = now;
   layer_.repeat(now);
@@ -53,7 +52,7 @@ Net Capsule::in_cell(Evaluation& e, const Net& guess) {
   if (!cell_ || !e.x().allFinite()) return solve(e, e.x(), guess);
   Net x = e.x();
   const std::vector<Vec3> shifts = put_into_cell(x);
-  rigid_.enter(shifts, tube_ ? Mat3::Zero() : Mat3(flow_.gradient(Vec3::Zero())));
+  rigid_.enter(shifts, tube_ ? Mat3::Zero() : flow_.cell_gradient());
   Net slower = guess;
   const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
   for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();

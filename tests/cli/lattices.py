@@ -34,8 +34,13 @@ def _row(name, *more, names=OF_ONE + OF_ALL, ranks=1, **lists):
 
 def _with(**lists):
     """The deck with other lists, or more."""
-    lines = [line for line in DECK.splitlines() if not any(line.startswith(f"  {name}:") for name in lists)]
-    return "\n".join(lines + [f"  {name}: {text}" for name, text in lists.items()]) + "\n"
+    lines, keep = [], True
+    for line in DECK.splitlines():
+        if not line.startswith("   "):
+            keep = not any(line.startswith(f"  {name}:") for name in lists)
+        if keep:
+            lines.append(line)
+    return "\n".join(lines + [f"  {name}: {text}" for name, text in lists.items() if text]) + "\n"
 
 
 def the_same_lattice_by_other_cells_is_the_same():
@@ -120,6 +125,66 @@ def a_run_is_resumed_with_its_lattice_where_it_was():
         check(abs(series("whole", name) - series("parts", name)).max() < 1e-12, name)
 
 
+def a_lattice_follows_a_flow_that_turns():
+    """A flow that turns at a constant rate about x2 is steady in axes that turn with it, where its gradient has that rotation taken off. Two particles of
+    unequal size, so that nothing is equal by symmetry. Both runs have the same steps, so that only the errors of bs3 in the two frames differ."""
+    rate, end = 20.0, 0.04
+    pair = """{defaults: {viscosity ratio: 2.0, Membrane: {law: neo-Hookean, shear modulus: 3.0}, Surface: {elements per side: 3}},
+              one: {center: [0.3, 0.2, 0.1]}, two: {center: [2.6, 0.1, 0.4], radius: 0.8}}"""
+    names = "one/energy", "two/energy", "relative_viscosity", "smallest_gap", "one/smallest_tension"
+    lists = {"Domain": "{side lengths: [5.0, 2.8, 2.8]}", "Particles": pair, "Time": f"{{scheme: bs3, fixed step: 0.005, final time: {end}}}"}
+    angle = numpy.degrees(rate * end)
+    changing = f"{{type: simple shear, history: {{times: [0, {end}], angles: [0, {angle}], axis: x2}}}}"
+    text = _with(**lists, Flow=changing)
+    run(deck(text), "--output", "turning", "--quiet")
+    turn = rate * numpy.array([[0, 0, 1], [0, 0, 0], [-1, 0, 0]])
+    gradient = [float(x) for x in (numpy.array([[0, 0, 1], [0, 0, 0], [0, 0, 0]]) - turn).ravel()]
+    run(deck(text.replace(changing, f"{{type: linear, gradient: {gradient}}}")), "--output", "steady", "--quiet")
+    for name in names:
+        off = abs(series("turning", name) - series("steady", name)).max()
+        check(off < 1e-6 * max(1, abs(series("steady", name)).max()), name, off)
+
+
+def a_lattice_goes_to_and_fro_with_its_flow():
+    """A rigid body has no memory: where it is depends only on the integral of the amplitude, here 0.04, as of a steady flow at the same time."""
+    spheroid = "{motion: free, shape: spheroid, semi-axes: [1.2, 0.8, 0.8], center: [0.3, 0.2, 0.1]}"
+    text = DECK[:DECK.index("  Particles")] + f"  Particle: {spheroid}\n" + DECK[DECK.index("  Quadrature"):]
+    run(deck(text), "--output", "once", "--quiet")
+    ways = {"table": "{times: [0, 0.04], amplitudes: [2, 0]}", "jump": "{times: [0, 0.02, 0.02], amplitudes: [3, 3, -1]}"}
+    for name, history in ways.items():
+        run(deck(text.replace("{type: simple shear}", f"{{type: simple shear, history: {history}}}")), "--output", name, "--quiet")
+        for key in ("cell_3_x1", "cell_3_x3", "center_x1", "center_x3", "axis_1_x1", "axis_1_x3"):
+            off = abs(series(name, key)[-1] - series("once", key)[-1])
+            check(off < (1e-12 if "cell" in key else 1e-6), name, key, off)
+    viscosity = series("table", "relative_viscosity")
+    check(numpy.isnan(viscosity[-1]) and numpy.isfinite(viscosity[:-1]).all(), "not undefined where the flow rests:", viscosity)
+
+
+def a_parabolic_flow_goes_along_its_periods():
+    """A particle of the next cell has the same velocity, and one alone that of an unbounded fluid, where the period is long."""
+    names = "one/velocity_x1", "one/velocity_x3", "one/energy", "one/stresslet_13"
+    flow = "{type: parabolic, profile: plane, maximum velocity: 1.5, half width: 4.0}"
+    for domain, shift in (("{periodic: x1, side lengths: [2.8, 1, 1]}", [2.8, 0]), ("{periodic: x1 x2, side lengths: [2.8, 3.0, 1]}", [5.6, -3.0])):
+        here = _row("here", names=names, Flow=flow, Domain=domain)
+        centre = f"Particles/one/center=[{0.3 + shift[0]}, {0.2 + shift[1]}, 0.1]"
+        there = _row("there", "--set", centre, names=names, Flow=flow, Domain=domain)
+        check(abs(there - here).max() < 1e-9, domain, there - here)
+    alone = _row("alone", names=names, Flow=flow, Domain=None)
+    far = [abs(_row(f"far{h}", names=names, Flow=flow, Domain=f"{{periodic: x1, side lengths: [{h}, 1, 1]}}") - alone).max() for h in (10, 20)]
+    check(far[1] < 1e-2 and far[0] > 3 * far[1], "a long period is not that of one particle:", far)
+
+
+def a_steady_shape_on_a_lattice_is_where_a_run_ends():
+    """In shear along a plane of cells the lattice stays as it is. The search finds the shape that the run in time comes to."""
+    lists = {"Domain": "{periodic: x1 x2, side lengths: [2.8, 2.8, 1]}", "Time": "{tolerance: 1.0e-4, final time: 12.0}"}
+    names = "one/taylor_inertia", "one/inclination", "one/energy"
+    centre = "--set", "Particles/one/center=[0.0, 0.0, 0.0]"
+    end = _row("run", *centre, names=names, **lists)
+    found = _row("found", *centre, names=names, **{**lists, "Steady": "{}"})
+    check(abs(found - end).max() < 1e-3 * max(1, abs(end).max()), "not the same shape:", found, end)
+    refused(["Steady", "simple shear", "deforms the periodic cell"], deck(_with(Steady="{}")))
+
+
 def a_particle_that_meets_its_image_ends_the_run():
     text = DECK[:DECK.index("  Particles")] + "  Particle: {motion: free, radius: 1.38}\n  Contact: {limit: 0.03}\n" + DECK[DECK.index("  Time"):]
     error = run(deck(text), "--output", "close", "--quiet", code=3).stderr
@@ -146,8 +211,9 @@ Tanktread:
 
 def what_no_lattice_can_do_is_refused():
     for lists, words in (
-        ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "gradient"]),
-        ({"Flow": "{type: simple shear, history: {type: sine, frequency: 1.0, amplitude: 1.0}}"}, ["Domain", "Flow/history"]),
+        ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "from cell to cell"]),
+        ({"Flow": "{type: parabolic, profile: plane, half width: 3.0, history: {times: [0, 1], angles: [0, 9], axis: x2}}",
+          "Domain": "{periodic: x1, side lengths: [2.8, 1, 1]}"}, ["Domain", "parabolic", "from cell to cell"]),
         ({"Domain": "{side lengths: [1.9, 2.8, 2.8]}"}, ["Domain", "smaller", "Particles/one", "image"]),
         ({"Domain": "{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 2.8, 2.8, 0]}"}, ["Domain/lattice vectors", "no volume"]),
         ({"Domain": "{periodic: x1}"}, ["Domain", "side lengths"]),

@@ -3,6 +3,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/small_matrices.hpp"
+
 namespace tanktread::stokes {
 namespace {
 
@@ -55,6 +57,12 @@ bool AmbientFlow::at(double time, double start) {
 }
 
 double AmbientFlow::next_kink(double time) const { return history_ ? history_->next_kink(time) : std::numeric_limits<double>::infinity(); }
+
+Mat3 AmbientFlow::deformation(double time) const {
+  if (!affine()) return Mat3::Identity();
+  const Mat3 steady = user_ ? user_->gradient(Vec3::Zero()) : steady_.gradient;
+  return history_ ? history_->deformation(steady, time) : exponential(time * steady);
+}
 
 /// Seven angles suffice, because the field is a polynomial of degree three in the sine and cosine of the angle.
 std::vector<AmbientFlow> AmbientFlow::directions() const {

@@ -48,6 +48,12 @@ class AmbientFlow {
   /// Returns whether the gradient is uniform.
   bool affine() const { return user_ ? user_->affine() : !duct_ && steady_.direction.isZero(0); }
 
+  /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.
+  Mat3 cell_gradient() const { return affine() ? gradient(Vec3::Zero()) : Mat3(Mat3::Zero()); }
+
+  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.46).
+  Mat3 deformation(double time) const;
+
   /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }

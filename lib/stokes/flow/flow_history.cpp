@@ -2,22 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
 #include <Eigen/Geometry>
 
-#include "base/text_file.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/small_matrices.hpp"
+#include "base/text_file.hpp"
 #include "deck/section.hpp"
 #include "deck/words.hpp"
 
 namespace tanktread::stokes {
 
 namespace {
+
 constexpr double degree = std::numbers::pi / 180;
+
+/// Returns F(1) of dF/ds = (A + s B) F, F(0) = I. The Taylor series of F converges everywhere; it is used on parts short enough that it does so fast.
+Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
+  constexpr int terms = 20;  // with a norm of at most 1/2 the next term is below 1e-16
+  const int parts = 1 + static_cast<int>(2 * (first.norm() + change.norm()));
+  const double h = 1. / parts;
+  Mat3 whole = Mat3::Identity();
+  for (int part = 0; part < parts; ++part) {
+    const Mat3 a = h * (first + part * h * change), b = h * h * change;
+    Mat3 before = Mat3::Zero(), term = Mat3::Identity(), sum = term;
+    for (int k = 1; k <= terms; ++k) {
+      const Mat3 next = (a * term + b * before) / k;
+      before = term, term = next;
+      sum += term;
+    }
+    whole = sum * whole;
+  }
+  return whole;
 }
+
+}  // namespace
 
 void FlowHistory::declare(deck::Section& section) {
   section.key("type", type, deck::Choice{"table", "sine"},
@@ -98,7 +121,7 @@ void FlowHistory::check() const {
 }
 
 FlowHistory::Moment FlowHistory::at(double time, double start) const {
-  if (type == "sine") return {*mean + *amplitude * std::sin(2 * std::numbers::pi * *frequency * time + *phase * degree), Mat3::Identity()};
+  if (type == "sine") return {*mean + *amplitude * std::sin(2 * std::numbers::pi * *frequency * time + *phase * degree)};
   // Selects the piece in which the step began. Times of steps equal those of the table up to round-off.
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(*times, start * (1 + 1e-12)) - times->begin());
   const std::size_t j = std::min(after, times->size() - 1), i = after == 0 ? 0 : after - 1;
@@ -106,8 +129,35 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
   const auto value = [&](const std::vector<double>& values) { return (1 - t) * values[i] + t * values[j]; };
   Moment now;
   if (amplitudes) now.amplitude = value(*amplitudes);
-  if (angles) now.turn = turn(value(*angles));
+  if (angles) now.angle = value(*angles), now.turn = turn(now.angle);
   return now;
+}
+
+/// A sine does not rotate, so that the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an equation
+/// with the gradient a L - W, which is linear in time.
+Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
+  if (type == "sine") {
+    const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;
+    return exponential((*mean * time + *amplitude / rate * (std::cos(angle) - std::cos(rate * time + angle))) * gradient);
+  }
+  std::vector<double> ends{0};
+  std::ranges::copy_if(*times, std::back_inserter(ends), [&](double end) { return end > 0 && end < time; });
+  ends.push_back(time);
+  Mat3 whole = Mat3::Identity();
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double length = ends[i + 1] - ends[i];
+    if (!(length > 0)) continue;
+    const Moment first = at(ends[i], ends[i]), last = at(ends[i + 1], ends[i]);
+    Mat3 turning = Mat3::Zero();
+    if (angles) {
+      const int k = axis.value()[1] - '1', l = (k + 1) % 3, m = (k + 2) % 3;
+      turning(m, l) = (last.angle - first.angle) * degree;
+      turning(l, m) = -turning(m, l);
+    }
+    whole = last.turn * linear_deformation(length * first.amplitude * gradient - turning, length * (last.amplitude - first.amplitude) * gradient) *
+            first.turn.transpose() * whole;
+  }
+  return whole;
 }
 
 Mat3 FlowHistory::turn(double angle) const { return Eigen::AngleAxisd(angle * degree, Vec3::Unit(axis.value()[1] - '1')).toRotationMatrix(); }

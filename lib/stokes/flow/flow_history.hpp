@@ -34,10 +34,15 @@ struct FlowHistory {
   struct Moment {
     double amplitude = 1;
     Mat3 turn = Mat3::Identity();
+    double angle = 0;  ///< angle of `turn` in degrees
   };
 
   /// Returns the flow at a time, in a step that began at `start`. At a jump this is the limit from before, unless the step starts there.
   Moment at(double time, double start) const;
+
+  /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.46). Exact up to
+  /// round-off. L in 1/time.
+  Mat3 deformation(const Mat3& gradient, double time) const;
 
   /// Returns the rotation by an angle in degrees about `axis`.
   Mat3 turn(double angle) const;

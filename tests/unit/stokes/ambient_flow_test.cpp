@@ -49,6 +49,35 @@ TEST(AmbientFlow, TakesTheRateOfALinearFlowFromItsGradient) {
   EXPECT_EQ(AmbientFlow(flow("quiescent")).rate(), 0);
 }
 
+/// Integrates dF/dt = L F by many steps of the classical Runge-Kutta scheme, from 0 to `end`, with the gradients of `flow`.
+Mat3 integrated(AmbientFlow flow, double end, int steps) {
+  Mat3 f = Mat3::Identity();
+  const double h = end / steps;
+  for (int k = 0; k < steps; ++k) {
+    const auto gradient = [&](double part) {
+      flow.at((k + part) * h, k * h);
+      return flow.gradient(Vec3::Zero());
+    };
+    const Mat3 k1 = gradient(0) * f, k2 = gradient(0.5) * (f + h / 2 * k1), k3 = gradient(0.5) * (f + h / 2 * k2), k4 = gradient(1) * (f + h * k3);
+    f += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return f;
+}
+
+TEST(AmbientFlow, DeformsALatticeByTheIntegralOfItsGradient) {
+  FlowOptions options = flow("linear", 1);
+  options.gradient = (Mat3() << 0.1, 2, 3, 4, 0.5, 6, 7, 8, -0.6).finished() / 5;
+  options.history = FlowHistory{.times = std::vector<double>{0.25, 0.75, 0.75, 1}, .amplitudes = std::vector<double>{1, -0.5, 2, 1},
+                                .angles = std::vector<double>{20, 90, -40, -40}, .axis = "x2"};
+  for (const double end : {0.2, 0.5, 0.75, 1.25}) {  // before the first time, within pieces, at a jump, after the last time
+    const Mat3 f = AmbientFlow(options).deformation(end);
+    EXPECT_LT((f - integrated(AmbientFlow(options), end, 1000)).norm(), 1e-10 * f.norm()) << end;
+    EXPECT_NEAR(f.determinant(), 1, 1e-13);
+  }
+  options.history = FlowHistory{.type = "sine", .mean = 0.3, .amplitude = 2, .frequency = 0.7, .phase = 25};
+  EXPECT_LT((AmbientFlow(options).deformation(1.3) - integrated(AmbientFlow(options), 1.3, 1000)).norm(), 1e-9);
+}
+
 FlowOptions parabolic(const char* profile) {
   FlowOptions options = flow("parabolic", 1);
   options.profile = profile, options.maximum_velocity = 3, options.half_width = 2;
