@@ -39,7 +39,7 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in a
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume, new_deck;
-  bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false;
+  bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false, no_expect = false;
 };
 
 /// A kind of deck that `--new` prints.
@@ -107,6 +107,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
+  app.add_flag("--rejections", arguments.rejections, "print the table of all combinations of choices that are rejected, with reasons (Markdown)");
   app.add_flag("--schema", arguments.schema, "print a JSON schema of decks, by which editors complete keys and show their meaning");
   app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
       ->check(CLI::IsMember(kinds_of_decks()), "");
@@ -190,6 +191,10 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
 int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (arguments.reference) {
     if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene(registry));
+    return done;
+  }
+  if (arguments.rejections) {
+    if (speaks) std::cout << "# Combinations that are rejected\n\nPrinted by `tanktread --rejections`.\n\n" << rejection_table(registry);
     return done;
   }
   if (arguments.reference_series) {
@@ -278,7 +283,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
       return done;
     }
     const int code = run(arguments, registry, speaks);
-    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
+    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.rejections || arguments.schema ||
                         !arguments.new_deck.empty();  // a run is not listed, because a run writes its output to files
     if (speaks && prints) check_output();
     return code;

@@ -13,6 +13,7 @@
 #include "base/formatted.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
+#include "motion/approach.hpp"
 #include "motion/guarded.hpp"
 #include "motion/periodic.hpp"
 #include "record/plan.hpp"
@@ -44,6 +45,7 @@ struct System {
   /// Sets up the equations on the current mesh of the particle. `x` is a shape on this mesh.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told_to_stop);
+    motion->at(0, 0);
     const Body& body = particle->body();
     equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
   }
@@ -91,12 +93,44 @@ class SteadyRun {
       return write();
     }
     motion::SteadyReport found;
-    do found = motion::find_steady(*system_->equations, scene_.steady, scene_.solvers, state_.x);
-    while (found.converged && adapt());
+    do {
+      const Net start = state_.x;
+      found = motion::find_steady(*system_->equations, scene_.steady, scene_.solvers, state_.x);
+      if (!found.converged) found = approach(system_, start, state_.x, found);
+    } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
     write();
     if (!found.converged)
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
+  }
+
+  /// Finds the steady shape of a system through weaker flows, where the search from `start` has ended with `failed` and its best iterate x. Reports the
+  /// way. Returns `failed` and leaves x as it is if there is no flow to be weakened, or if no weaker flow has a steady shape that is found.
+  motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
+    if (!(of->scene.speed() > 0) || of->scene.flow.history) return failed;
+    output::Checkpoint mesh;
+    of->particle->store(mesh);
+    Net reached = start;
+    const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
+      if (amplitude == 1) return {of, &*of->equations};
+      Scene weaker = of->scene;
+      weaker.flow.history = stokes::FlowHistory{.times = std::vector<double>{0}, .amplitudes = std::vector<double>{amplitude}};
+      auto made = std::make_shared<System>(std::move(weaker), ranks_, phases_);
+      carry_to(*made, mesh);
+      weaker_.push_back(made);
+      if (weaker_.size() > 1) count_out(*weaker_.front()), weaker_.pop_front();
+      return {made, &*made->equations};
+    }, scene_.steady, scene_.solvers, reached);
+    std::string amplitudes;
+    for (const double amplitude : way.amplitudes) amplitudes += (amplitudes.empty() ? "" : ", ") + formatted("%.4g", amplitude);
+    std::string line = "nothing was found from the initial shape; steady shapes of the flow times " + amplitudes;
+    line += way.arrived() ? " led to it" : " were found, but none of the full flow";
+    if (way.amplitudes.empty()) line = "nothing was found from the initial shape, nor in weaker flows";
+    chosen_.emplace_back("search", line);
+    if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %s\n", line.c_str());
+    if (!way.arrived()) return failed;
+    x = std::move(reached);
+    return way.last;
   }
 
   /// Computes a shape that repeats after a period.
@@ -145,6 +179,10 @@ class SteadyRun {
     motion::Branch branch([this](double parameter, double second) { return equations_at({parameter, second}); },
                           [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
                           scene_.steady, scene_.solvers, first[0], first[1], state_.x);
+    branch.search([&](Net& x, const motion::SteadyReport& failed) {
+      const Net start = state_.x;
+      return approach(system_, start, x, failed);
+    });
     for (int k = 0; const auto point = branch.next(); ++k) {
       stop_where_told();
       system_ = system_at({point->parameter, point->second});
@@ -194,9 +232,13 @@ class SteadyRun {
     system.begin(state_.x);
   }
 
+  /// Adds the work of a system that is dropped.
+  void count_out(const System& system) {
+    work_ = work_ + system.particle->work(), kernel_ = kernel_ + system.particle->kernel_evaluations();
+  }
+
   void drop_oldest() {
-    const ParticleSystem& oldest = *systems_.back().second->particle;
-    work_ = work_ + oldest.work(), kernel_ = kernel_ + oldest.kernel_evaluations();
+    count_out(*systems_.back().second);
     systems_.pop_back();
   }
 
@@ -285,6 +327,7 @@ class SteadyRun {
       totals_.work = totals_.work + one.work(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
     };
     if (systems_.empty()) add(*system_->particle);
+    for (const auto& system : weaker_) add(*system->particle);
     for (const auto& [parameters, system] : systems_) add(*system->particle);
     totals_.kernel = ranks_.of_all(totals_.kernel);
     totals_.phase_angle = system_->particle->phase_angle();
@@ -341,6 +384,7 @@ class SteadyRun {
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
+  std::deque<std::shared_ptr<System>> weaker_;  // system of a weaker flow
   std::optional<output::Checkpoint> mesh_;                              // mesh of these systems, if it is not the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;

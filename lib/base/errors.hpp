@@ -31,27 +31,14 @@ inline void require_none(std::vector<std::string> mistakes) {
   if (!mistakes.empty()) throw UserErrors(std::move(mistakes));
 }
 
-/// Collects sentences about choices that contradict each other. They are added by the classes that know the reasons.
-class Rejections {
- public:
-  /// Adds a sentence if both choices are made, which contradict each other. `why`: reason, appended to the sentence.
-  void pair(bool both, const std::string& one, const std::string& other, const std::string& why) {
-    if (both) sentences_.push_back(one + " and " + other + " contradict each other: " + why + ".");
-  }
-  void add(bool wrong, const std::string& sentence) {
-    if (wrong) sentences_.push_back(sentence);
-  }
-  void throw_if_any() const { require_none(sentences_); }
-
- private:
-  std::vector<std::string> sentences_;
-};
+/// Returns a sentence about two choices that contradict each other. `why`: reason, without a full stop.
+inline std::string contradiction(const std::string& one, const std::string& other, const std::string& why) {
+  return one + " and " + other + " contradict each other: " + why + ".";
+}
 
 /// Throws UserError if both choices are made.
 inline void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
-  Rejections all;
-  all.pair(both, one, other, why);
-  all.throw_if_any();
+  if (both) throw UserError(contradiction(one, other, why));
 }
 
 /// Failure of a run (NaN, folded element, step too small, solver not converged). The program writes a checkpoint and ends with exit code 3.

@@ -6,6 +6,10 @@ class ParameterEntry;
 class ParameterList;
 }  // namespace Teuchos
 
+namespace tanktread {
+class Rejections;
+}
+
 namespace tanktread::deck {
 class Section;
 }

@@ -1,6 +1,7 @@
 #include "membrane/options.hpp"
 
 #include "base/errors.hpp"
+#include "base/rejections.hpp"
 #include "deck/section.hpp"
 #include "membrane/strain_energy.hpp"
 
@@ -132,10 +133,27 @@ void Options::declare(deck::Section& section) {
   section.optional_section("forces", forces, "forces on patches of the membrane; none without this section");
 }
 
-void Options::check() const {
-  refuse(bending_modulus && bending_number, "Membrane/bending modulus", "Membrane/bending number", "give one of them");
-  refuse(bending(1, 1) > 0 && load == "strong", std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"),
+void Options::reject(Rejections& to) const {
+  to.pair(bending(1, 1) > 0 && load == "strong", {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"), "Membrane/bending modulus or bending number"},
          "Membrane/load `strong`", "bending exists in the weak form only");
+  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
+  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
+  to.pair(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
+         "a fluid interface has no unstressed shape");
+  to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
+         "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
+  to.pair(viscosity.any() && load == "strong", {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity", "Membrane/shear viscosity or dilatational viscosity"},
+         "Membrane/load `strong`", "viscosity is part of the weak load");
+  to.pair(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
+         "nothing holds on to a fluid interface");
+  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`", "the forces are part of the weak load");
+}
+
+void Options::check() const {
+  Rejections found;
+  reject(found);
+  found.throw_if_any();
+  refuse(bending_modulus && bending_number, "Membrane/bending modulus", "Membrane/bending number", "give one of them");
   refuse(capillary_number && shear_modulus, "Membrane/capillary number", "Membrane/shear modulus", "give one of them");
   refuse(capillary_number && surface_tension, "Membrane/capillary number", "Membrane/surface tension", "give one of them");
   refuse(shear_modulus && law == "surface tension", "Membrane/shear modulus", "Membrane/law `surface tension`", "give Membrane/surface tension");
@@ -144,14 +162,10 @@ void Options::check() const {
     throw UserError("Membrane/area dilatation belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
   if (area_order > 0 && !dilates())
     throw UserError("Membrane/area points belongs to Membrane/law `Skalak` and `Evans-Skalak`, but Membrane/law is `" + law + "`.");
-  refuse(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
-  refuse(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
   if (neo_hookean_share && law != "Mooney-Rivlin")
     throw UserError("Membrane/neo-Hookean share belongs to Membrane/law `Mooney-Rivlin`, but Membrane/law is `" + law + "`.");
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   check_energy(*this);
-  refuse(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
-         "a fluid interface has no unstressed shape");
   check_stress_free(*this);
   refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature", "Membrane/bending reference `unstressed`",
          "one says the curvature");
@@ -161,15 +175,8 @@ void Options::check() const {
     throw UserError("Membrane/area difference modulus needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
-  refuse(relaxation_time && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
-         "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
   if (relaxation_time && !viscosity.any())
     throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
-  refuse(viscosity.any() && load == "strong", std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
-         "Membrane/load `strong`", "viscosity is part of the weak load");
-  refuse(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
-         "nothing holds on to a fluid interface");
-  refuse(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`", "the forces are part of the weak load");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }

@@ -45,6 +45,7 @@ struct Options {
 
   /// Throws UserError, with a one-sentence message, if keys contradict each other.
   void check() const;
+  void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
   std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< energy of the law `expression`, otherwise null; throws UserError if it is invalid
 

@@ -59,7 +59,8 @@ double Branch::inner(const Place& a, const Place& b) const {
 
 std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& x) {
   Net found = x;
-  const SteadyReport report = find_steady(*family_(parameter, second_), steady_, solvers_, found);
+  SteadyReport report = find_steady(*family_(parameter, second_), steady_, solvers_, found);
+  if (!report.converged && !(report.rest < noise * steady_.tolerance) && last_.empty() && search_) report = search_(found, report);
   if (!report.converged && !(report.rest < noise * steady_.tolerance)) return {};
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
@@ -132,6 +133,17 @@ std::optional<double> Branch::end_before(const Place& place) const {
   return {};
 }
 
+/// Returns the prediction of the point one step further: the parabola in arclength through the last three points, or the straight line along t.
+Branch::Place Branch::predicted(const Place& t) const {
+  const Solved& now = last_.back();
+  if (last_.size() < 3) return now.place.along(t, step_);
+  const Solved &one = last_[0], &two = last_[1];
+  const double s = now.s + step_;
+  const auto weight = [&](double a, double b, double c) { return (s - b) * (s - c) / ((a - b) * (a - c)); };
+  const double first = weight(one.s, two.s, now.s), second = weight(two.s, one.s, now.s), third = weight(now.s, one.s, two.s);
+  return {first * one.place.x + second * two.place.x + third * now.place.x, first * one.place.q + second * two.place.q + third * now.place.q};
+}
+
 /// Advances by one step; halves the step until it succeeds.
 std::optional<Branch::Solved> Branch::stepped() {
   constexpr double least = 1e-6;
@@ -141,14 +153,17 @@ std::optional<Branch::Solved> Branch::stepped() {
   t = {t.x / before, t.q / before};
   const auto near = [&](const std::optional<Solved>& solved) { return solved && length(solved->place - now.place) < 2 * step_; };
   for (double first = step_; step_ > least * first; step_ *= 0.5) {
-    Place next = now.place.along(t, step_);
+    Place next = predicted(t);
     std::optional<double> asked = end_before(next);
     if (options_.method == "natural" && !asked) asked = next.q * unit_;
     if (!asked) {
       auto solved = on_plane(next, t);
       if (!near(solved)) continue;
       asked = end_before(solved->place);
-      if (!asked) return solved;
+      if (!asked) {
+        missed_ = length(solved->place - next) / step_;
+        return solved;
+      }
       next = solved->place;
     }
     const Place way = next - now.place;
@@ -225,8 +240,10 @@ void Branch::begin() {
 void Branch::advance() {
   ++count_;
   if (last_.size() < 2) return begin();
+  // Iterations depend on the tolerance too; a prediction that was close says that the branch bends little.
   const int iterations = last_.back().iterations;
-  step_ = std::min(step_ * (iterations < 25 ? 1.5 : iterations < 45 ? 1 : 0.7), options_.largest_change * std::numbers::sqrt2);
+  const double change = iterations < 25 || missed_ < 0.05 ? 1.5 : iterations < 45 || missed_ < 0.2 ? 1 : 0.7;
+  step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)
     throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));

@@ -68,6 +68,10 @@ class Branch {
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 
+  /// Another way to the first point, which is tried if the search from x fails: it returns its report, and replaces the best iterate. Collective.
+  using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
+  void search(Search other) { search_ = std::move(other); }
+
   /// Returns the next point, including folds in between. With a second parameter, it returns points up to the first fold and then the fold at each
   /// second value. Returns nothing at the end. Throws RunFailure if the point is not found. Collective.
   std::optional<BranchPoint> next();
@@ -94,6 +98,7 @@ class Branch {
   std::optional<Solved> at_parameter(double parameter, const Net& x);
   std::optional<Solved> on_plane(const Place& predicted, const Place& normal);
   std::optional<Solved> stepped();
+  Place predicted(const Place& t) const;
   void begin();
   void advance();
   void keep(const Solved& solved);
@@ -106,6 +111,7 @@ class Branch {
 
   Family family_;
   Remesh remesh_;
+  Search search_;
   ContinuationOptions options_;
   SteadyOptions steady_;
   const coupling::SolverOptions& solvers_;
@@ -118,7 +124,7 @@ class Branch {
   double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
   std::size_t values_ = 0;        // number of its values reached
   std::string failure_;
-  double step_ = 0;
+  double step_ = 0, missed_ = 1;  // `missed_`: distance of the latest point from its prediction, divided by the step
   double heading_ = 0;  // change of q in the last step; points recomputed on another mesh may have another sign
   int count_ = 0;
   bool ended_ = false;

@@ -79,27 +79,38 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
   const double volume = std::sqrt(std::max(0., (columns.transpose() * columns).determinant()));
   if (!(volume > 1e-6 * std::sqrt(product)))
     throw UserError(formatted("Domain/lattice vectors must span a cell, but those given have no volume: it is %.3g.", volume));
-  refuse(!repeats(stokes::AmbientFlow(flow), columns), "Domain/periodic `" + periodic + "`", flow.choice(),
-         "the flow differs from cell to cell by more than a uniform gradient");
+}
+
+void DomainOptions::reject_duct(const std::string& duct, Rejections& to) const {
+  to.pair(periodic != "x1", {"Domain/periodic `" + periodic + "`", "Domain/periodic of another direction than x1"}, duct,
+          "a duct repeats along x1 only: give `x1`");
+  to.pair(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");
 }
 
 /// Throws UserError if the keys do not describe a periodic duct. Ducts can only be periodic along x1: tubes of constant cross-section, and channels
 /// whose profile returns to the cross-section at the start.
 void DomainOptions::check_duct(const std::string& duct) const {
-  refuse(periodic != "x1", "Domain/periodic `" + periodic + "`", duct, "a duct repeats along x1 only: give `x1`");
-  refuse(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");
+  Rejections found;
+  reject_duct(duct, found);
+  found.throw_if_any();
   if (!side_lengths) throw UserError("Domain needs Domain/side lengths, the period of " + duct + " along x1.");
   if (!(side_lengths->front() > 0)) throw UserError("Domain/side lengths must be positive in the directions of Domain/periodic.");
 }
 
 void DomainOptions::reject(const Scene& scene, Rejections& to) const {
+  if (!present && !to.every()) return;
+  if (to.every()) reject_duct("Tube or Channel", to);
+  to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),
+          {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, Chosen(scene.flow.choice(), "Flow/type"),
+          "the flow differs from cell to cell by more than a uniform gradient");
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
-  to.pair(!scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow.choice(),
+  to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), Chosen(scene.flow.choice(), "Flow/type"),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
-  to.pair(directions() < 3 && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
-          told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
+  to.pair(directions() < 3 && (told || weight || scene.particle.force), {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
+          {told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
+           "Particle/motion `prescribed`, Particle/density difference or Particle/force"},
           "the velocity of a net force in every cell is known in a lattice of three directions only");
 }
 

@@ -13,7 +13,6 @@
 
 namespace tanktread {
 
-class Rejections;
 struct Scene;
 
 struct DomainOptions {
@@ -42,6 +41,7 @@ struct DomainOptions {
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;
+  void reject_duct(const std::string& duct, Rejections& to) const;
 };
 
 /// Data of the lattice in one row of the series.

@@ -18,19 +18,21 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
   const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
-  to.pair(!scene.runs_in_time() && told, scene.sought(), choice(), "a body that moves as told has no place or attitude to be found");
-  to.pair(scene.tube.repulsion && told, scene.tube.list() + "/repulsion", choice(), forced);
-  to.pair(density_difference && told, "Particle/density difference", choice(), forced);
-  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", choice(), "a body that moves as told does not come to rest");
-  to.pair(rigid() && scene.membrane_given, "Membrane", choice(), "a rigid particle has no membrane");
-  to.pair(rigid() && scene.volume_given, "Volume", choice(), "a rigid particle keeps its volume");
-  to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", choice(), "there is no fluid in a rigid particle");
-  to.pair(rigid() && shape.initial, "Particle/initial shape", choice(), "a rigid particle has the shape that it has");
-  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow.choice(), "it is for flows " + gradient);
-  to.pair(held && (tube || rigid()), "Particle/drift `held`", tube ? scene.tube.list() : choice(),
+  const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`"), duct(scene.tube.list(), "Tube or Channel");
+  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body that moves as told has no place or attitude to be found");
+  to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
+  to.pair(density_difference && told, "Particle/density difference", moved, forced);
+  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body that moves as told does not come to rest");
+  to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
+  to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
+  to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
+  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, "a rigid particle has the shape that it has");
+  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", Chosen(scene.flow.choice(), "Flow/type"), "it is for flows " + gradient);
+  to.pair(held && (tube || rigid()), "Particle/drift `held`", {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);
   to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
-          "Solvers/projection `" + scene.solvers.projection + "`", tube ? "Tube" : scene.wall.present ? "Wall" : choice(),
+          "Solvers/projection `least squares`",
+          {tube ? duct.here : scene.wall.present ? "Wall" : stiff.here, "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
           "it is for what deforms away from walls");
 }
 
@@ -120,19 +122,20 @@ void ParticleKind::declare_lists(deck::Section& section) {
 void ParticleKind::reject(const Scene& scene, Rejections& to) const {
   const bool drop = membrane.law == "surface tension", strong = scene.load_is_strong(), rigid = particle.rigid();
   const bool desingularised = scene.quadrature.rule == "desingularised", degenerate = surface.polar() && surface.poles == "plain";
-  const std::string law = "Membrane/law `" + membrane.law + "`", plain = "Surface/poles `plain`";
+  const std::string plain = "Surface/poles `plain`";
+  const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
   to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",
           "a spline space from a file has no mesh to refine");
   to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
   to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "a degenerate element has no load at a pole");
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, "a degenerate element has no normal at its pole");
-  to.pair(!drop && scene.interface_motion() != "material", "Interface/motion `" + scene.interface_motion() + "`", law,
+  to.pair(!drop && scene.interface_motion() != "material", {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
-  to.pair(surfactant && (rigid || !drop), "Interface/surfactant", rigid ? particle.choice() : law, "it is on the interface of a drop");
-  const std::pair<bool, std::string> works[] = {{scene.contact.limiter, "Contact/limiter"},
+  to.pair(surfactant && (rigid || !drop), "Interface/surfactant", {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"}, "it is on the interface of a drop");
+  const std::pair<bool, Chosen> works[] = {{scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
-                                                {scene.tube.repulsion.has_value(), scene.tube.list() + "/repulsion"}};
+                                                {scene.tube.repulsion.has_value(), {scene.tube.list() + "/repulsion", "Tube/repulsion"}}};
   for (const auto& [with, what] : works)
     to.pair(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
 }

@@ -164,16 +164,6 @@ void check_motion(const Scene& scene) {
   }
 }
 
-/// Throws UserError if the power balance (6.11), which includes all particles, is not available for the scene.
-void check_power(const Scene& scene) {
-  if (!scene.output.power_balance || !scene.name.empty()) return;
-  const std::string word = "Output/power balance";
-  refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, scene.flow.choice(),
-         "it is for flows of one gradient, and for tubes");
-  refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
-  refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
-}
-
 /// Throws UserError if the first-kind equation for rigid bodies does not apply to the scene.
 void check_first_kind(const Scene& scene) {
   const std::string word = "Solvers/rigid bodies `first kind`";
@@ -203,17 +193,6 @@ void check_several(const Scene& scene) {
       throw UserError(list + ": " + error.what());
     }
   }
-}
-
-/// Throws UserError if parts that the program adds have no effect in the scene.
-void check_registered(const Scene& scene) {
-  const std::string motion = scene.particle.choice(), flow = scene.flow.choice();
-  refuse(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
-  refuse(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
-  if (scene.in_system()) return;
-  refuse(!scene.series.empty(), "Output/series", motion, "the one body has a record of its own; give it in a list Particles");
-  refuse(scene.flow.user && !scene.flow.user->affine(), flow, motion,
-         "the one body is solved for in flows of the second degree; give it in a list Particles");
 }
 
 /// Throws UserError if the mesh cannot have the element lengths that the adaptation requires.
@@ -299,7 +278,9 @@ std::vector<Scene> Scene::alone() const {
 void Scene::check() const {
   quadrature.check();
   if (solvers.rigid_bodies == "first kind") check_first_kind(*this);
-  if (!particles.empty()) return check_several(*this), check_power(*this);
+  Rejections found;
+  reject_power(found);
+  if (!particles.empty()) return check_several(*this), found.throw_if_any();
   flow.check();
   check_motion(*this);
   if (tube.present) tube.check();
@@ -313,16 +294,8 @@ void Scene::check() const {
   if (snapshot_interval() < 1e-6 * time.final_time)
     throw UserError("Output/interval must be at least a millionth of Time/final time, " + deck::number_text(1e-6 * time.final_time) + ", but is " +
                     deck::number_text(snapshot_interval()) + ".");
-  Rejections found;
-  reject_searches(*this, found);
-  particle.reject(*this, found);
-  ParticleKind::reject(*this, found);
-  contact.reject(*this, found);
-  reject_with_tube(*this, found);
-  if (domain.present) domain.reject(*this, found);
-  if (wall.present) wall.reject(*this, found);
+  reject(found);
   found.throw_if_any();
-  check_registered(*this);
   modulus();
   motion::TimeOptions in_its_unit = time;
   in_its_unit.unit = 1 / rate();
@@ -332,7 +305,6 @@ void Scene::check() const {
   check_vectors(*this, "Solvers", solvers.belos);
   for (const coupling::IterativeOptions* system : {&solvers.velocity, &solvers.traction, &solvers.implicit_step, &solvers.spectrum})
     check_vectors(*this, system->path, system->belos);
-  check_power(*this);
 }
 
 std::string Scene::interface_motion() const {

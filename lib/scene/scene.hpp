@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/rejections.hpp"
 #include "scene/copies.hpp"
 #include "scene/domain.hpp"
 #include "scene/registry.hpp"
@@ -33,7 +34,6 @@ namespace deck {
 class Units;
 }
 
-class Rejections;
 struct Scene;
 
 /// `Particle/motion`.
@@ -122,9 +122,11 @@ struct Scene : ParticleKind {
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
+  void reject(Rejections& to) const;  ///< adds combinations of choices that the program rejects, of a scene with one particle
+  void reject_power(Rejections& to) const;  ///< adds choices with which the power balance (6.11) of all particles is not available
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section that replaces the run in time.
-  std::string sought() const { return steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum"; }
+  Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does
@@ -164,5 +166,8 @@ double most_wall_points();
 
 /// Returns whether the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.
 bool may_change_on_resume(const std::string& path);
+
+/// Returns the table of all rejected combinations as Markdown, sorted by the first choice.
+std::string rejection_table(const Registry& registry);
 
 }  // namespace tanktread

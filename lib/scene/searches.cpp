@@ -52,13 +52,13 @@ void reject_searches(const Scene& scene, Rejections& to) {
   to.pair(steady && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
   to.add(scene.continuation.present && !steady, "Continuation needs a list Steady: it continues steady shapes.");
   to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history", "nothing is steady in a flow that changes");
-  to.pair(search && scene.volume.constraint != "exact", scene.sought(), "Volume/constraint `" + scene.volume.constraint + "`",
+  to.pair(search && scene.volume.constraint != "exact", scene.sought(), {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
           "the volume tells which shape");
   to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
           "points that go with the fluid along an interface do not rest");
-  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow.choice(),
+  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), Chosen(scene.flow.choice(), "Flow/type"),
           "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
-  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow.choice(),
+  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", Chosen(scene.flow.choice(), "Flow/type"),
           "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
 }
 

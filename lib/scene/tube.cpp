@@ -77,7 +77,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   const stokes::FlowOptions& flow = scene.flow;
   const coupling::SolverOptions& solvers = scene.solvers;
   const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
-  const std::string confined = scene.tube.list(), system = "Solvers/tube `" + solvers.tube + "`";
+  const Chosen confined(scene.tube.list(), "Tube or Channel"), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
           "what is carried along in a channel rests only where a pressure drop does not push it through");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
@@ -90,7 +90,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
           "the system of all blocks leaves the membrane's own load out; `schur` has it");
   to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined, "the wall of a straight tube is factored");
   to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, "that takes the factored wall");
-  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `" + flow.held + "`", system,
+  to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
           "the system of all blocks holds the flow rate; `schur` may hold either");
 }
 

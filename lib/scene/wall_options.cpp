@@ -1,5 +1,6 @@
 #include "scene/wall_options.hpp"
 
+#include <string_view>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -8,6 +9,10 @@
 #include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread {
+
+namespace {
+constexpr std::string_view along_the_wall = "a flow must be along the wall and the same everywhere on it";
+}
 
 void WallOptions::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"plane"}, "shape of the wall. `plane`: an infinite plane");
@@ -20,7 +25,7 @@ void WallOptions::declare(deck::Section& section) {
 
 void WallOptions::check(const stokes::FlowOptions& flow) const {
   if (!(normal.norm() > 0)) throw UserError("Wall/normal must have a direction, but is [0, 0, 0].");
-  refuse(flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
+  if (flow.type == "duct") return;  // rejected with the other combinations
   const stokes::PlaneWall wall = *plane();
   const Vec3 along = wall.axes().row(0).transpose(), across = wall.axes().row(1).transpose();
   for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).directions()) {
@@ -30,7 +35,7 @@ void WallOptions::check(const stokes::FlowOptions& flow) const {
       const Vec3 place = point + a * along + b * across, there = ambient.velocity(place);
       if ((there - here).norm() + std::abs(there.dot(wall.normal())) <= 1e-9 * size) continue;
       throw UserError("Wall and Flow/type `" + flow.type +
-                      "` contradict each other: a flow must be along the wall and the same everywhere on it, but at " +
+                      "` contradict each other: " + std::string(along_the_wall) + ", but at " +
                       formatted("[%.4g, %.4g, %.4g] it is [%.4g, %.4g, %.4g], and at Wall/point [%.4g, %.4g, %.4g].", place[0], place[1], place[2],
                                 there[0], there[1], there[2], here[0], here[1], here[2]));
     }
@@ -38,9 +43,12 @@ void WallOptions::check(const stokes::FlowOptions& flow) const {
 }
 
 void WallOptions::reject(const Scene& scene, Rejections& to) const {
-  to.pair(scene.tube.present, "Wall", "Tube", "images are of one plane in a fluid that is unbounded otherwise");
+  if (!present && !to.every()) return;
+  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // `check` tells where the flow is not
+  to.pair(scene.flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
+  to.pair(scene.tube.present, "Wall", {scene.tube.list(), "Tube or Channel"}, "images are of one plane in a fluid that is unbounded otherwise");
   to.pair(scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
-  to.pair(scene.quadrature.rule != "adaptive", "Wall", "Quadrature/rule `" + scene.quadrature.rule + "`",
+  to.pair(scene.quadrature.rule != "adaptive", "Wall", {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "a film at a wall takes rules by tolerance, `adaptive`");
   to.pair(!scene.runs_in_time(), scene.sought(), "Wall", "beside a wall nothing that deforms keeps its distance from it");
   to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "its distance from the wall matters");

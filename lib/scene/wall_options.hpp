@@ -11,7 +11,6 @@
 
 namespace tanktread {
 
-class Rejections;
 struct Scene;
 
 struct WallOptions {

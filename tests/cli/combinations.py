@@ -556,6 +556,11 @@ def _main():
             print("a rejection without a reason:", *said, sep="\n    ")
     for said, c in cover.without_reason.items():
         print("a rejection without a reason,", said_of(c), *said, sep="\n    ")
+    table = run("--rejections").stdout
+    unlisted = {why for _, said, _ in cover.rejected.values() for sentence in said
+                for why in re.findall(r" contradict each other: ([^.]*?)(?:, but at \[.*)?\.$", sentence) if why.split(", in ")[0] not in table}
+    for why in unlisted:
+        print("not in the table of --rejections:", why)
     for entry in REASONS:
         if entry not in met:
             print("no deck is rejected any more for:", entry[3], f"({entry[0]})")
@@ -564,7 +569,7 @@ def _main():
     print(f"{len(decks)} of {len(cover.decks)} decks, {covered} pairs; {len(cover.rejected)} pairs are rejected")
     if "--list" in sys.argv:
         return print("\n".join(map(said_of, decks)))
-    failed = _report(decks) + len(cover.without_reason) + sum(why is None for _, _, why in cover.rejected.values())
+    failed = _report(decks) + len(unlisted) + len(cover.without_reason) + sum(why is None for _, _, why in cover.rejected.values())
     sys.exit(failed > 0)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""inputs/REFERENCE.md and inputs/SERIES.md are what the program prints of itself.
+"""inputs/REFERENCE.md, inputs/SERIES.md and the table of rejections are what the program prints of itself.
 
 Usage: manual.py <source directory> <tanktread>
 """
@@ -10,7 +10,7 @@ import sys
 
 source, program = pathlib.Path(sys.argv[1]), sys.argv[2]
 stale = []
-for flag, name in ("--reference", "inputs/REFERENCE.md"), ("--reference-series", "inputs/SERIES.md"):
+for flag, name in ("--reference", "inputs/REFERENCE.md"), ("--reference-series", "inputs/SERIES.md"), ("--rejections", "inputs/manual/limits/rejections.md"):
     printed = subprocess.run([program, flag], check=True, capture_output=True, text=True).stdout
     stored = (source / name).read_text()
     if printed != stored:

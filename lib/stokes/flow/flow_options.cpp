@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/errors.hpp"
+#include "base/rejections.hpp"
 #include "base/small_matrices.hpp"
 #include "deck/section.hpp"
 
@@ -63,6 +64,11 @@ void FlowOptions::declare_registered(deck::Section& section) {
   }
 }
 
+void FlowOptions::reject(Rejections& to) const {
+  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has nothing to change");
+  to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`", "the flow is along the tube");
+}
+
 void FlowOptions::check() const {
   const auto belongs = [this](const char* key, bool given, const char* owner) {
     if (given && type != owner)
@@ -81,8 +87,9 @@ void FlowOptions::check() const {
   refuse((type == "duct" || type == "parabolic") && shear_rate != 1.0, "Flow/shear rate", choice(),
          std::string("give Flow/") + (type == "duct" ? "mean" : "maximum") + " velocity");
   if (history) {
-    refuse(type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has nothing to change");
-    refuse(type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`", "the flow is along the tube");
+    Rejections found;
+    reject(found);
+    found.throw_if_any();
     history->check();
   }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())

@@ -36,6 +36,7 @@ struct FlowOptions {
 
   /// Throws UserError if keys contradict each other or are missing.
   void check() const;
+  void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
   /// Returns the rate in Ca: the shear rate, the largest singular value of the gradient for `linear`, or the maximum velocity over the half width for
   /// `parabolic`. It is 0 for a flow without gradient, and for a duct, for which the speed is used instead. For a flow that changes in time it refers

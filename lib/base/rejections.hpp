@@ -1,0 +1,49 @@
+#pragma once
+// Combinations of choices that the program rejects.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/errors.hpp"
+
+namespace tanktread {
+
+/// A choice that a deck makes: as it is in this deck, and as it is in general, for the table of all rejected combinations.
+struct Chosen {
+  Chosen(const char* always) : here(always), any(always) {}
+  Chosen(std::string always) : here(std::move(always)), any(here) {}
+  Chosen(std::string in_this_deck, std::string in_general) : here(std::move(in_this_deck)), any(std::move(in_general)) {}
+
+  std::string here, any;
+};
+
+/// Collects combinations of choices that contradict each other. They are added by the classes that know the reasons.
+class Rejections {
+ public:
+  struct Row {
+    std::string one, other, why;
+  };
+
+  /// `every`: collects the combinations of all decks, as rows of a table; otherwise those of one deck, as sentences.
+  explicit Rejections(bool every = false) : every_(every) {}
+
+  /// Adds a combination if both choices are made. `why`: reason, appended to the sentence.
+  void pair(bool both, const Chosen& one, const Chosen& other, const std::string& why) {
+    if (every_) rows_.push_back({one.any, other.any, why});
+    else if (both) sentences_.push_back(contradiction(one.here, other.here, why));
+  }
+  void add(bool wrong, const std::string& sentence) {
+    if (wrong && !every_) sentences_.push_back(sentence);
+  }
+  bool every() const { return every_; }
+  void throw_if_any() const { require_none(sentences_); }
+  const std::vector<Row>& rows() const { return rows_; }
+
+ private:
+  bool every_;
+  std::vector<std::string> sentences_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace tanktread

@@ -1,0 +1,43 @@
+#include "motion/approach.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace tanktread::motion {
+
+Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
+                         const coupling::SolverOptions& solvers, Net& x) {
+  constexpr double least_step = 1. / 512, coarse = 1e-4, far = 0.5;  // `far`: change of shape in one step, over R_C
+  constexpr int few = 25, most_searches = 60;
+  Approach way;
+  const auto found_at = [&](double amplitude, Net& y) {
+    SteadyOptions here = options;
+    if (amplitude < 1) here.tolerance = std::max(options.tolerance, coarse);
+    const Net from = y;
+    const std::shared_ptr<SteadyEquations> equations = family(amplitude);
+    way.last = find_steady(*equations, here, solvers, y);
+    return way.last.converged && equations->dynamics().norm(y - from) < far;
+  };
+  double amplitude = 0, step = 0.5;
+  Net before;  // the shape at the amplitude before
+  for (int k = 0; k < most_searches && amplitude < 1 && step > least_step; ++k) {
+    const double next = std::min(1., amplitude + step);
+    Net y = x;
+    if (way.amplitudes.size() > 1) {
+      const double last = way.amplitudes[way.amplitudes.size() - 2];
+      y += (next - amplitude) / (amplitude - last) * (x - before);
+    }
+    if (!found_at(next, y)) {
+      step *= 0.5;
+      continue;
+    }
+    if (way.amplitudes.empty()) step *= 0.5;
+    else if (way.last.iterations < few) step *= 1.5;
+    before = std::exchange(x, std::move(y));
+    amplitude = next;
+    way.amplitudes.push_back(next);
+  }
+  return way;
+}
+
+}  // namespace tanktread::motion

@@ -1,0 +1,27 @@
+#pragma once
+// Steady shapes that a search from the initial shape does not find, approached through weaker flows.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "motion/steady.hpp"
+
+namespace tanktread::motion {
+
+/// Steady shapes that were found on the way to the flow of a scene.
+struct Approach {
+  std::vector<double> amplitudes;  ///< factors of the flow at which a steady shape was found, ascending; 1 is the flow of the scene
+  SteadyReport last;               ///< search at amplitude 1, or the last one that failed
+
+  bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }
+};
+
+/// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1. Each
+/// search starts at the linear extrapolation of the two latest shapes. The step of a grows where a search takes few iterations, and is halved where
+/// it fails; below 1/512 the approach ends. Shapes before the last one are found to a tolerance of at least 1e-4. x is the shape of the last
+/// amplitude that was reached. `family`: the equations at an amplitude. Collective.
+Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
+                         const coupling::SolverOptions& solvers, Net& x);
+
+}  // namespace tanktread::motion

@@ -1,0 +1,63 @@
+// Combinations of choices that the program rejects.
+
+#include <algorithm>
+
+#include "base/rejections.hpp"
+#include "scene/scene.hpp"
+#include "scene/searches.hpp"
+#include "scene/tube.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// Adds the choices with which parts that the program adds have no effect.
+void reject_registered(const Scene& scene, Rejections& to) {
+  const Chosen flow(scene.flow.choice(), "Flow/type of an added flow"), motion(scene.particle.choice(), "Particle/motion `prescribed` or `free`");
+  const bool alone = !scene.in_system();
+  to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
+  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
+  to.pair(alone && !scene.series.empty(), "Output/series", motion, "the one body has a record of its own; give it in a list Particles");
+  to.pair(alone && scene.flow.user && !scene.flow.user->affine(), flow, motion,
+          "the one body is solved for in flows of the second degree; give it in a list Particles");
+}
+
+}  // namespace
+
+void Scene::reject_power(Rejections& to) const {
+  const bool asked = output.power_balance && name.empty();
+  const std::string word = "Output/power balance";
+  to.pair(asked && !tube.present && !stokes::AmbientFlow(flow).affine(), word, {flow.choice(), "Flow/type `parabolic`"},
+          "it is for flows of one gradient, and for tubes");
+  to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
+  to.pair(asked && solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
+}
+
+void Scene::reject(Rejections& to) const {
+  reject_searches(*this, to);
+  particle.reject(*this, to);
+  ParticleKind::reject(*this, to);
+  contact.reject(*this, to);
+  reject_with_tube(*this, to);
+  domain.reject(*this, to);
+  wall.reject(*this, to);
+  reject_registered(*this, to);
+  if (to.every()) {
+    reject_power(to);
+    flow.reject(to);
+    membrane.reject(to);
+  }
+}
+
+std::string rejection_table(const Registry& registry) {
+  Rejections all(true);
+  Scene(registry).reject(all);
+  std::vector<Rejections::Row> rows = all.rows();
+  std::ranges::stable_sort(rows, {}, &Rejections::Row::one);
+  std::string text = "| choice | with | why not |\n|---|---|---|\n";
+  for (const Rejections::Row& row : rows) text += "| " + row.one + " | " + row.other + " | " + row.why + " |\n";
+  return text;
+}
+
+}  // namespace tanktread
