@@ -149,11 +149,11 @@ Body body(const Scene& scene, const Member* alike) {
 
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
   const bool channel = body.wall && body.wall->channel;
-  if (scene.particle.rigid() || (body.wall && !channel) || scene.domain.present) return surface::Symmetry(body.space.n_points);
+  if (scene.particle.rigid() || (body.wall && !channel) || (channel && scene.domain.present)) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
-                            scene.wall.present ? scene.wall.normal : Vec3::Zero());
+                            scene.wall.present ? scene.wall.normal : Vec3::Zero(), scene.domain.cell());
 }
 
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall) {

@@ -31,16 +31,27 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
   return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
+/// Returns whether the image of every lattice vector is a lattice vector. A flow that has the symmetry too keeps this at all times.
+static bool keeps(const stokes::PeriodicCell& cell, const surface::Image& image) {
+  for (int d = 0; d < cell.n(); ++d) {
+    Vec3 steps = cell.coordinates(image.signs.cwiseProduct(cell.vectors().col(d)));
+    for (int k = 0; k < cell.n(); ++k) steps[k] -= std::round(steps[k]);
+    if (steps.norm() > 1e-10) return false;
+  }
+  return true;
+}
+
 static bool admit(const LoadList& loads, const surface::Image& image) {
   return std::ranges::all_of(loads, [&](const auto& load) { return load->admits(image); });
 }
 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
-                           const stokes::AmbientFlow& flow, const LoadList& loads, const Vec3& wall_normal) {
+                           const stokes::AmbientFlow& flow, const LoadList& loads, const Vec3& wall_normal,
+                           const std::optional<stokes::PeriodicCell>& cell) {
   if (options.use == "none") return surface::Symmetry(space.n_points);
   const std::vector<stokes::AmbientFlow> flows = flow.directions();
   return surface::symmetry(space, nets, [&](const surface::Image& image) {
-    return image.signs.cwiseProduct(wall_normal) == wall_normal && admit(loads, image) &&
+    return image.signs.cwiseProduct(wall_normal) == wall_normal && (!cell || keeps(*cell, image)) && admit(loads, image) &&
            std::ranges::all_of(flows, [&](const auto& each) { return keeps(each, image, *nets[0]); });
   });
 }
