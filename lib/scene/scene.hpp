@@ -140,6 +140,7 @@ struct Scene : ParticleKind {
 
   /// Returns one scene for each particle, with the options of this particle only.
   std::vector<Scene> alone() const;
+  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions (2.40): Solvers/rigid bodies
 
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem: `Particle/forces`, or its default
   double radius() const;             ///< R_C, radius of the sphere of equal volume

@@ -67,10 +67,11 @@ void SolverOptions::declare(deck::Section& section) {
   section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
               "treatment of the wall of a Channel. `factored`: factored once. `iterative`: wall tractions are found by GMRES and clusters for each "
               "velocity, and are neglected in the Jacobian. `auto`: `iterative` if the factors would take more than 4 GB");
-  section.key("rigid bodies", rigid_bodies, deck::Choice{"second kind", "first kind"},
+  section.key("rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
               "equation for several rigid bodies. `second kind`: a double layer (2.23), an iterative solver and clusters. `first kind`: tractions "
               "as unknowns (2.40), a dense matrix factored for every configuration; only if all particles are rigid. Its forces and motions are "
-              "far more accurate in films");
+              "far more accurate in films. `auto`: `first kind` if all particles are rigid, their meshes adapt to films, and at most 4500 unknowns "
+              "at the start; otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines. `collocation`: one site per control point, error O(h^4). `least squares`: best fit at "
               "four sites per element, error O(h^6), four times the kernel evaluations; not in a tube, at a wall or with rigid bodies");

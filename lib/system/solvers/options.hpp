@@ -52,8 +52,8 @@ struct SolverOptions {
                                       ///< auto: matrix-free if far sums are taken by clusters
   std::string tube = "schur";                     ///< unknowns in a tube: v with the wall eliminated, or all blocks (BlockForm)
   std::string wall = "auto";                      ///< wall of a channel: factored, iterative, or auto: iterative if the factors are large (Wall)
-  std::string rigid_bodies = "second kind";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), or first kind,
-                                             ///< rigid bodies only (RigidTractions)
+  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), first kind, rigid
+                                      ///< bodies only (RigidTractions), or auto (Scene::by_tractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: a sum over nodes, or assembled
   membrane::DirectSolverOptions direct;
