@@ -81,7 +81,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
           "what is carried along in a channel rests only where a pressure drop does not push it through");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
-  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, flow.choice(),
+  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, {flow.choice(), "Flow/type"},
           "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
           "with which the wall goes along");
   to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the tube is as long as its period");

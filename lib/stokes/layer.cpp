@@ -204,7 +204,8 @@ void Layer::place_tree(const Targets& targets) {
     surface_.place(*tree_, tree_at_);
   }
   std::vector<int> wanted;
-  for (std::size_t g = 0; g <= surface_.reflections().size(); ++g)
+  const std::size_t reflections = lattice_.cell ? 0 : surface_.reflections().size();
+  for (std::size_t g = 0; g <= reflections; ++g)
     for (const int i : tree_rows_) {
       const auto k = std::ranges::lower_bound(targets.in_tree, i) - targets.in_tree.begin();
       assert(targets.in_tree[k] == i && "rows are of fundamental sites");
@@ -212,7 +213,7 @@ void Layer::place_tree(const Targets& targets) {
     }
   tree_->want(wanted);
   if (single()) return;
-  assert(surface_.reflections().empty());
+  assert(reflections == 0);
   stress_.resize(6 * tree_at_.size());
   tree_->sum<NormalStressKernel>({normal_[0].data(), normal_[1].data(), normal_[2].data()}, stress_.data());
   evaluations_.far += tree_->interactions();
@@ -224,12 +225,13 @@ void Layer::add_by_clusters(const Targets& targets, Net& u) {
   evaluations_.far += tree_->interactions();
 }
 
-/// Evaluates (2.19).
+/// Evaluates (2.19). On a lattice all panels are clustered, and targets have no reflections.
 void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
   const auto& [fundamental, weight] = surface_.fundamental();
-  const std::vector<surface::Reflection>& images = surface_.reflections();
+  const std::span<const surface::Reflection> images = lattice_.cell ? std::span<const surface::Reflection>() : surface_.reflections();
   std::vector<double> carried[3];
-  for (std::size_t k = 0; k < fundamental.size(); ++k) {
+  for (int c = 0; c < 3 && lattice_.cell; ++c) carried[c] = density_[c];
+  for (std::size_t k = 0; k < fundamental.size() && !lattice_.cell; ++k) {
     const Panel& panel = surface_.panels[fundamental[k]];
     for (int c = 0; c < 3; ++c)
       for (int q = 0; q < panel.table->n_nodes; ++q) carried[c].push_back(weight[k] * density_[c][panel.first_node + q]);
