@@ -128,7 +128,7 @@ def a_run_is_resumed_with_its_lattice_where_it_was():
 def a_lattice_follows_a_flow_that_turns():
     """A flow that turns at a constant rate about x2 is steady in axes that turn with it, where its gradient has that rotation taken off. Two particles of
     unequal size, so that nothing is equal by symmetry. Both runs have the same steps, so that only the errors of bs3 in the two frames differ."""
-    rate, end = 20.0, 0.04
+    rate, end = 5.0, 0.04
     pair = """{defaults: {viscosity ratio: 2.0, Membrane: {law: neo-Hookean, shear modulus: 3.0}, Surface: {elements per side: 3}},
               one: {center: [0.3, 0.2, 0.1]}, two: {center: [2.6, 0.1, 0.4], radius: 0.8}}"""
     names = "one/energy", "two/energy", "relative_viscosity", "smallest_gap", "one/smallest_tension"
@@ -142,7 +142,7 @@ def a_lattice_follows_a_flow_that_turns():
     run(deck(text.replace(changing, f"{{type: linear, gradient: {gradient}}}")), "--output", "steady", "--quiet")
     for name in names:
         off = abs(series("turning", name) - series("steady", name)).max()
-        check(off < 1e-6 * max(1, abs(series("steady", name)).max()), name, off)
+        check(off < 1e-5 * max(1, abs(series("steady", name)).max()), name, off)  # Quadrature/tolerance is 1e-6, of a net in another direction
 
 
 def a_lattice_goes_to_and_fro_with_its_flow():
@@ -153,7 +153,7 @@ def a_lattice_goes_to_and_fro_with_its_flow():
     ways = {"table": "{times: [0, 0.04], amplitudes: [2, 0]}", "jump": "{times: [0, 0.02, 0.02], amplitudes: [3, 3, -1]}"}
     for name, history in ways.items():
         run(deck(text.replace("{type: simple shear}", f"{{type: simple shear, history: {history}}}")), "--output", name, "--quiet")
-        for key in ("cell_3_x1", "cell_3_x3", "center_x1", "center_x3", "axis_1_x1", "axis_1_x3"):
+        for key in ("cell_3_x1", "cell_3_x3", "centroid_x1", "centroid_x3", "quaternion_2", "length_x3"):
             off = abs(series(name, key)[-1] - series("once", key)[-1])
             check(off < (1e-12 if "cell" in key else 1e-6), name, key, off)
     viscosity = series("table", "relative_viscosity")
@@ -164,10 +164,11 @@ def a_parabolic_flow_goes_along_its_periods():
     """A particle of the next cell has the same velocity, and one alone that of an unbounded fluid, where the period is long."""
     names = "one/velocity_x1", "one/velocity_x3", "one/energy", "one/stresslet_13"
     flow = "{type: parabolic, profile: plane, maximum velocity: 1.5, half width: 4.0}"
-    for domain, shift in (("{periodic: x1, side lengths: [2.8, 1, 1]}", [2.8, 0]), ("{periodic: x1 x2, side lengths: [2.8, 3.0, 1]}", [5.6, -3.0])):
-        here = _row("here", names=names, Flow=flow, Domain=domain)
+    cells = ("{periodic: x1, side lengths: [2.8, 1, 1]}", [2.8, 0]), ("{periodic: x1 x2, side lengths: [2.8, 3.0, 1]}", [5.6, -3.0])
+    for number, (domain, shift) in enumerate(cells):
+        here = _row(f"here{number}", names=names, Flow=flow, Domain=domain)
         centre = f"Particles/one/center=[{0.3 + shift[0]}, {0.2 + shift[1]}, 0.1]"
-        there = _row("there", "--set", centre, names=names, Flow=flow, Domain=domain)
+        there = _row(f"there{number}", "--set", centre, names=names, Flow=flow, Domain=domain)
         check(abs(there - here).max() < 1e-9, domain, there - here)
     alone = _row("alone", names=names, Flow=flow, Domain=None)
     far = [abs(_row(f"far{h}", names=names, Flow=flow, Domain=f"{{periodic: x1, side lengths: [{h}, 1, 1]}}") - alone).max() for h in (10, 20)]
@@ -175,13 +176,15 @@ def a_parabolic_flow_goes_along_its_periods():
 
 
 def a_steady_shape_on_a_lattice_is_where_a_run_ends():
-    """In shear along a plane of cells the lattice stays as it is. The search finds the shape that the run in time comes to."""
-    lists = {"Domain": "{periodic: x1 x2, side lengths: [2.8, 2.8, 1]}", "Time": "{tolerance: 1.0e-4, final time: 12.0}"}
+    """In shear along a plane of cells the lattice stays as it is. The search finds the shape that the run in time comes to. The two have their control
+    points at other places of the surface: the error of the mesh, 4e-4, and that of time, 1e-3."""
+    drop = """{defaults: {viscosity ratio: 2.0, Membrane: {law: surface tension, capillary number: 0.2}, Surface: {elements per side: 3}},
+             one: {center: [0.0, 0.0, 0.0]}}"""
+    lists = {"Domain": "{periodic: x1 x2, side lengths: [2.8, 2.8, 1]}", "Time": "{tolerance: 1.0e-3, final time: 6.0}", "Particles": drop}
     names = "one/taylor_inertia", "one/inclination", "one/energy"
-    centre = "--set", "Particles/one/center=[0.0, 0.0, 0.0]"
-    end = _row("run", *centre, names=names, **lists)
-    found = _row("found", *centre, names=names, **{**lists, "Steady": "{}"})
-    check(abs(found - end).max() < 1e-3 * max(1, abs(end).max()), "not the same shape:", found, end)
+    end = _row("run", names=names, **lists)
+    found = _row("found", names=names, **{**lists, "Steady": "{}"})
+    check(abs(found / end - 1).max() < 2e-3, "not the same shape:", found, end)
     refused(["Steady", "simple shear", "deforms the periodic cell"], deck(_with(Steady="{}")))
 
 
