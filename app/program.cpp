@@ -39,7 +39,8 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in a
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume, new_deck;
-  bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false, no_expect = false;
+  bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false;
+  bool no_expect = false;
 };
 
 /// A kind of deck that `--new` prints.

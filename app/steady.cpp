@@ -104,8 +104,8 @@ class SteadyRun {
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
-  /// Finds the steady shape of a system through weaker flows, where the search from `start` has ended with `failed` and its best iterate x. Reports the
-  /// way. Returns `failed` and leaves x as it is if there is no flow to be weakened, or if no weaker flow has a steady shape that is found.
+  /// Finds the steady shape of a system through weaker flows, where the search from `start` has ended with `failed` and its best iterate x. Returns
+  /// `failed` and leaves x as it is if there is no flow to be weakened, or if the way does not lead to the full flow.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
     if (!(of->scene.speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
@@ -121,16 +121,10 @@ class SteadyRun {
       if (weaker_.size() > 1) count_out(*weaker_.front()), weaker_.pop_front();
       return {made, &*made->equations};
     }, scene_.steady, scene_.solvers, reached);
-    std::string amplitudes;
-    for (const double amplitude : way.amplitudes) amplitudes += (amplitudes.empty() ? "" : ", ") + formatted("%.4g", amplitude);
-    std::string line = "nothing was found from the initial shape; steady shapes of the flow times " + amplitudes;
-    line += way.arrived() ? " led to it" : " were found, but none of the full flow";
-    if (way.amplitudes.empty()) line = "nothing was found from the initial shape, nor in weaker flows";
-    chosen_.emplace_back("search", line);
-    if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %s\n", line.c_str());
-    if (!way.arrived()) return failed;
-    x = std::move(reached);
-    return way.last;
+    chosen_.emplace_back("search", way.text());
+    if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %s\n", way.text().c_str());
+    if (way.arrived()) x = std::move(reached);
+    return way.arrived() ? way.last : failed;
   }
 
   /// Computes a shape that repeats after a period.
@@ -179,10 +173,7 @@ class SteadyRun {
     motion::Branch branch([this](double parameter, double second) { return equations_at({parameter, second}); },
                           [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
                           scene_.steady, scene_.solvers, first[0], first[1], state_.x);
-    branch.search([&](Net& x, const motion::SteadyReport& failed) {
-      const Net start = state_.x;
-      return approach(system_, start, x, failed);
-    });
+    branch.search([&](Net& x, const motion::SteadyReport& failed) { return approach(system_, Net(state_.x), x, failed); });
     for (int k = 0; const auto point = branch.next(); ++k) {
       stop_where_told();
       system_ = system_at({point->parameter, point->second});

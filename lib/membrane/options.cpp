@@ -134,7 +134,8 @@ void Options::declare(deck::Section& section) {
 }
 
 void Options::reject(Rejections& to) const {
-  to.pair(bending(1, 1) > 0 && load == "strong", {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"), "Membrane/bending modulus or bending number"},
+  to.pair(bending(1, 1) > 0 && load == "strong", {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"),
+          "Membrane/bending modulus or bending number"},
          "Membrane/load `strong`", "bending exists in the weak form only");
   to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
   to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
@@ -142,7 +143,8 @@ void Options::reject(Rejections& to) const {
          "a fluid interface has no unstressed shape");
   to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
-  to.pair(viscosity.any() && load == "strong", {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity", "Membrane/shear viscosity or dilatational viscosity"},
+  to.pair(viscosity.any() && load == "strong", {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
+          "Membrane/shear viscosity or dilatational viscosity"},
          "Membrane/load `strong`", "viscosity is part of the weak load");
   to.pair(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
          "nothing holds on to a fluid interface");

@@ -3,7 +3,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/formatted.hpp"
+
 namespace tanktread::motion {
+
+std::string Approach::text() const {
+  if (amplitudes.empty()) return "nothing was found from the initial shape, nor in weaker flows";
+  std::string all;
+  for (const double amplitude : amplitudes) all += (all.empty() ? "" : ", ") + formatted("%.4g", amplitude);
+  return "nothing was found from the initial shape; steady shapes of the flow times " + all +
+         (arrived() ? " led to it" : " were found, but none of the full flow");
+}
 
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "motion/steady.hpp"
@@ -15,11 +16,12 @@ struct Approach {
   SteadyReport last;               ///< search at amplitude 1, or the last one that failed
 
   bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }
+  std::string text() const;  ///< returns a sentence about the way
 };
 
-/// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1. Each
-/// search starts at the linear extrapolation of the two latest shapes. The step of a grows where a search takes few iterations, and is halved where
-/// it fails; below 1/512 the approach ends. Shapes before the last one are found to a tolerance of at least 1e-4. x is the shape of the last
+/// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1.
+/// Each search starts at the linear extrapolation of the two latest shapes. The step of a grows where a search takes few iterations, and is halved
+/// where it fails; below 1/512 the approach ends. Shapes before the last one are found to a tolerance of at least 1e-4. x is the shape of the last
 /// amplitude that was reached. `family`: the equations at an amplitude. Collective.
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x);

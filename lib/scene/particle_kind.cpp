@@ -18,7 +18,8 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
   const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
-  const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`"), duct(scene.tube.list(), "Tube or Channel");
+  const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
+  const Chosen duct(scene.tube.list(), "Tube or Channel");
   to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body that moves as told has no place or attitude to be found");
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
@@ -28,7 +29,8 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, "a rigid particle has the shape that it has");
   to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", Chosen(scene.flow.choice(), "Flow/type"), "it is for flows " + gradient);
-  to.pair(held && (tube || rigid()), "Particle/drift `held`", {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
+  to.pair(held && (tube || rigid()), "Particle/drift `held`",
+          {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);
   to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
           "Solvers/projection `least squares`",
@@ -130,9 +132,12 @@ void ParticleKind::reject(const Scene& scene, Rejections& to) const {
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
   to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "a degenerate element has no load at a pole");
   to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, "a degenerate element has no normal at its pole");
-  to.pair(!drop && scene.interface_motion() != "material", {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
+  to.pair(!drop && scene.interface_motion() != "material",
+          {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
-  to.pair(surfactant && (rigid || !drop), "Interface/surfactant", {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"}, "it is on the interface of a drop");
+  to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
+          {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
+          "it is on the interface of a drop");
   const std::pair<bool, Chosen> works[] = {{scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
                                                 {scene.tube.repulsion.has_value(), {scene.tube.list() + "/repulsion", "Tube/repulsion"}}};

@@ -276,8 +276,8 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// A film of a tenth of the radius needs a third of the control points by tractions, and a factorisation of up to 4500 unknowns takes less time than the
-/// iterations on the finer mesh.
+/// By tractions a film of a tenth of the radius needs a third of the control points, and a factorisation of up to 4500 unknowns takes less time than
+/// the iterations on the finer mesh.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto") return solvers.rigid_bodies == "first kind";

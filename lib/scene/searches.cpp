@@ -52,7 +52,8 @@ void reject_searches(const Scene& scene, Rejections& to) {
   to.pair(steady && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
   to.add(scene.continuation.present && !steady, "Continuation needs a list Steady: it continues steady shapes.");
   to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history", "nothing is steady in a flow that changes");
-  to.pair(search && scene.volume.constraint != "exact", scene.sought(), {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
+  to.pair(search && scene.volume.constraint != "exact", scene.sought(),
+          {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
           "the volume tells which shape");
   to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
           "points that go with the fluid along an interface do not rest");

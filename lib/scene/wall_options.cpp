@@ -48,7 +48,8 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(scene.flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
   to.pair(scene.tube.present, "Wall", {scene.tube.list(), "Tube or Channel"}, "images are of one plane in a fluid that is unbounded otherwise");
   to.pair(scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
-  to.pair(scene.quadrature.rule != "adaptive", "Wall", {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
+  to.pair(scene.quadrature.rule != "adaptive", "Wall",
+          {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "a film at a wall takes rules by tolerance, `adaptive`");
   to.pair(!scene.runs_in_time(), scene.sought(), "Wall", "beside a wall nothing that deforms keeps its distance from it");
   to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "its distance from the wall matters");

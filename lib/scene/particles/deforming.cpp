@@ -176,7 +176,8 @@ class Deforming : public ParticleSystem {
     if (const auto& cell = capsule_->cell()) {
       DomainRow now{.cell = cell->vectors()};
       if (cell->n() == 3)
-        now.set_stress(scene_.flow.viscosity, capsule_->flow().cell_gradient(), *cell, body().plane.axes, capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(*here));
+        now.set_stress(scene_.flow.viscosity, capsule_->flow().cell_gradient(), *cell, body().plane.axes,
+                       capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(*here));
       now.add_columns(scene_, row);
     }
     if (scene_.has_gaps()) smallest_gap(members_, state.x, ranks_, capsule_->cell()).add_columns(row);

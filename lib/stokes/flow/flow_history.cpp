@@ -133,8 +133,8 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
   return now;
 }
 
-/// A sine does not rotate, so that the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an equation
-/// with the gradient a L - W, which is linear in time.
+/// A sine does not rotate, so that the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an
+/// equation with the gradient a L - W, which is linear in time.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
     const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;
