@@ -266,7 +266,7 @@ class Capsule : public Dynamics {
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the system's unknowns are the control points' velocity
+  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns are the control points' velocities
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
