@@ -261,12 +261,12 @@ void Layer::take_moments_of(const Values& f) {
   }
 }
 
-/// Computes moment_ for the density minus its mean.
+/// Computes the stresslet moments moment_ for the density minus its mean.
 void Layer::take_moments(const Vec3& mean) {
   take_moments_of([&](int k, int i) { return density_[i][k] - mean[i]; });
 }
 
-/// Computes moment_ for a constant unit density along one axis.
+/// Computes the stresslet moments moment_ for a constant unit density along one axis.
 void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }

@@ -93,8 +93,8 @@ class Layer {
   /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Excludes the surfaces themselves for later targets off the surfaces, from row `first` on. Only the images of the surfaces on the lattice then
-  /// contribute to u at these targets.
+  /// Lets only the images of the surfaces on the lattice, but not the surfaces themselves, contribute at later targets off the surfaces whose row is
+  /// `first` or higher.
   void see_images_only(int first) { lattice_.images_only = first; }
 
   /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
@@ -119,7 +119,7 @@ class Layer {
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
   /// panel, 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< index in `panels` of the first panel of target k
+    std::vector<std::size_t> first;  ///< for each target, index in `panels` of its first panel
     std::vector<int> panels;
     std::vector<double> moments;
   };

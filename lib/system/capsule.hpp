@@ -143,8 +143,9 @@ class Capsule : public Dynamics {
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes, at the last linearisation, due to a displacement dx and to a change of the virtual work of loads in addition to that of the membranes.
-  /// `slip`: change of the difference between the fluid velocity and the velocity of the control points; empty if no control points slide.
+  /// Changes, linear in a displacement dx and in a change `work` of the virtual work of additional loads, about the shape of the last linearisation.
+  /// `rate`: change of the velocity, in some functions multiplied by B. `slip`: change of the difference between the fluid velocity and the velocity
+  /// of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };

@@ -82,7 +82,7 @@ std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
   return all;
 }
 
-/// Returns A f with A frozen.
+/// Returns A f with the frozen single layer A (4.3).
 Net Capsule::frozen_single_layer(const Net& f) {
   Net u = Net::Zero(f.rows(), 3);
   if (parameters_.solvers.frozen_operator != "nodal") {
@@ -171,8 +171,9 @@ Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Solves the system of an implicit step. If all control points move with the fluid, it is (B - shift (B J + E)) delta = B r, which does not require
-/// the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6). E are the secants (4.13).
+/// Solves the system of an implicit step. If all control points move with the fluid, the system is (B - shift (B J + E)) delta = B r (4.3), which
+/// does not require the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r, where N dv + T W delta is the change of the mesh
+/// velocity (4.6) due to a change dv of the fluid velocity and the displacement delta. E is the secant correction (4.13).
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   return stiff_system(shift, left(r), tolerance, secants);

@@ -73,7 +73,7 @@ Net turned(const Net& normals, const Net& change, Net field) {
   return field;
 }
 
-/// Returns the mean velocity U (6.4) of a volume from v at its control points and b = dV/dx. Exact if the velocity is uniform.
+/// Returns the mean velocity U (6.4) of a drop from v at its control points and b = dV/dx. Exact if the velocity is uniform.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
@@ -143,7 +143,7 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, because its single layer A0 is in these axes
+    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, in which its single layer A0 is given
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();

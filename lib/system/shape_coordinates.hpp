@@ -27,8 +27,8 @@ namespace tanktread::coupling {
 /// projected (VelocityProjection), y contains the control values of a scalar field instead, the best fit to n.d. Otherwise y would be affected by
 /// tangential mesh motion, to fourth order in the element size.
 ///
-/// After `follow` has been called, a mesh that relaxes by itself moves tangentially with such a displacement so that it remains at rest on the
-/// displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
+/// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
+/// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///

@@ -48,7 +48,7 @@ struct Sight {
     }
   }
 
-  /// Computes r from the targets of one register to node k.
+  /// Computes the vectors r from the targets of one register to node k.
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));

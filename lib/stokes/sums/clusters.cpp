@@ -62,7 +62,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   }
   clusters_.clear(), order_.clear();
   const auto lower = [](const Group& one, const Group& other) { return std::ranges::lexicographical_compare(one.centre, other.centre); };
-  std::ranges::sort(groups_, lower);  // clusters do not depend on the order in which the groups are given
+  std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order in which the groups are given
   split(0, n_groups, Mat3::Identity(), starts);
   for (int c = 0; c < 3; ++c) {
     point_[c].resize(order_.size());

@@ -66,7 +66,7 @@ class Tube {
   /// Constructs a channel with the wall of its flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs the same tube for another mesh of the particle. All data of the wall are shared.
+  /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
@@ -129,7 +129,7 @@ class Tube {
     double force = 0;         ///< axial balance: section area times dp minus axial forces on wall and particle, per area x pressure gradient x radius
                               ///< of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop for which `flux` would vanish; the same for `force`
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop for which `flux` would vanish; pressure drop for which `force` would
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 

@@ -69,7 +69,7 @@ struct Tube::Particle {
   Ranks ranks;
   surface::Geometry geometry;
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
-  membrane::DirectSolver from_sites;        ///< factored R, to compute control values from values at the sites
+  membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
   std::optional<Period> period;       ///< set if the duct is periodic

@@ -90,7 +90,7 @@ class Wall {
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
-  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
+  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows among the ranks; all other rows are their images
   stokes::Layer& layer() { return layer_; }             ///< single layer of the wall at points off the wall, for control values on the layer's space
   const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
@@ -104,7 +104,7 @@ class Wall {
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< transforms the columns of an operator, three per control point
+  void from_space(stokes::Rows<float>& rows) const;  ///< transforms an operator's columns, three per control point, to columns for f
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
   /// a periodic wall, A includes the condition int f.n dG = 0.

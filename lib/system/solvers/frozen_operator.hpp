@@ -20,8 +20,7 @@ class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
 
-  /// Assembles the rows of the rank-owned targets for a net of n points. `assemble(targets, rows)` sets three float rows per target, for a few
-  /// targets at a time.
+  /// Function that computes three float rows per target. assemble() calls it for a few of the rank-owned `targets` at a time, for a net of n points.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
   void assemble(const std::vector<int>& targets, int n, const Assemble& assemble);
 

@@ -35,7 +35,7 @@ class NodalOperator {
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 
-  /// Computes blocks A_iC of near control points as Layer::assemble does.
+  /// Function that computes the blocks A_iC of near control points (Layer::assemble).
   using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
   /// `far_sum`: as in quadrature::Options.

@@ -27,8 +27,8 @@ struct BlockSystem {
   double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
 
   /// Returns the system with one of the preconditioners. All use B = 1 and the factored wall. `block triangular` solves for v and pi, then dp, then
-  /// f^D, each with the contributions of the unknowns solved for before. `block diagonal` omits these contributions. `block` uses no preconditioner. The
-  /// result refers to this object.
+  /// f^D, each with the contributions of the unknowns solved for before. `block diagonal` omits these contributions. `block` uses no preconditioner.
+  /// The result refers to this object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
 
   /// Returns the right-hand side for the load f. `velocity`: r_v; r_W and r_p are computed from f.
