@@ -65,8 +65,7 @@ Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   return work;
 }
 
-/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the loads' surface integrals,
-/// summed over all ranks.
+/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the loads' surface integrals.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);
@@ -160,8 +159,7 @@ void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   }
 }
 
-/// Returns velocity fields that rotate the meshes of drops on their surfaces without changing the shape. If the scene is symmetric, returns only
-/// rotations that have its symmetry.
+/// Returns velocity fields that rotate the meshes of drops on their surfaces, and have the symmetry of the scene. The shape does not change.
 std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
@@ -354,8 +352,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Returns rows of the double-layer matrix D (4.2) on every rank. The rank that owns the point of a row copies it from the assembled rows or, if
-/// there are none, assembles it.
+/// Returns rows of the double layer D (4.2) on every rank. The rank that owns a row's point provides the row: assembled earlier, or assembled here.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
@@ -380,8 +377,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // true if iterations are many, as in films between
-                                                                                                  // rigid bodies, and the matrix fits into memory
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected in thin films; the matrix fits in memory
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
@@ -395,7 +391,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     gather_targets(false, at_targets);
     return at_targets;
   };
-  const auto load_of = [&](const Net& v) {  // load due to viscous membranes at the velocity v; empty if no membrane is viscous
+  const auto load_of = [&](const Net& v) {  // part of the load that depends on v (viscous membranes, prescribed rigid motions), or empty
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
     if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
     return load;
@@ -445,8 +441,7 @@ void Capsule::forget_recycled() const {
   if (tube_) tube_->forget_recycled();
 }
 
-/// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A
-/// f. The initial guess of v is its right-hand side.
+/// Solves for v, f^D, dp (2.5)-(2.7) and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f is also the initial guess of v.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
@@ -465,8 +460,7 @@ Blocks Capsule::velocity_blocks() const {
   return blocks;
 }
 
-/// Moves x onto the prescribed volumes. Uses V = x.(dV/dx)/3, because the volume V is a homogeneous cubic function of x. Sets x to NaN if the
-/// iteration fails.
+/// Moves x onto the prescribed volumes by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails.
 void Capsule::restore_volume(Net& x) {
   rigid_.place(x);
   if (parameters_.volume.constraint != "exact") return;

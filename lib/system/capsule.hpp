@@ -149,8 +149,7 @@ class Capsule : public Dynamics {
   struct RateChange {
     Net rate, slip;
   };
-  RateChange rate_change(const Net& dx, const Net& work);      ///< rate: B J dx of (4.3) if no control points slide along an interface, otherwise J
-                                                               ///< dx. Collective
+  RateChange rate_change(const Net& dx, const Net& work);      ///< rate is B J dx (4.3), or J dx if control points slide. Collective
   RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx (J: Jacobian of the velocity). Collective
   /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
