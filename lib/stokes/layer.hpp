@@ -46,7 +46,8 @@ inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 /// Treatment of the images of surfaces on a lattice.
 struct Repetition {
   bool assembled = false;  ///< true: assembled rows include the near images; assemble_rest() adds all other images (PeriodicSum)
-  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the surfaces
+  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
+                                                                              ///< surfaces
 };
 
 /// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density.
@@ -257,11 +258,13 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // weights of the far nodes, including area and k
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area and factor k
+  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area
+                                                                   // and factor k
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
-  std::vector<Mat3> image_stress_;                                 // sums over the wall's images for constant unit densities, at the targets
+  std::vector<Mat3> image_stress_;                                 // sums over the wall's images at the targets, for constant unit
+                                                                   // densities
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if its positions must be set anew

@@ -64,7 +64,7 @@ double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised") return false;  // its two identities (see Layer) are sums over all pairs of nodes and targets in any case
+  if (options.rule == "desingularised") return false;  // its two identities (see Layer) sum over all pairs of nodes and targets in any case
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 

@@ -377,7 +377,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected in thin films; the matrix fits in memory
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected in films if the matrix fits
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);

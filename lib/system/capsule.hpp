@@ -57,14 +57,15 @@ struct Work {
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
-  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the collocation
-                                                                 ///< sites, false: from virtual work (3.5)
+  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the
+                                                                 ///< collocation sites, false: from virtual work (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; a symmetry without points: no symmetry
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; a symmetry without points: no
+                               ///< symmetry
 };
 
 /// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
@@ -155,7 +156,8 @@ class Capsule : public Dynamics {
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
   bool preconditions_step() const { return area_.has_value(); }
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system that `solve` solves
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system that `solve`
+                                                                                       ///< solves
 
   /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. `rhs` may have any number of rows.
   /// Collective.
@@ -201,7 +203,8 @@ class Capsule : public Dynamics {
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< run time of the parts of the single layer
   stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
-  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }  ///< net whose area the loads refer to
+  /// Returns the net whose area the loads refer to.
+  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }
   void forget_recycled() const;  ///< discards the data of earlier solves that preconditioners `recycled` keep
   const Work& work() const { return work_; }
   Work& work() { return work_; }
@@ -215,7 +218,8 @@ class Capsule : public Dynamics {
     Net net;
     std::optional<double> origin, origin_of_net;
   };
-  bool repeats() const { return cell_ && !tube_; }  // true if the layers are periodic; in a duct the images are in the tube's response instead
+  bool repeats() const { return cell_ && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
+                                                    // instead
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
@@ -252,7 +256,8 @@ class Capsule : public Dynamics {
   Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
   Net measured_load(const Net& x, Net d);
-  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // requires that viscous_ was updated at x
+  // Returns the load due to the viscosity of membranes at the velocity v. Requires that viscous_ was updated at x.
+  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta, const Net& work = {});
@@ -266,7 +271,8 @@ class Capsule : public Dynamics {
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns are the control points' velocities
+  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns are velocities of control
+                                                                                         // points
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
@@ -280,20 +286,22 @@ class Capsule : public Dynamics {
   Phases& phases_;
   std::vector<int> own_points_;
   std::vector<int> own_elements_;  // elements over which integrals for the rank-owned points run
-  bool folded_ = false;            // true if own_elements_ are fundamental elements only, so that integrals must be folded onto fundamental points
+  bool folded_ = false;            // true if own_elements_ are fundamental elements only, so that integrals must be folded onto their
+                                   // points
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Loads loads_;  // loads in addition to elasticity and bending
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the Jacobian; set
-                                                                       // if a membrane is viscous
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the
+                                                                       // Jacobian; set if a membrane is viscous
   std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
   stokes::Layer layer_;                           // single layer at the targets, where velocities are evaluated
-  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all factors are 0
-  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if velocities are evaluated
-                                                                 // at other targets
+  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all factors
+                                                  // vanish
+  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if velocities are
+                                                                 // evaluated at other targets
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov velocity_solver_, step_solver_, inner_solver_;

@@ -150,7 +150,7 @@ surface::PlaneJet OutlineSpace::at(int side, double t) const {
 namespace {
 
 constexpr int points = 8, points_far = 10,
-              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for (2.15) with the logarithm
+              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for the logarithm
 constexpr int sweeps = 2;
 using std::numbers::pi;
 using surface::PlaneJet;

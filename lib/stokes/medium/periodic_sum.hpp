@@ -50,13 +50,13 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box, in lattice coordinates
+  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box, lattice coordinates
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
   std::array<std::vector<int>, 3> difference_;  // index of the difference of nodes a, b of one direction, at n a + b
   std::array<std::size_t, 3> differences_;      // number of differences
-  std::vector<double> table_;  // smooth rest at node differences (i, j, k): components_ values from index components_ ((n_1 i + j) n_2 + k) on
+  std::vector<double> table_;  // smooth rest: components_ values per node difference (i, j, k), from components_ ((n_1 i + j) n_2 + k) on
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

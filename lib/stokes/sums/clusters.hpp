@@ -16,8 +16,8 @@ struct Cluster : ChebyshevBox {
   int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
   int first_block = 0;           ///< index of its first block of nodes among the blocks of all clusters; a block has far_block nodes
   double radius = 0, reach = 0;  ///< half the box's diagonal; distance from the centre beyond which the nodes are accurate
-  bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are used
-                                 ///< instead
+  bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are
+                                 ///< used instead
 
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }

@@ -22,7 +22,8 @@ using Sites = std::vector<std::vector<spline::Site>>;
 struct SelfPair {
   int panel = 0;
   quadrature::Shear shear;         ///< interval of metrics (shear of the element at the site) for which the rule was constructed
-  quadrature::PolarOrders orders;  ///< higher orders if the element is distorted, otherwise 0; if only the radial order is set, no polar rule is used
+  quadrature::PolarOrders orders;  ///< higher orders if the element is distorted, otherwise 0; if only the radial order is set, no polar
+                                   ///< rule is used
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site

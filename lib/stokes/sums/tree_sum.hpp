@@ -89,10 +89,10 @@ class TreeSum {
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of their Chebyshev nodes
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
   std::vector<double> target_u_, node_u_;       // values at targets and at their Chebyshev nodes
-  std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at Chebyshev
-                                                // nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at
+                                                // Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
-  std::vector<char> asked_, in_use_;            // flags: source nodes whose strength is used; source clusters whose Chebyshev nodes are used
+  std::vector<char> asked_, in_use_;            // flags: source nodes in use (strengths); source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };

@@ -75,8 +75,8 @@ class ChannelFlow : public stokes::DuctFlow {
   quadrature::Options quadrature_;
   std::string wall_solver_;
   std::vector<stokes::DuctEnd> ends_;
-  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall, with a smaller tolerance than in Wall, because large pressures at the
-                                                  // ends amplify errors of the velocity
+  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall, with a smaller tolerance than in Wall, because large
+                                                  // pressures at the ends amplify errors of the velocity
   mutable std::shared_ptr<Wall> wall_;
   mutable std::shared_ptr<const Solved> solved_;
   mutable Net latest_at_, latest_;

@@ -98,7 +98,8 @@ class FreeBody : public LoneRigidBody {
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< rigid motions due to unit forces and torques
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion of a free body relative to the flow, for each strain and quadratic flow
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion of a free body relative to the flow, for each strain and quadratic
+                                                    ///< flow
 };
 
 /// A free body in a tube or near a plane wall. At each position the traction and the rigid motion are solved for together,

@@ -21,10 +21,10 @@ namespace tanktread::coupling {
 /// the velocity differs on the two sides of the surface. Without this correction a sphere rotated by a torque therefore rotates too slowly by a
 /// relative 0.035/n^4, and its stresslet in a strain has a similar error.
 struct OwnLacking {
-  std::array<Net, 6> loads;  ///< corrections for u = A f (single layer) with the loads f = e_k and e_k x r, k = 0, 1, 2; r: position from the centre
-                             ///< of volume
-  Eigen::MatrixXd density;   ///< correction for u = H w (double layer) as a matrix acting on w, shape (3 N, 3 N); empty if there are more than
-                             ///< `most_points`
+  std::array<Net, 6> loads;  ///< corrections for u = A f (single layer) with the loads f = e_k and e_k x r, k = 0, 1, 2; r: position from
+                             ///< the centre of volume
+  Eigen::MatrixXd density;   ///< correction for u = H w (double layer) as a matrix acting on w, shape (3 N, 3 N); empty if there are more
+                             ///< than `most_points`
 
   /// Largest number of control points for which `density` is stored, which takes 72 bytes per pair of control points. It is stored in double
   /// precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
@@ -60,10 +60,11 @@ class RigidParticles {
   void push(const Net& work);
 
   void add_load(Net& load) const;            ///< adds the load df (2.23) of bodies with given force and torque
-  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the body's load f
+  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
+                                             ///< body's load f
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w, adds <w> (2.23) if force and torque are given, and adds the
-                                              ///< collocation correction of the double layer R^-1 D w
+  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w, adds <w> (2.23) if force and torque are given, and
+                                              ///< adds the collocation correction of the double layer R^-1 D w
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> (2.23) of bodies with prescribed motion; 0 in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
@@ -122,9 +123,11 @@ class RigidParticles {
     RigidMotion mean(const Net& w) const;      // rigid motion <w> nearest to w (2.23); `w`: net of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this integral and moment over the surface
     Net field(const RigidMotion& of) const;                             // values of a rigid field at the control points of the body
-    RigidMotion load() const;                                           // coefficients a and b of the load -df = a + b x r (2.23) on the fluid
+    RigidMotion load() const;                                           // coefficients a and b of the load -df = a + b x r (2.23) on the
+                                                                        // fluid
     Net lacking_of(const RigidMotion& load) const;                      // collocation correction (OwnLacking) of R^-1 A f for f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation correction (OwnLacking) of R^-1 H w; `w`: net of all particles
+    Net lacking_of(const Net& w) const;                                 // collocation correction (OwnLacking) of R^-1 H w; `w`: net of all
+                                                                        // particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

@@ -126,10 +126,10 @@ class Tube {
   /// Independent checks: errors of a response in conditions (2.14) that it satisfies exactly if discretisation errors vanish.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< axial balance: section area times dp minus axial forces on wall and particle, per area x pressure gradient x radius
-                              ///< of the empty duct
+    double force = 0;         ///< axial balance: section area times dp minus axial forces on wall and particle, per area x pressure
+                              ///< gradient x radius of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop for which `flux` would vanish; pressure drop for which `force` would
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops: that would make `flux` zero; that would make `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
@@ -162,7 +162,7 @@ class Tube {
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
-  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards the data of earlier solves that the wall's iterative solver keeps
+  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
   stokes::Evaluations kernel_evaluations() const;  ///< sum for the particle and the wall, including the assembly of the wall
 
@@ -181,10 +181,10 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall's traction in flow rate and force; they, flow_of_wall_, own_flow_ and flow_of_pressure_
-                                      // are computed at first use
-  Net flow_of_wall_;  // weights of a velocity on the wall; their product is the flow rate through the inlet due to the traction that cancels this
-                      // velocity
+  Net flow_weights_, force_weights_;  // weights of the wall's traction in flow rate and force; they, flow_of_wall_, own_flow_ and
+                                      // flow_of_pressure_ are computed at first use
+  Net flow_of_wall_;  // weights of a velocity on the wall; their product is the flow rate through the inlet due to the traction that
+                      // cancels this velocity
   double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop, of mu c (2.5) only; of mu c with the wall's response
 };
 

@@ -234,7 +234,8 @@ template <class Real>
 void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
                      stokes::Rows<Real>& rows) const {
   if (!has_middles()) return assemble(sites, rows);
-  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // row: index of each midpoint among the targets, or -1
+  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // row: index of each midpoint among the targets,
+                                                                                           // or -1
   for (const int i : sites)
     for (const int e : middles_around(i))
       if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {

@@ -90,8 +90,8 @@ class Wall {
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
-  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows among the ranks; all other rows are their images
-  stokes::Layer& layer() { return layer_; }             ///< single layer of the wall at points off the wall, for control values on the layer's space
+  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows among the ranks; other rows are their images
+  stokes::Layer& layer() { return layer_; }             ///< single layer at points off the wall, for control values on the layer's space
   const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
   /// Returns the lattice of a periodic wall; not set for an open wall.
@@ -116,8 +116,8 @@ class Wall {
   /// is factored.
   Net solve_transposed(const Net& weights) const;
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); zero for a periodic wall
-  const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): wall traction in the open, empty tube per unit pressure drop
+  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
+  const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
 
   /// Returns int N_A c dG and int N_A e1 dG for every A. Their products with a traction are its contribution to the flow rate through the inlet,
   /// times mu, and to the axial force.

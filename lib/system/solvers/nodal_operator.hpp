@@ -31,7 +31,8 @@ class NodalOperator {
     Net sites;                          ///< x_B, collocation sites
     Eigen::SparseMatrix<double> values;  ///< R, collocation matrix, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
-    Eigen::VectorXd areas;               ///< current area of each control point; C is near the target x_i if |x_C - x_i| < reach sqrt(area_C)
+    Eigen::VectorXd areas;               ///< current area of each control point; C is near the target x_i if |x_C - x_i| < reach
+                                         ///< sqrt(area_C)
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 

@@ -30,8 +30,8 @@ struct InterfaceOptions {
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
-  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged; if neither list nor solver is set, the
-                                                    ///< list of SolverOptions
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged; if neither list nor solver
+                                                    ///< is set, the list of SolverOptions
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
   int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
@@ -51,12 +51,13 @@ struct SolverOptions {
   std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
                                       ///< auto: matrix-free if far sums are taken by clusters
   std::string tube = "schur";                     ///< unknowns in a tube: v with the wall eliminated, or all blocks (BlockForm)
-  std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the factors are
-                                                  ///< large, see Wall)
+  std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
+                                                  ///< factors are large, see Wall)
   std::string rigid_bodies = "second kind";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), or first kind,
                                              ///< rigid bodies only (RigidTractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
-  std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled (FrozenOperator)
+  std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
+                                                  ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
   /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
