@@ -286,8 +286,7 @@ class Capsule : public Dynamics {
   Phases& phases_;
   std::vector<int> own_points_;
   std::vector<int> own_elements_;  // elements over which integrals for the rank-owned points run
-  bool folded_ = false;            // true if own_elements_ are fundamental elements only, so that integrals must be folded onto their
-                                   // points
+  bool folded_ = false;            // true if own_elements_ are fundamental elements only; integrals are then folded onto fundamental points
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
