@@ -14,7 +14,7 @@ namespace tanktread::stokes {
 namespace {
 
 /// Returns options whose tolerance is smaller for the double layer. Quadrature rules are chosen for int G f dG. The kernel of the double layer is
-/// steeper by one order, so that the error with the same rule is up to five times as large (tests/verify/layers.cpp).
+/// singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp).
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
@@ -67,7 +67,7 @@ void Layer::place(const Net& x, Measure measure) {
   if (images_) images_->place(surface_.node);
 }
 
-/// Multiplies values at the far nodes by the factors k of the panels.
+/// Multiplies values at the far nodes by the factors k (2.1) of the panels.
 void Layer::scale(std::span<std::vector<double>> at_nodes) const {
   for (int e = 0; e < surface_.panels.size(); ++e)
     for (std::vector<double>& values : at_nodes)
@@ -79,7 +79,7 @@ void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
   node_values(surface_.panels, bezier_f_, value);
 }
 
-/// Evaluates the density at the far nodes, times the weights in a single layer.
+/// Evaluates the density f at the far nodes; in a single layer, multiplied by the quadrature weights.
 void Layer::set_density(const Net& f) {
   const auto clock = phases_.time("setup");
   values(f, density_);
@@ -157,7 +157,7 @@ void Layer::integrate(const Targets& targets, Net& u) {
   for (const int i : targets.far_rows) u.row(i) *= over_8_pi;
 }
 
-/// Returns the integral over panel e by the rule `table` minus the contribution of the panel to the far sum.
+/// Returns the integral over panel e by the near-singular or singular rule `table` minus the contribution of the panel to the far sum.
 Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, const Vec3& f0, long long& count) {
   const Panel& panel = surface_.panels[e];
   const double *x = &surface_.bezier[panel.first_bezier], *f = &bezier_f_[panel.first_bezier];
@@ -253,7 +253,7 @@ Vec3 Layer::mean_density() const {
   return mean;
 }
 
-/// Computes (f n + n f)/2 at the far nodes k, where f(k, component) is the density.
+/// Computes the moments moment_ = (f n + n f)/2 at the far nodes k, where f(k, component) is the density.
 template <class Values>
 void Layer::take_moments_of(const Values& f) {
   for (int c = 0; c < 6; ++c) {
@@ -263,12 +263,12 @@ void Layer::take_moments_of(const Values& f) {
   }
 }
 
-/// Computes these moments for the density minus its mean.
+/// Computes the stresslet moments moment_ for the density minus its mean.
 void Layer::take_moments(const Vec3& mean) {
   take_moments_of([&](int k, int i) { return density_[i][k] - mean[i]; });
 }
 
-/// Computes these moments for a constant unit density along one axis.
+/// Computes the stresslet moments moment_ for a constant unit density along one axis.
 void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }

@@ -21,11 +21,12 @@
 
 namespace tanktread::stokes {
 
-/// Area to which the density of a single layer refers: unstressed area (3.7), current area (3.6), or one of the two for each element
+/// Area to which the density of a single layer refers: unstressed area (3.7), current area (3.6), or a choice between the two for each element
 /// (`set_reference`).
 enum class Measure { reference, current, by_element };
 
-/// Rows of a dense operator. Linear systems use double precision. The Jacobian converts rows from single precision to a smaller format.
+/// Rows of a dense operator. Linear systems use rows in double precision. The Jacobian uses rows in single precision and rounds them further
+/// (FrozenOperator).
 template <class Real>
 using Rows = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -44,8 +45,9 @@ inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
 
 /// Treatment of the images of surfaces on a lattice.
 struct Repetition {
-  bool assembled = false;  ///< assembled rows include the near images; `assemble_rest` adds the smooth rest (PeriodicSum)
-  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest cell coordinates of targets off the surfaces
+  bool assembled = false;  ///< true: assembled rows include the near images; assemble_rest() adds all other images (PeriodicSum)
+  std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
+                                                                              ///< surfaces
 };
 
 /// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density.
@@ -61,8 +63,9 @@ struct Repetition {
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
 /// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's part of this sum. Its tolerance is
 /// relative to the surface of the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only
-/// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0 and the boundary integral
-/// identity of the flow (n0.r) f_t. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012; the choice of the flow is ours.
+/// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
+/// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
+/// Mech. 696, 2012, with a different flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -71,8 +74,8 @@ class Layer {
   /// element; if empty, k = 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
-  /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and self points. `present`: for each
-  /// element, whether Measure::by_element means the current area rather than the unstressed area.
+  /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
+  /// for each element, whether Measure::by_element means the current area rather than the unstressed area.
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
@@ -91,8 +94,8 @@ class Layer {
   /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Excludes the surfaces themselves for later targets off the surfaces, from row `first` on. Only the images of the surfaces on the lattice then
-  /// contribute to u at these targets.
+  /// Lets only the images of the surfaces on the lattice, but not the surfaces themselves, contribute at later targets off the surfaces whose row is
+  /// `first` or higher.
   void see_images_only(int first) { lattice_.images_only = first; }
 
   /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
@@ -117,7 +120,7 @@ class Layer {
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
   /// panel, 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< index in `panels` of the first panel of target k
+    std::vector<std::size_t> first;  ///< for each target, index in `panels` of its first panel
     std::vector<int> panels;
     std::vector<double> moments;
   };
@@ -138,14 +141,15 @@ class Layer {
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
-  /// Adds the contribution of the images that are not near to assembled rows of a single layer at sites.
+  /// For a periodic single layer, adds the images that are not near (PeriodicSum) to the rows of `a`, which are assembled rows at `sites`.
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
-  /// Assembles only the contribution of the images in the plane wall at sites.
+  /// Assembles the rows at `sites` of the contribution of the images in the plane wall only.
   void assemble_images(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
-  /// Consecutive targets should be neighbours, because each group of sixteen evaluates the panels of all its near points.
+  /// Consecutive targets should be neighbours, because targets are processed in groups of sixteen, and each group evaluates the panels around the
+  /// near points of all its targets.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
 
   /// Return the far nodes of the current shape: their number, positions, weights including area and k (single layer), and normals times area and k
@@ -166,12 +170,12 @@ class Layer {
   const Phases& phases() const { return phases_; }
 
  private:
-  /// Targets of one call and their positions.
+  /// Targets of one evaluation of the layer, and their positions.
   struct Targets {
-    std::span<const int> rows, far_rows;  ///< rows of u that need near rules, and rows that need far sums
+    std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
     const Net& f0;                        ///< constants subtracted from the density of a double layer
-    std::span<const int> in_tree;         ///< all targets that are clustered, ascending
+    std::span<const int> in_tree;         ///< indices of all targets in the tree of clusters, ascending
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
@@ -182,18 +186,18 @@ class Layer {
   struct Lattice {
     std::optional<PeriodicCell> cell;
     Repetition how;
-    int images_only = std::numeric_limits<int>::max();  // first target to which only images of the surfaces contribute
+    int images_only = std::numeric_limits<int>::max();  // first row to which only images contribute, see see_images_only()
     std::optional<PeriodicSum> sum;
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
-    std::vector<Mat3> rest_stress;              // at rest_at: contribution of the rest of the lattice for constant densities
+    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at rest_at, by the images that are not near
   };
 
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
-    std::vector<bool> present;           // elements for which Measure::by_element means the current area instead
+    std::vector<bool> present;           // true for elements for which Measure::by_element means the current area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }
@@ -254,14 +258,16 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // weights of the far nodes, including area and k
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: f (single layer: times weight); normal times area and k
+  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area
+                                                                   // and factor k
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
-  std::vector<Mat3> image_stress_;                                 // image sums for constant unit densities at the targets
+  std::vector<Mat3> image_stress_;                                 // sums over the wall's images at the targets, for constant unit
+                                                                   // densities
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
   std::vector<Vec3> tree_at_;                                      // targets of the tree
-  std::vector<int> tree_rows_;                                     // rows the tree computes; empty: its positions are not set
+  std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if its positions must be set anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each
   std::vector<double> moment_[6];                                  // symmetric part of density times normal at the far nodes
   std::vector<Pack> point_weights_, scratch_;

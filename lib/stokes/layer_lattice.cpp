@@ -9,7 +9,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Error of the rest of a lattice divided by the tolerance: loads are in equilibrium, like those of clusters.
+/// Tolerance for the images that are not near, divided by the tolerance of the layer. It is small, because loads are in equilibrium, so that
+/// velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_rest = 0.1;
 
 }  // namespace
@@ -55,8 +56,8 @@ std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int
   return at;
 }
 
-/// Subtracts the surfaces themselves from the far sum at targets to which only images contribute. They cannot be left out of the far sum, because its
-/// nodes are moved into the cell one by one, so that the nodes of one surface may belong to different images.
+/// Subtracts the surfaces themselves from the far sum at targets to which only images contribute. The surfaces cannot be left out of the far sum
+/// itself, because nodes are moved into the cell one by one, so that the nodes of one surface may belong to different images.
 void Layer::subtract_itself(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   std::vector<int> rows;
@@ -69,7 +70,7 @@ void Layer::subtract_itself(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
 }
 
-/// Adds the images beyond those in the far sum, and for a double layer the pressure of (2.28).
+/// Adds the contribution of the images that are not in the far sum, and for a double layer with three periods the pressure of (2.28).
 void Layer::add_rest(const Targets& targets, Net& u) {
   const auto clock = phases_.time("rest of the lattice");
   const std::vector<Vec3> at = far_targets(targets, targets.rows);
@@ -96,8 +97,8 @@ void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n
   lattice_.sum->add_rest(charges, at, sums.data());
 }
 
-/// Computes the response of the rest to constant densities at these targets, one column per component. Images of a surface are partly in the far sum
-/// and partly in the rest, so that neither vanishes by itself for a constant.
+/// Computes the double layer of constant unit densities by the images that are not in the far sum, at these targets, one column per component. Some
+/// images of a surface are in the far sum and the others are not, so that neither part of the double layer vanishes for a constant density.
 void Layer::place_rest(const std::vector<Vec3>& at) {
   lattice_.rest_at = at;
   lattice_.rest_stress.assign(at.size(), Mat3::Zero());
@@ -110,7 +111,7 @@ void Layer::place_rest(const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the current moments of f. x_p is the mean of the nodes of surface p.
+/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the current moment_ of f (2.28). x_p is the mean of the nodes of surface p.
 Vec3 Layer::pressure_along() const {
   const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
   const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };

@@ -1,5 +1,5 @@
-// Assembly of rows of a layer: far moments for sixteen targets at a time, near-singular and singular quadrature for one target at a time. Assembles
-// complete rows, or only the blocks of near control points.
+// Assembly of matrix rows of a layer: far-field sums for sixteen targets at a time, near-singular and singular quadrature for one target at a time.
+// Assembles complete rows, or only the blocks of near control points.
 
 #include <algorithm>
 #include <cassert>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Basis functions of some panels at their far nodes, and the row of the sums to which each function adds. Functions are padded to whole tiles.
-/// Padded functions and functions of control points that are not requested add to a spare row.
+/// Basis functions of some panels at their far nodes, and the row of the sums to which each function adds. The number of functions is padded to a
+/// multiple of `assembly_tile`. Padding functions, and functions of control points that are not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
   std::vector<int> panels, index;  ///< the panels; for each panel of the surface, its index in this list, or -1
@@ -38,7 +38,7 @@ struct FarBasis {
     first_value.push_back(values.size());
     first_row.push_back(rows.size());
     values.resize(values.size() + static_cast<std::size_t>(padded) * t.n_nodes, Real(0));
-    for (int a = 0; a < m; ++a)  // each entry is summed in a fixed order, independent of memory alignment
+    for (int a = 0; a < m; ++a)  // plain loops, because their order of summation does not depend on memory alignment
       for (int b = 0; b < t.n_bernstein; ++b) {
         const Real share = static_cast<Real>(all.extraction(e)[t.n_bernstein * a + b]);
         const double* from = &t.value[static_cast<std::size_t>(t.n_nodes) * b];
@@ -121,7 +121,7 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Adds the panels that need near-singular or singular quadrature for the target with index l in its block.
+  /// Adds the corrections by near-singular or singular quadrature for the target with index l in its block of sixteen.
   void add_close_panels(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     const Vec3 x0 = place_of(target);
@@ -132,7 +132,8 @@ class Layer::RowSums {
       if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
   }
 
-  /// Adds near-singular and singular quadrature on a lattice, for the near images in the cell. It corrects the far sum, which includes all nodes.
+  /// On a lattice, adds the corrections by near-singular and singular quadrature on the images of panels close to the target. They correct the far
+  /// sum, which includes the nodes of these images.
   void add_close_images(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     for (const Vec3& image : layer_.lattice_.near) {

@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Ratio of element size to the distance between control points below which an element counts as small.
+/// An element counts as small if its size divided by the distance between control points is below this ratio.
 constexpr double small = 0.6;
 
 /// Returns the number of Gauss points per direction of the far rule. Measured on deformed capsules at n = 3, 6 and 12 (tests/verify/layers.cpp). For
@@ -24,7 +24,7 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Returns for each element its parametric size divided by the distance between control points around it: 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the distance between control points around it, which is 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {
@@ -41,9 +41,9 @@ std::vector<double> shares(const spline::Space& space) {
 }
 
 /// Returns the number of Gauss points per direction of the far rule for each element. Some elements are small compared with the distance of the
-/// surrounding targets: pieces at extraordinary points of Catmull-Clark surfaces, and halves at T-junctions. They need fewer points, because the
-/// integrand is smoother on a small element and its part of the area is small. The rule keeps at least half the digits of the tolerance, as the shape
-/// of elements next to extraordinary points requires (tests/verify/layers.cpp).
+/// surrounding targets: elements next to extraordinary points of Catmull-Clark surfaces, and bisected elements at T-junctions. They need fewer
+/// points, because the integrand is smoother on a small element and its part of the area is small. They keep enough points for half the digits of the
+/// tolerance, because the shape of elements next to extraordinary points requires these (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
@@ -56,15 +56,15 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
   return orders;
 }
 
-/// Returns the number of far nodes above which clusters are faster. It is about twice the number of nodes that a target of a large surface interacts
-/// with by clusters, which grows with the square of the digits. Measured (tests/benchmark/growth.cpp).
+/// Returns the number of far nodes above which clusters are faster. It is about twice the number of kernel evaluations per target that clusters need
+/// on a large surface, which grows with the square of the number of digits of the tolerance. Measured (tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 
 }  // namespace
 
 bool sums_by_tree(double nodes, const quadrature::Options& options) {
   if (options.far_sum != "auto") return options.far_sum == "tree";
-  if (options.rule == "desingularised") return false;  // its identities need every pair of node and target in any case
+  if (options.rule == "desingularised") return false;  // its two identities (see Layer) sum over all pairs of nodes and targets in any case
   return nodes > nodes_worth_a_tree(options.tolerance);
 }
 

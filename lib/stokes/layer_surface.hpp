@@ -21,7 +21,8 @@ bool sums_by_tree(double nodes, const quadrature::Options& options);
 /// Current surfaces, prepared for the integration of a layer: panels, far nodes, and the quadrature rule for each pair of a target and a panel.
 class LayerSurface {
  public:
-  /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: the integrand grows like 1 / r^2 across gaps.
+  /// `sites`: targets on the surfaces; if empty, all targets are off the surfaces. `steep`: the integrand grows like 1 / r^2 for targets on other
+  /// surfaces (double layer).
   LayerSurface(const spline::Space& space, const Sites& sites, const quadrature::Options& options, bool steep);
 
   /// Includes periodic images of the surfaces.
@@ -30,7 +31,7 @@ class LayerSurface {
   /// Sets the symmetry that all later shapes have.
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Returns the fundamental panels, and their weights in a far sum over these panels.
+  /// Returns the fundamental panels and their weights in a far sum that runs over the fundamental panels only.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
   /// Returns all symmetry images except the identity, about the centre of the current shape.
@@ -43,10 +44,10 @@ class LayerSurface {
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 
-  /// Returns the panels that contain site i and need a singular rule for it. The rule `desingularised` needs no such panels.
+  /// Returns the panels that contain site i and need a singular rule for it. The list is empty for the rule `desingularised`.
   std::span<SelfPair> own(int i);
 
-  /// Returns the panels that need a near rule for a target, without the panels of `own`, which contain it.
+  /// Returns the panels that need near-singular quadrature for a target, without the panels of `own`, which contain the target.
   const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> own);
 
   /// Sets the far nodes of the fundamental panels, and all targets with their images, in a tree. All ranks that share the sums must pass equal

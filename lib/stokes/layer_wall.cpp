@@ -13,7 +13,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Factor on the tolerance for clusters of images, whose kernel has poles of two orders higher. Measured on spheres and ellipsoids near a wall.
+/// Factor on the tolerance of clusters for the images in the wall, because their kernel is singular by two orders more. Measured on spheres and
+/// ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
 /// Transforms the Bezier points of a panel (if `point` is true) or the Bezier coefficients of a vector field on it to the wall's axes.
@@ -36,7 +37,8 @@ void Layer::set_wall(const PlaneWall& wall) {
   measure_.reset();
 }
 
-/// Adds the far sum. For a double layer it is computed as sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) with the mean density m.
+/// Adds the far sum over the images in the wall. For a double layer it is computed as sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) with the mean
+/// density m.
 void Layer::add_images(const Targets& targets, Net& u) {
   {
     const auto clock = phases_.time("images in the wall");
@@ -62,7 +64,7 @@ void Layer::add_images(const Targets& targets, Net& u) {
   add_near_images(targets, u);
 }
 
-/// Computes the sums for constant unit densities, one column each.
+/// Computes the sums over the images in the wall for constant unit densities, one column per component.
 void Layer::take_image_stress() {
   for (int c = 0; c < 3; ++c) {
     take_constant_moments(c);
@@ -84,7 +86,7 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the contribution of panel e by the rule `table` minus its contribution to the far sum.
+/// Returns the contribution of the image of panel e by the near-singular rule `table` minus its contribution to the far sum.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];
@@ -111,7 +113,8 @@ Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrore
   return factor(e) * (wall.axes().transpose() * better) - images_->sum(nodes, first, at);
 }
 
-/// Computes the moments of panel e at the target `at`: one matrix per Bernstein polynomial, in the laboratory axes, including the factor k.
+/// Computes the moments of the image of panel e at the target `at`: one matrix per Bernstein polynomial, in the laboratory axes, including the factor
+/// k.
 void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];
@@ -131,7 +134,8 @@ void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
     moments[b] = factor(e) * (wall.axes().transpose() * Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&own[9 * b]) * wall.axes());
 }
 
-/// Adds the image rows. At sites of a double layer the contribution of the subtracted density at the site is included.
+/// Adds the contribution of the images in the wall to the rows `a`. For a double layer at sites, this includes the subtracted term with the density
+/// at the site (2.2).
 template <class Real>
 void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<Real>& a) {
   const Panels& panels = surface_.panels;

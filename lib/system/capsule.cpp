@@ -54,18 +54,18 @@ void Capsule::gather_targets(bool shared, Net& net) {
   ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
 }
 
-/// Returns dE/dx of all loads minus the virtual work of forces. Sets `sums` to the complete sums of the loads.
+/// Returns dE/dx of all loads minus the virtual work of forces. Sets `sums` to the loads' surface integrals, summed over all ranks.
 Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   Net work(x.rows(), 3);
   membrane_.load(x, own_elements_, work);
   sums = complete_work(x, work);
   for (const Net& of_forces : forces_)
     if (of_forces.size() > 0) work -= of_forces;
-  rigid_.clear(work);  // push_bodies sets the forces on rigid bodies
+  rigid_.clear(work);  // cleared because push_bodies sets the forces on rigid bodies
   return work;
 }
 
-/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the complete sums of the loads.
+/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the loads' surface integrals.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);
@@ -90,7 +90,7 @@ Net Capsule::response(Evaluation& at, const Net& work) {
   return change;
 }
 
-/// Sets the forces of contacts and loads on rigid bodies, in addition to the given forces.
+/// Sets the forces of contacts and loads on rigid bodies, in addition to their prescribed forces.
 void Capsule::push_bodies(const Net& x) {
   if (rigid_.empty()) return;
   Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
@@ -102,7 +102,7 @@ void Capsule::push_bodies(const Net& x) {
   rigid_.push(push);
 }
 
-/// Applies A^-1 to each field in place. The columns are divided among the ranks.
+/// Applies the inverse of the factored matrix a to each field in place. The columns of the fields are divided among the ranks.
 void Capsule::solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields) {
   const std::vector<int> components = a.components();
   int column = 0;
@@ -121,8 +121,8 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-/// Returns the load at x, which is the shape of `e` or its image in the cell. If `other` is given, applies M0^-1 to it in place, in the same solve
-/// where possible, because six columns are divided among the ranks more evenly than three columns in each of two solves.
+/// Returns the load at x, which is the shape of `e` or its image in the cell. If `other` is given, replaces it by M0^-1 times `other` (M0: mass
+/// matrix), in the same solve where possible, because six columns are divided among the ranks more evenly than three columns in each of two solves.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;
@@ -150,7 +150,7 @@ Net Capsule::flux_vector(const Net& x) {
   return b;
 }
 
-/// Applies P to v for each deformable particle, so that its volume does not change.
+/// Applies the projection P of (2.8) to v for each deformable particle, so that its volume does not change.
 void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   for (const Particle& particle : particles()) {
     if (particle.rigid) continue;
@@ -159,7 +159,7 @@ void Capsule::constrain(Net& v, const Net& b, const Net& c) const {
   }
 }
 
-/// Returns relabellings of all particles. If the scene is symmetric, uses only the rotations that its images leave unchanged.
+/// Returns velocity fields that rotate the meshes of drops on their surfaces, and have the symmetry of the scene. The shape does not change.
 std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
@@ -230,11 +230,11 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
-  if (constrained) constrain(v, b, c);  // removes the small flux due to interpolation of the normal motion
+  if (constrained) constrain(v, b, c);  // removes the small volume flux that interpolating the normal motion causes
   return v;
 }
 
-/// Computes the velocity if all particles are rigid, by their tractions (2.40).
+/// Computes the velocity of a scene of rigid bodies only from the tractions on them (2.40).
 Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
   const auto clock = phases_.time("tractions");
   std::vector<Vec3> centres;
@@ -258,7 +258,7 @@ Net Capsule::control_values(Net at_targets) {
   return projection_ ? projection_->control_values(at_targets) : solved(collocation_, std::move(at_targets));
 }
 
-/// Returns A f at the targets. Skips the sum if f is zero.
+/// Returns A f, the single layer of the load f, at the targets. Skips the sum if f is zero.
 Net Capsule::single_layer_of(const Net& x, const Net& f) {
   Net u = zero_at_targets();
   if (f.isZero(0)) return u;
@@ -279,8 +279,8 @@ Net Capsule::double_layer_of(const Net& v) {
   return hv;
 }
 
-/// Returns v_inf - (1/mu) R^-1 A f plus the response of an eliminated wall to the load f and, if given, to the velocity `moves` of the particle.
-/// Stores the response in `answer`, if given, unless a system for the velocity follows and changes it.
+/// Returns v_inf - (1/mu) R^-1 A f of (4.2) plus, in a tube with eliminated wall unknowns, the response of the wall to the load f and, if given, to
+/// the velocity `moves` of the particle. Stores the response in `answer`, if given, unless a system for the velocity follows and changes it.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
@@ -323,13 +323,13 @@ bool Capsule::in_front_of_wall(const Net& x) {
   return true;
 }
 
-/// Returns the load of the virtual work d on the surface at x: per unstressed area (3.7), or per current area (3.6).
+/// Returns the load whose virtual work on the surface x is d (one row per control point): per unstressed area (3.7), or per current area (3.6).
 Net Capsule::measured_load(const Net& x, Net d) {
   const auto clock = phases_.time("projection");
   return measure() == stokes::Measure::reference ? solved(mass_.reference(), std::move(d)) : mass_.solve(mass_matrix_.update(measured_net(x)), d);
 }
 
-/// Returns C v, with C at its latest update.
+/// Returns C v, the virtual work of the membranes' viscous stress (3.10) at the velocity v, with the matrix C for the shape set last.
 Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
   const auto clock = phases_.time("membrane");
   Net work;
@@ -352,7 +352,7 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Returns rows of D on every rank. Each row comes from the rank that owns its point: copied from the assembled rows, or assembled here.
+/// Returns rows of the double layer D (4.2) on every rank. The rank that owns a row's point provides the row: assembled earlier, or assembled here.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
@@ -370,14 +370,14 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   return rows;
 }
 
-/// Solves P B P v = rhs for v, where rhs = P rhs. P removes the change of volume; if b and c are empty, the volume is free and P = 1. In a tube, B
-/// includes the response of the wall to v (schur), or the block system is solved. If `guess` is empty or there are rigid bodies, the iteration starts
-/// from rhs instead of `guess`.
+/// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. The projection P (2.8) removes the change of volume; if b and c are empty, the volume is free
+/// and P = 1. In a tube, B includes the response of the wall to v (schur), or the block system is solved. If `guess` is empty or there are rigid
+/// bodies, the iteration starts from rhs instead of `guess`.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected for films between rigid bodies
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected in films if the matrix fits
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
@@ -391,7 +391,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     gather_targets(false, at_targets);
     return at_targets;
   };
-  const auto load_of = [&](const Net& v) {  // contribution of the velocity to the load; empty if there is none
+  const auto load_of = [&](const Net& v) {  // part of the load that depends on v (viscous membranes, prescribed rigid motions), or empty
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
     if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
     return load;
@@ -441,7 +441,7 @@ void Capsule::forget_recycled() const {
   if (tube_) tube_->forget_recycled();
 }
 
-/// Solves for v, f^D, dp and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f. The initial guess of v is its right-hand side.
+/// Solves for v, f^D, dp (2.5)-(2.7) and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f is also the initial guess of v.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
@@ -460,15 +460,15 @@ Blocks Capsule::velocity_blocks() const {
   return blocks;
 }
 
-/// Uses V = b.x/3, which holds because V is a homogeneous cubic function of x. Sets x to NaN if the iteration fails.
+/// Moves x onto the prescribed volumes by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails.
 void Capsule::restore_volume(Net& x) {
   rigid_.place(x);
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
-  std::vector<double> missing(particles().size());  // volume to be added, divided by V0
+  std::vector<double> missing(particles().size());  // volume to be added to each particle, divided by its prescribed volume V0
   Net c;
   const auto larger_than = [&](double bound) { return std::ranges::any_of(missing, [&](double m) { return !(std::abs(m) <= bound); }); };
-  for (int k = 0; k < 6; ++k) {  // two corrections are enough except after a very long step
+  for (int k = 0; k < 6; ++k) {  // more than two corrections are needed only after a very long step
     const Net b = flux_vector(x);
     for (std::size_t p = 0; p < missing.size(); ++p) {
       const auto rows = particles()[p].block.rows(x);

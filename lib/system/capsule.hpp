@@ -50,46 +50,51 @@ struct Work {
   long solver_iterations = 0;  ///< iterations of these solves
   long velocity_iterations = 0;  ///< iterations of the linear systems for velocities or tractions
   long velocity_solves = 0;      ///< solves of these systems
-  long most_velocity_iterations = 0;  ///< largest number of iterations of one of these solves
+  long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
 };
 
 /// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid
   std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
-  bool strong_load = false;                                      ///< true: load (P-3) at the collocation sites instead of (3.5)
+  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the
+                                                                 ///< collocation sites, false: from virtual work (3.5)
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points: none
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; a symmetry without points: no
+                               ///< symmetry
 };
 
 /// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
 ///
 ///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
-/// A and D are the single and the double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each
-/// particle has its own condition b.v = 0, and its own factor of P. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise
-/// P B P v = P (...) is solved by Belos. This is the block system of v and the multiplier of (2.8) after elimination of the multiplier. P removes
-/// the mode for which B becomes singular as lambda -> 0.
+/// R is the collocation matrix, M0 the mass matrix, E the energy of the membranes and V the volume of a particle. A and D are the single and the
+/// double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each particle has its own condition b.v =
+/// 0, and its own factor of P. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise P B P v = P (...) is solved by Belos.
+/// This is the block system of v and the multiplier of (2.8) after elimination of the multiplier. P removes the mode for which B becomes singular as
+/// lambda -> 0.
 ///
-/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, with the fluid velocity v, is part of B. If loads are measured per current area, M
-/// of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                    (3.11)
+/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, with the fluid velocity v, is part of B. If loads are measured per current area,
+/// the mass matrix M of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                 (3.11)
 ///
-/// Rigid bodies are treated by RigidParticles: the unknown in their rows is w of (2.23). They are not stiff, so that their rows of the Jacobian are
-/// zero. If all particles are rigid, the system may be solved for their tractions instead (RigidTractions).
+/// Rigid bodies are treated by RigidParticles: the unknown in their rows is the double-layer density w of (2.23). Their motion is not stiff, so that
+/// their rows of the Jacobian are set to zero. If all particles are rigid, the system may be solved for their tractions instead (RigidTractions).
 ///
-/// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The other rows are their images.
+/// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The rows of all other control points are
+/// mirror images of these rows.
 ///
 /// On a lattice the layers include all images (Layer::repeat). Each particle is evaluated at its image whose mean lies in the cell around the origin.
-/// Then the ambient velocity at the particle's own position minus that at the image is added to its velocity. Frozen operators omit the images.
+/// The ambient velocity at the particle's own position minus the ambient velocity at the image is added to its velocity. Frozen operators omit the
+/// images.
 ///
 /// In front of a plane wall the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
 ///
-/// In a tube the response of wall and pressure drop (2.5)-(2.7) is added. It is linear in the load and, for lambda != 1, in v. It is added to the
-/// right-hand side and to B, both here and in the Jacobian. Alternatively all blocks are solved for at once (BlockSystem).
+/// In a tube the response of wall and pressure drop (2.5)-(2.7) is added. This response is linear in the load and, for lambda != 1, in v. Its parts
+/// are added to the right-hand side and to B, both here and in the Jacobian. Alternatively all blocks are solved for at once (BlockSystem).
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is kept, unless the particle sets
@@ -139,18 +144,20 @@ class Capsule : public Dynamics {
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes, at the last linearisation, due to a displacement dx and to a change of the virtual work of loads in addition to that of the membranes.
-  /// `slip`: change of the difference between the fluid velocity and the velocity of the control points; empty if no control points slide.
+  /// Changes, linear in a displacement dx and in a change `work` of the virtual work of additional loads, about the shape of the last linearisation.
+  /// `rate`: change of the velocity, in some functions multiplied by B. `slip`: change of the difference between the fluid velocity and the velocity
+  /// of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
-  RateChange rate_change(const Net& dx, const Net& work);      ///< returns the rate B J dx if no control points slide, otherwise J dx. Collective
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns the rate J dx. Collective
-  /// Returns B v with B frozen, or v if control points slide. Collective.
+  RateChange rate_change(const Net& dx, const Net& work);      ///< rate is B J dx (4.3), or J dx if control points slide. Collective
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx (J: Jacobian of the velocity). Collective
+  /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
   bool preconditions_step() const { return area_.has_value(); }
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system of `solve`
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system that `solve`
+                                                                                       ///< solves
 
   /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. `rhs` may have any number of rows.
   /// Collective.
@@ -196,7 +203,8 @@ class Capsule : public Dynamics {
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< run time of the parts of the single layer
   stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
-  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }  ///< net on which loads are measured
+  /// Returns the net whose area the loads refer to.
+  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }
   void forget_recycled() const;  ///< discards the data of earlier solves that preconditioners `recycled` keep
   const Work& work() const { return work_; }
   Work& work() { return work_; }
@@ -204,13 +212,14 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Net of the particles last set in the tube. `origin`, `origin_of_net`: x1 of the origin of a straight periodic wall's frame, now and when the net
-  /// was set.
+  /// Net of the particles that was set in the tube last. `origin` and `origin_of_net`: x1 of the origin of the frame of a straight periodic wall, now
+  /// and when the net was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;
   };
-  bool repeats() const { return cell_ && !tube_; }  // returns whether the layers are periodic; in a duct the tube's response contains the images
+  bool repeats() const { return cell_ && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
+                                                    // instead
   bool by_sites() const { return tube_ || !flow_.affine(); }
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
@@ -247,7 +256,8 @@ class Capsule : public Dynamics {
   Net inflation(const Net& c);
   Net frozen_single_layer(const Net& f);
   Net measured_load(const Net& x, Net d);
-  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }  // requires that C was updated at x
+  // Returns the load due to the viscosity of membranes at the velocity v. Requires that viscous_ was updated at x.
+  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta, const Net& work = {});
@@ -261,7 +271,8 @@ class Capsule : public Dynamics {
   bool in_front_of_wall(const Net& x);
   bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns equal the control points' velocity
+  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns are velocities of control
+                                                                                         // points
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
@@ -274,19 +285,22 @@ class Capsule : public Dynamics {
   Ranks& ranks_;
   Phases& phases_;
   std::vector<int> own_points_;
-  std::vector<int> own_elements_;  // elements that sums for the rank-owned points run over
-  bool folded_ = false;            // true if these elements are fundamental, so that their sums must be folded
+  std::vector<int> own_elements_;  // elements over which integrals for the rank-owned points run
+  bool folded_ = false;            // true if own_elements_ are fundamental elements only; integrals are then folded onto fundamental points
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Loads loads_;  // loads in addition to elasticity and bending
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // C of the latest evaluation and of the Jacobian; set if a membrane is viscous
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the
+                                                                       // Jacobian; set if a membrane is viscous
   std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
   stokes::Layer layer_;                           // single layer at the targets, where velocities are evaluated
-  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all are 0
-  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if the targets differ
+  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all factors
+                                                  // vanish
+  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if velocities are
+                                                                 // evaluated at other targets
   membrane::SymmetricSolver collocation_;
   membrane::MassSolver mass_;
   Krylov velocity_solver_, step_solver_, inner_solver_;
@@ -300,11 +314,11 @@ class Capsule : public Dynamics {
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // R; empty unless the flow is not affine or there is a tube or a wall
+  Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); empty unless the flow is not affine or there is a tube or a wall
   std::optional<stokes::PeriodicCell> cell_;  // current cell
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift of the implicit system solved last
-  Net flux_, flux_response_;            // b and c of the Jacobian's P; empty if the Jacobian has no P
+  Net flux_, flux_response_;            // b and c of the volume projection P (2.8) in the Jacobian; empty if the Jacobian has no P
   std::vector<Mat3> gradients_;         // velocity gradients at the sites, at the last linearisation; only in a tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;

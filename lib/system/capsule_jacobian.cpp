@@ -82,7 +82,7 @@ std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
   return all;
 }
 
-/// Returns A f with A frozen.
+/// Returns A f with the frozen single layer A (4.3).
 Net Capsule::frozen_single_layer(const Net& f) {
   Net u = Net::Zero(f.rows(), 3);
   if (parameters_.solvers.frozen_operator != "nodal") {
@@ -95,15 +95,16 @@ Net Capsule::frozen_single_layer(const Net& f) {
   return corotation_.forth(u);
 }
 
-/// Applies the P of the last linearisation to a rate. Without P, the response of a stiff membrane to volume changes, which the fluids do not allow,
-/// would dominate the rate.
+/// Applies the volume projection P (2.8) of the last linearisation to a rate of change. Without P, the response of a stiff membrane to volume
+/// changes, which the fluids do not allow, would dominate the rate.
 Net Capsule::without_flux(Net rate) const {
   if (flux_.size() > 0) constrain(rate, flux_, flux_response_);
   return rate;
 }
 
-/// Returns the displacement along which a volume is restored. By default it is c. For a membrane that nearly conserves area, it is the result of an
-/// implicit step for c, because c also changes the area, and the resulting stress, of the order of C, would affect the next step.
+/// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). For a membrane that nearly conserves area it
+/// is the result of an implicit step for c, because c also changes the area, and the resulting stress, proportional to the large dilatation constant,
+/// would affect the next step.
 Net Capsule::inflation(const Net& c) {
   constexpr double rough = 1e-2;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(particles(), keeps_area)) return c;
@@ -111,8 +112,8 @@ Net Capsule::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// Returns B J delta = P (grad v_inf delta - (1/mu) R^{-1} A M0^{-1} H delta), with 0 in the rows of rigid bodies (4.3). `work`, if given, is added
-/// to H delta.
+/// Returns B J delta = P (grad v_inf delta - (1/mu) R^{-1} A M0^{-1} H delta), and 0 in the rows of rigid bodies (4.3). `work`, if given, is added to
+/// H delta.
 Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
@@ -136,7 +137,8 @@ Net Capsule::energy_part(const Net& delta, const Net& work) {
   return without_flux(std::move(change));
 }
 
-/// Returns P B P v + (1 - P) v with B frozen. The rows of rigid bodies are unchanged and do not contribute to other rows.
+/// Returns P B P v + (1 - P) v with the operator B of (4.2) frozen and the volume projection P (2.8). The rows of rigid bodies are unchanged and do
+/// not contribute to other rows.
 Net Capsule::frozen_viscous(const Net& v) {
   if (!double_layer_ && !viscous_) return v;
   const Net inside = without_flux(v);
@@ -156,7 +158,8 @@ Net Capsule::frozen_viscous(const Net& v) {
   return v - without_flux(collocation_.solve(hv));
 }
 
-/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity. The inner system is solved to a smaller tolerance than the outer one.
+/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity. This system, with B, is solved to a smaller tolerance than the system of the
+/// implicit step that contains it.
 Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   const Net rhs = energy_part(delta, work);
   if (!double_layer_ && !viscous_) return rhs;
@@ -168,15 +171,16 @@ Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Solves the system of an implicit step. If all control points move with the fluid, it is (B - shift (B J + E)) delta = B r, which does not require
-/// the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r (4.6). E are the secants (4.13).
+/// Solves the system of an implicit step. If all control points move with the fluid, the system is (B - shift (B J + E)) delta = B r (4.3), which
+/// does not require the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r, where N dv + T W delta is the change of the mesh
+/// velocity (4.6) due to a change dv of the fluid velocity and the displacement delta. E is the secant correction (4.13).
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   return stiff_system(shift, left(r), tolerance, secants);
 }
 
-/// Returns whether all points move with the fluid and the velocity is the solution of a system. The Jacobian then includes the projection P in every
-/// form of the system, because the extrapolation (4.30) makes the result depend on the Jacobian.
+/// Returns whether all points move with the fluid and the velocity is the solution of a linear system. The Jacobian then always includes the volume
+/// projection P (2.8), because by the extrapolation (4.30) the result depends on the Jacobian.
 bool Capsule::flows_by_system() const { return (viscous_ || double_layer_) && !interface_ && rigid_.empty(); }
 
 /// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
@@ -193,8 +197,8 @@ Net Capsule::defect(const Net& x, const Net& u) {
   return defect_here(in_cell, slower);
 }
 
-/// Returns P (w - B P u) - (1 - P) u, where B v = w is the system of the velocity (solve_velocity) (3.14). The viscous load due to u is added to the
-/// elastic load, so that only one sum over the surface is needed.
+/// Returns the defect P (w - B P u) - (1 - P) u of the velocity u (3.14), where B v = w is the system of the velocity v at x (solve_velocity). The
+/// viscous load due to u is added to the elastic load, so that only one sum over the surface is needed.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
@@ -246,7 +250,7 @@ void Capsule::prepare_step(double shift) {
   if (area_) area_->factor(shift);
 }
 
-/// Solves the system of `solve` for its right-hand side, which is B r, or r if control points slide.
+/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs, which is B r, or r if control points slide along an interface.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {

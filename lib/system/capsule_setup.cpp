@@ -13,7 +13,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the parameters with the space and the block of every particle set.
+/// Returns the parameters with the space and the block of rows of every particle filled in.
 CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
   place(parameters.particles);
@@ -28,8 +28,9 @@ std::optional<VelocityProjection> chosen_projection(const spline::Space& space, 
   return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
 }
 
-/// Returns the mobility of each control point (velocity per force) at a wave number k between that of the longest wave on the surface and that of the
-/// shortest wave on the mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the viscosity of the sheet.
+/// Returns the mobility of each control point (velocity per force) at one wave number k, which lies between the wave numbers of the longest wave on
+/// the surface and of the shortest wave on the mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the
+/// viscosity of the sheet.
 Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
   for (const Particle& one : particles) {
@@ -103,7 +104,8 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
 
 Capsule::~Capsule() = default;
 
-/// Constructs the layers for velocities, and separate layers for the Jacobian if velocities are evaluated at other points.
+/// Constructs the layers at the points where velocities are evaluated, and separate layers for the Jacobian if these points are not the collocation
+/// sites.
 void Capsule::make_layers() {
   using stokes::Layer;
   const surface::Symmetry& symmetry = parameters_.symmetry;
@@ -127,8 +129,8 @@ void Capsule::make_layers() {
   if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
 }
 
-/// Sets the rank-owned points, and the elements that sums for these points run over: the fundamental elements that touch the points or their images.
-/// If an element is its own image, sums run over all elements that touch the points.
+/// Sets the rank-owned points, and the elements over which integrals for these points run: the fundamental elements that touch the points or their
+/// images. If an element is its own image, integrals run over all elements that touch the points.
 void Capsule::own(const surface::Share& share) {
   const surface::Symmetry& symmetry = parameters_.symmetry;
   const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };

@@ -12,8 +12,8 @@ namespace tanktread::coupling {
 /// Returns the values N_A at sites, shape (sites, N).
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites);
 
-/// Gauss points q on a surface, to integrate the residual of collocation. On an element the residual behaves like h^4 times a quartic, and as many
-/// Gauss points per direction as the degree integrate it.
+/// Gauss points q on a surface, to integrate the residual of collocation, which is zero only at the collocation sites. On an element of size h the
+/// residual is about h^4 times a quartic polynomial, for which as many Gauss points per direction as the spline degree suffice.
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)

@@ -31,14 +31,15 @@ struct Contacts {
   void add_columns(Columns& to) const;
 };
 
-/// Adds the virtual work +-force N_A normal of a contact force, per unit displacement of each control point, to the rows of all particles.
+/// Adds the virtual work +-force N_A normal of a contact force, per unit displacement of each control point A, to the rows of both particles in
+/// `work`.
 void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work);
 
 /// Returns the virtual work of all contacts with their forces, shape (n_points, 3); an empty net if there are no contacts.
 Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::Index n_points);
 
 /// Solves the linear complementarity problem f >= 0, A f + q >= 0, f.(A f + q) = 0 for positive definite A: contact forces f for gaps that are too
-/// small by -q, where a unit of f_j opens gap k by A_kj. Principal pivoting with the least-index rule (Murty 1974). Not finite if pivoting does not
+/// small by -q, if a unit force f_j opens gap k by A_kj. Principal pivoting with the least-index rule (Murty 1974). Not finite if pivoting does not
 /// terminate.
 Eigen::VectorXd complementary(const Eigen::MatrixXd& a, const Eigen::VectorXd& q);
 

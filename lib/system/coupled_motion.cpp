@@ -43,7 +43,7 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
   int n = 0;
   for (int i = 0; i < static_cast<int>(field.size()); ++i) {
     if (met[static_cast<std::size_t>(i)]) continue;
-    std::map<int, double> sum{{i, 1}};  // sum over the images of coefficient i
+    std::map<int, double> sum{{i, 1}};  // images of coefficient i under the symmetries, with the factors of their sum
     for (const auto& map : maps) sum[map[static_cast<std::size_t>(i)].first] += map[static_cast<std::size_t>(i)].second;
     for (const auto& [to, value] : sum) {
       met[static_cast<std::size_t>(to)] = true;
@@ -129,10 +129,11 @@ void CoupledMotion::linearise(const Net& y) {
   capsule_.linearise(shape(y));
 }
 
-/// Multiplies the shape by B and leaves the fields unchanged.
+/// Multiplies the shape part of delta by B (4.2) and leaves the field part unchanged.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
 
-/// Returns B J delta for the shape, or J delta if control points slide or `solved` is set; J delta for the fields.
+/// Returns the product of the Jacobian J (4.33) with delta. Its shape part is multiplied by B (4.2), unless control points slide along an interface
+/// or `solved` is set.
 Net CoupledMotion::right(const Net& delta, bool solved) {
   Net load = Net::Zero(n_, 3);
   std::vector<Eigen::VectorXd> values;
@@ -257,7 +258,7 @@ double CoupledMotion::norm(const Net& displacement) const {
   double largest = capsule_.norm(shape(displacement));
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const double changed = coefficients(displacement, k).norm() / std::sqrt(static_cast<double>(blocks_[k].size));
-    largest = changed <= largest ? largest : changed;  // a norm that is not a number is kept
+    largest = changed <= largest ? largest : changed;  // written so that the maximum is NaN if a norm is NaN
   }
   return largest;
 }

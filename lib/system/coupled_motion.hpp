@@ -36,10 +36,10 @@ class CoupledMotion : public Dynamics {
   const std::vector<On>& fields() const { return fields_; }
   Eigen::Index n_rows() const { return rows_; }  ///< number of rows of a state
 
-  /// Returns an orthonormal basis, one column each, of the coefficients of field k that have this parity under the symmetry. If the images of the
-  /// coefficients are not known, the basis spans all coefficients.
+  /// Returns an orthonormal basis, one column each, of the coefficients of field k that have this parity under the symmetry. If the field does not
+  /// know the mirror images of its coefficients, the basis spans all coefficients.
   Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
-  bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if the images of the coefficients of all fields are known
+  bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if all fields can map their coefficients to mirror images
 
   /// Returns the gradient of the sum that field k conserves, as a state; no rows if the field conserves none.
   Net conserved(std::size_t k) const;
@@ -73,7 +73,7 @@ class CoupledMotion : public Dynamics {
   Net turned(const Net& y, const Mat3& rotation) const override { return with_shape(y, shape(y) * rotation.transpose()); }
   Net symmetric(Net rate) const override;
   double distance(const Net& from, const Net& to) const override { return capsule_.distance(shape(from), shape(to)); }
-  /// Returns the largest of the capsule's norm and the root mean square changes of the coefficients of each field.
+  /// Returns the maximum of the capsule's norm of the displacement and, for each field, the root mean square change of its coefficients.
   double norm(const Net& displacement) const override;
 
  private:
@@ -81,7 +81,7 @@ class CoupledMotion : public Dynamics {
     On on;
     Eigen::Index first, size;  // position and number of the coefficients within a state
     double scale;
-    spline::Block rows;        // rows of the particle in the net
+    spline::Block rows;        // rows of the particle in the control net
     Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
   };
   Net left(const Net& delta);

@@ -10,8 +10,8 @@
 
 namespace tanktread::coupling {
 
-/// The system (4.2). Nets are replicated, and every call is collective. If the motion depends on time, all calls refer to the time passed to at()
-/// last.
+/// The system dx/dt = v(x) (4.2) of the control net x. Nets are replicated on all ranks, and every call is collective. If the motion depends on time,
+/// all calls refer to the time passed to at() last.
 class Dynamics {
  public:
   virtual ~Dynamics() = default;
@@ -38,22 +38,25 @@ class Dynamics {
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
 
-  /// Returns B (dv - J delta) at the last linearisation: the error of the Jacobian for the velocity change dv that delta caused. Used by Secants.
+  /// Returns B (dv - J delta) at the last linearisation: the error of the Jacobian for the velocity change dv that the displacement delta caused.
+  /// Used by Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
-  /// Returns the defect of u as the velocity at x: v - u, up to a factor B, which depends on x and which `correction` and `missed_of` account for. If
-  /// the velocity is the solution of a system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve.
+  /// Returns the error v - u of a velocity u at x, multiplied by an operator B that depends on x and that `correction` and `missed_of` account for
+  /// (the defect of u). If the velocity is the solution of a system B v = w, the defect is w - B u, which takes one sum over the surface and no
+  /// linear solve.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
-  /// Returns whether evaluating a velocity takes a linear solve that evaluating its defect does not take.
+  /// Returns whether evaluating the velocity takes a linear solve that evaluating the defect of a given velocity does not take.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Solves as `solve` does for r = shift (v - u), given the defect of u.
+  /// Returns what `solve` returns for r = shift (v - u), given the defect of the velocity u instead of v.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns `missed` for delta, given the change that delta caused in the defect of (x - c)/shift, where c is any constant net.
+  /// Returns missed(dv, delta) from defects instead of velocities. `change`: change that delta caused in the defect of the velocity (x - c)/shift
+  /// with any constant net c.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
@@ -67,8 +70,8 @@ class Dynamics {
   /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. Not finite if the iteration fails.
   virtual void restore_volume(Net& x) = 0;
 
-  /// Improves the initial guess y of a stage with this shift by means of the shape `before` the stage: a membrane that nearly conserves area keeps
-  /// its tensions.
+  /// Improves the initial guess y of a stage with this shift so that a membrane that nearly conserves area has the tensions that it had in the shape
+  /// `before` the stage.
   virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
   /// Returns fields that move points along surfaces without changing the shape: rotations of the mesh of each drop whose mesh slides.

@@ -47,7 +47,7 @@ const std::vector<Net>& Evaluation::load_sums() {
 
 const Net& Evaluation::load() {
   if (load_.size() == 0) {
-    if (!system_->rigid_.empty() || system_->viscous()) solve();  // the load depends on the solution of the velocity system
+    if (!system_->rigid_.empty() || system_->viscous()) solve();  // because the load depends on the solution of the velocity system
     else load_ = system_->membrane_load(*this, x_, nullptr);
   }
   return load_;
@@ -100,8 +100,8 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   } else {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
-    moment = of_particle.transpose() * own(x_);  // int df x dG with x = sum N_A x_A
-    if (!particle.loads.empty() || system.pressed())  // shifts the moment to the centroid
+    moment = of_particle.transpose() * own(x_);  // first moment int df x dG of the load, with x = sum N_A x_A
+    if (!particle.loads.empty() || system.pressed())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0 && !system.tractions_) {

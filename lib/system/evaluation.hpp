@@ -14,9 +14,9 @@ namespace tanktread::coupling {
 class Capsule;
 
 /// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). Capsule::evaluate returns an evaluation with all of them. An
-/// evaluation constructed from a shape and its velocity computes the other quantities at their first use, and solves for the unknowns only if they do
-/// not follow from the velocity. Computed results are kept. Nets have one row per control point of all particles. The Capsule must outlive this
-/// object. Calls are collective.
+/// evaluation constructed from a shape and its velocity computes the other quantities at their first use, and solves the linear system for the
+/// unknowns only if these do not follow from the velocity. Computed results are kept. Nets have one row per control point of all particles. The
+/// Capsule must outlive this object. Calls are collective.
 class Evaluation {
  public:
   /// `velocity`: velocity of the control points if it is already known, for example from the equations of an implicit step; no rows if unknown.
@@ -44,7 +44,7 @@ class Evaluation {
   /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG. Batchelor 1970; Pozrikidis 1992, section 5.1.
   Mat3 stresslet(std::size_t p = 0);
 
-  /// Returns v.C v of particle p, the power that the viscosity (3.10) of its membrane or interface dissipates.
+  /// Returns the power v.C v that the viscosity (3.10) of the membrane or interface of particle p dissipates.
   double membrane_dissipation(std::size_t p = 0);
 
   /// Returns the energy that the membrane of particle p stores through its loads, without elasticity and bending.
@@ -52,7 +52,7 @@ class Evaluation {
 
  private:
   friend class Capsule;
-  const Net& moving();  // fluid velocity at exactly this shape
+  const Net& moving();  // fluid velocity solved at this shape, never taken from `near_`
   const Net& viscous_work();
 
   Capsule* system_;
@@ -60,7 +60,7 @@ class Evaluation {
   std::shared_ptr<Evaluation> near_;
   bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
   Net velocity_, fluid_;  // fluid_: no rows if no control point slides
-  Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w for rigid bodies
+  Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
   Net work_, load_, viscous_work_;  // no rows until first used
   std::vector<Net> load_sums_;
   std::optional<Tube::Response> response_;

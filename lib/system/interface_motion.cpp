@@ -47,7 +47,7 @@ InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial,
   }
 }
 
-/// At a pole without an element normal, the normals of the adjacent elements close to the pole are averaged.
+/// Returns the normal at a site. At a pole, where no element has a normal, averages the normals of the adjacent elements close to the pole.
 Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const spline::Site> sites) {
   const surface::Point p = surface::point(space, x, sites.front());
   if (p.jacobian > 1e-9 * std::max(p.a1.squaredNorm(), p.a2.squaredNorm())) return p.n;
@@ -64,7 +64,7 @@ Net along_interface(const Net& normals, Net field) {
   return field;
 }
 
-/// Returns the change of n n.field for a change n' of the normals.
+/// Returns the change of the normal part n n.field of a field due to the change `change` of the normals n.
 Net turned(const Net& normals, const Net& change, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
@@ -73,13 +73,13 @@ Net turned(const Net& normals, const Net& change, Net field) {
   return field;
 }
 
-/// Returns the mean velocity U (6.4) from b = dV/dx, where 3 V = b.x. Exact if the velocity is uniform.
+/// Returns the mean velocity U (6.4) of a drop from v at its control points and b = dV/dx. Exact if the velocity is uniform.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();
 }
 
-/// Returns half the vorticity of v, averaged over the interior, from b = dV/dx. Exact for a rigid rotation.
+/// Returns half the vorticity of v, averaged over the interior, from v at the control points and b = dV/dx. Exact for a rigid rotation.
 Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
   const Mat3 volume = b.transpose() * from_mean, flux = b.transpose() * (v.rowwise() - v.colwise().mean());
   const Mat3 gradient = volume.partialPivLu().solve(flux).transpose();
@@ -89,10 +89,10 @@ Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
 /// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
-/// Returns Omega_s (4.14) of a velocity u at the sites y. |b| is used as the area weight of a site.
+/// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. |b| is used as the area weight of a site.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
   constexpr double hold = 1e-3;  // regularisation: if the shape deviates from a sphere by less than 3 %, the mesh rotates with the fluid, because
-                                 // noise would dominate Omega_s
+                                 // noise would dominate Omega_s on a sphere
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;
@@ -107,7 +107,8 @@ Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net
   return moments.ldlt().solve(across);
 }
 
-/// Control points x of a drop, b = dV/dx and fluid velocity v there; positions, normals and velocities at its sites.
+/// State of a drop: at its control points the positions x, b = dV/dx and the fluid velocity v; at its collocation sites the positions, normals and
+/// velocities.
 struct Moving {
   Net x, b, v;
   Net places, normals, velocities;
@@ -136,13 +137,13 @@ Net InterfaceMotion::normals_at(const Net& x) const {
   });
 }
 
-/// Sets w at the rank-owned collocation sites from the density f.
+/// Sets the relaxation velocity w (4.6) at the rank-owned collocation sites from the density f of the mesh's elastic force.
 void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
   for (const Drop& drop : drops_) {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, to which A0 refers
+    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, in which its single layer A0 is given
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();

@@ -63,8 +63,8 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices of the projection's sites on this drop
-    stokes::Rows<double> layer;   // rows of A0 of `points`, in double precision, so that the mesh motion does not depend on units or axes
+    std::vector<int> places;      // indices, among the projection's sites, of the sites on this drop
+    stokes::Rows<double> layer;   // rows `points` of A0 (4.6), in double precision so that the mesh motion does not depend on units or axes
   };
   void slide(const Net& x, const Net& f, Net& w) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
@@ -82,10 +82,10 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // rest: v - W - w at the sites where u is evaluated; density: M0^{-1} dE1/dx at the collocation sites
+    Net x, rest, density;  // rest: v - W - w of (4.6) at the sites where u is evaluated; density: M0^{-1} dE1/dx at the collocation sites
   };
   Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
-  Net x_, flux_, normals_;  // values where the system was linearised
+  Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 
 }  // namespace tanktread::coupling

@@ -61,7 +61,7 @@ std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
 
 namespace {
 
-/// Adds the work computed by `add` to the rows of a particle.
+/// Adds the virtual work that the function `add` computes to a particle's rows.
 template <class Add>
 void add_rows(const spline::Block& block, Net& work, const Add& add) {
   Net own = Net::Zero(block.n_points, 3);

@@ -30,7 +30,7 @@ struct Particle {
   double viscosity_ratio = 1;                 ///< lambda, viscosity of the inner fluid divided by mu
   double radius = 1;                          ///< R_C, radius of the sphere of equal volume
   membrane::Material material;
-  stokes::Measure measure = stokes::Measure::reference;  ///< measure of its weak load: (3.7) or (3.6); not used for a rigid body
+  stokes::Measure measure = stokes::Measure::reference;  ///< area of its load: unstressed (3.7) or current (3.6); not for a rigid body
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
   std::optional<double> kept_volume;  ///< volume V0 to be kept, if it is not the volume of the initial net, for example after a change of mesh
@@ -42,16 +42,16 @@ struct Particle {
   bool slides() const { return interface_motion != "material"; }
 };
 
-/// Sets the blocks of particles that are stacked in their order.
+/// Sets the block of each particle: its rows in nets that stack all particles in this order.
 void place(std::span<Particle> particles);
 
 /// Returns the materials of all elements, each distinct material once.
 membrane::Materials materials(std::span<const Particle> particles);
 
-/// Returns the common measure of the loads of all particles, or by_element if the measures differ.
+/// Returns the area to which the loads of all particles refer, or by_element if particles differ.
 stokes::Measure measure(std::span<const Particle> particles);
 
-/// Returns, for each element, whether its load is per current area.
+/// Returns, for each element, whether its load is per current area rather than per unstressed area.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
 /// Returns the net whose area defines the loads, force per area. The rows of a particle are rows of `x` or `unstressed`, depending on its measure.
@@ -66,9 +66,10 @@ Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particle
 /// Returns the viscosity contrast of each element of all particles; empty if all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
 
-/// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). The caller sums the
-/// results of the local functions over ranks and symmetry images. Several loads of one particle have consecutive sum nets; loads of different
-/// particles share sum nets. Uses no MPI.
+/// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). A load that depends
+/// on integrals over the whole surface (such as the area) returns the part of this rank in nets (sum nets), which the caller sums over ranks and
+/// symmetry images and passes back. Several loads of one particle use consecutive sum nets; loads of different particles use different rows of the
+/// same sum nets. Uses no MPI.
 class Loads {
  public:
   Loads() = default;
@@ -78,7 +79,7 @@ class Loads {
   bool empty() const { return all_.empty(); }
   std::size_t n_sums() const { return n_sums_; }
 
-  /// Adds the local part of dE/dx and returns the sums, which the caller must complete.
+  /// Adds the local part of dE/dx. Returns this rank's part of the surface integrals that the loads need, which the caller must sum over all ranks.
   std::vector<Net> add_work(const Net& x, Net& work) const;
   void add_global_work(const Net& x, const std::vector<Net>& sums, Net& work) const;
 

@@ -11,11 +11,11 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the rule of two Gauss points per direction. Between collocation sites the error of the velocity varies like the square of a parabola. The
-/// midpoint rule would overestimate its mean by a factor of about two.
+/// Returns the rule of two Gauss points per direction. Between collocation sites the error of the velocity varies like the square of a parabola,
+/// whose mean the midpoint rule would overestimate by a factor of about two.
 const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
 
-/// Returns the points of this rule on all elements, in the order of the elements.
+/// Returns the 2 x 2 Gauss points of all elements, in the order of the elements.
 stokes::Sites places(const spline::Space& space) {
   stokes::Sites sites;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)
@@ -99,7 +99,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
 }
 
 /// Returns int (Df - p n).r over all particles by Gauss quadrature, where r is `left` and p is the mean of Df.n over each particle. p is subtracted
-/// because a uniform pressure does no work, so that the quadrature error of its layer does not count.
+/// because a uniform pressure does no work, so that the quadrature error of its single layer does not enter.
 double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;

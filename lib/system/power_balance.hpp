@@ -17,7 +17,7 @@ namespace tanktread::coupling {
 
 /// Powers of all particles at one time, force x velocity.
 struct Powers {
-  double flow = 0;         ///< input of the ambient flow, without the power that the fluid would take without particles (6.11)
+  double flow = 0;         ///< input of the ambient flow in excess of its input without particles (6.11)
   double forces = 0;       ///< input of weights, forces on membranes and bodies, and contacts
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes

@@ -31,8 +31,8 @@ class Session {
 };
 
 /// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
-/// points, and `replicate` distributes them to all ranks by a Tpetra import. The far sums by clusters are the only ones that are summed over ranks
-/// (`share` of the layers); they depend on the number of ranks by round-off.
+/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only far sums by clusters are divided by their terms and summed over
+/// ranks (`share` of the layers); they therefore depend on the number of ranks by round-off.
 class Ranks {
  public:
   Ranks();
@@ -106,11 +106,11 @@ class Ranks {
   /// Returns the rank that processes item k of n consecutive items of equal cost.
   int owner(int k, int n) const { return k * size() / n; }
 
-  /// Sums nets over all ranks in place. Only rows of fundamental points are summed; the images follow. A sum of one value and zeros is exact.
-  /// Collective.
+  /// Sums nets over all ranks in place. Only rows of fundamental points are summed; the rows of their images are set from them. If all ranks but one
+  /// add zero, the result is exact. Collective.
   void add(std::span<Net* const> nets) const;
 
-  /// Sums values over all ranks in place. A sum of one value and zeros is exact. Collective.
+  /// Sums values over all ranks in place. If all ranks but one add zero, the result is exact. Collective.
   void add(std::span<double> numbers) const;
 
   /// Returns the items, out of n consecutive ones, that this rank processes, in ascending order; see owner.

@@ -59,7 +59,7 @@ void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
   }
 }
 
-/// Adds the tangential directions at a site that the parity permits.
+/// Adds coordinates for the tangential directions at a site that the parity of the fields permits.
 void ShapeCoordinates::add_along(int site, const Vec3& normal) {
   const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
   const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
@@ -79,7 +79,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   for (Eigen::Index k = 0; k < shape_size(); ++k)
     drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // rotations of the mesh are held fixed as in (4.17)
+  for (const Net& field : dynamics.relabellings(x)) {  // rotations of the mesh are excluded, as in (4.17)
     if (!admits(field)) continue;
     const Eigen::VectorXd turn = coordinates_along(field).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
@@ -92,7 +92,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   following_ = Eigen::Map<const Eigen::MatrixXd>(first.data(), n, shape_size());
 }
 
-/// Makes translations of a drop exact, including their tangential parts.
+/// Adds the translations of a drop, so that they are represented exactly, including their tangential parts.
 void ShapeCoordinates::carry_whole(const spline::Block& block) {
   for (int c = 0; c < 3; ++c) {
     Net field = Net::Zero(sites_.rows(), 3);
@@ -141,7 +141,7 @@ Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the coordinates y and without tangential or translation parts.
+/// Returns the field with the coordinates y, without the tangential motion that following meshes and translations of drops add to it.
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
@@ -160,7 +160,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the tangential coordinates t whose coordinates y are 0.
+/// Returns the field with the tangential coordinates t whose coordinates y across the interface are 0.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

@@ -27,8 +27,8 @@ namespace tanktread::coupling {
 /// projected (VelocityProjection), y contains the control values of a scalar field instead, the best fit to n.d. Otherwise y would be affected by
 /// tangential mesh motion, to fourth order in the element size.
 ///
-/// After `follow` has been called, a mesh that relaxes by itself moves tangentially with such a displacement so that it remains at rest on the
-/// displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
+/// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
+/// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
@@ -57,8 +57,8 @@ class ShapeCoordinates {
   Eigen::Index n_points() const { return sites_.rows(); }
   Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates, or the change of a state
   Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of the field with these control values, or of the change of a state
-  bool admits(const Net& field) const;                  ///< true if the field nearly has the symmetry of the coordinates
-  Net admitted(Net field) const;                        ///< field with the symmetry of the coordinates, equal at fundamental points
+  bool admits(const Net& field) const;                  ///< true if the field has, up to small errors, the symmetry of the coordinates
+  Net admitted(Net field) const;                        ///< the symmetric field that equals `field` at fundamental points
 
  private:
   struct Coordinate {
@@ -68,7 +68,7 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // displacement with these coordinates; `field` minus its part in the coordinates across the interface
+    Net field, rest;              // displacement with these coordinates; its part that across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;
@@ -83,7 +83,7 @@ class ShapeCoordinates {
   std::vector<Coordinate> all_;
   std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; their coordinates come last
   std::vector<Coordinate> along_;  // tangential coordinates t of drops
-  Eigen::MatrixXd following_;      // maps y to the tangential coordinates t of a mesh that follows; empty if no mesh follows
+  Eigen::MatrixXd following_;      // maps y to the tangential coordinates t of meshes that follow (4.26); empty if no mesh follows
   std::vector<Translation> translations_;  // translations of drops
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;

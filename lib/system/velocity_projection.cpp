@@ -14,7 +14,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the tensor rule whose points are the zeros of B4 on an element.
+/// Returns the tensor rule whose points are the zeros of the Bernoulli polynomial B4 on an element.
 quadrature::TensorRule at_zeros() {
   const double from_end = 0.5 - std::sqrt(0.25 - 1 / std::sqrt(30.));  // t (1 - t) = 1/sqrt(30)
   const quadrature::GaussRule rule{Eigen::Vector2d(from_end, 1 - from_end), Eigen::Vector2d(0.5, 0.5)};

@@ -21,8 +21,8 @@ namespace tanktread::coupling {
 /// N(q) are the values of the basis functions at q, and w_q is the part of the unstressed area that belongs to q. The cubic spline that fits a smooth
 /// u best has the error h^4 B4(t)/24 times the fourth derivative of u. Here h is the length of an element, t in [0, 1] is the position on the
 /// element, and B4 = t^4 - 2 t^3 + t^2 - 1/30 is a Bernoulli polynomial. Collocation at the knots has an error proportional to B4(t) + 1/30. The mean
-/// of this error is not 0, so it affects the load of the next shape, the volume and the layers at distant points. The points q are the zeros of B4,
-/// two per parametric direction, because the best fit has no error there.
+/// of the collocation error is not 0, so it affects the load of the next shape, the volume and the layers at distant points. The points q are the
+/// zeros of B4, two per parametric direction, because the error of the best fit vanishes there.
 class VelocityProjection {
  public:
   /// If the scene is symmetric, velocities are evaluated in the fundamental part only.
@@ -39,7 +39,7 @@ class VelocityProjection {
 
  private:
   surface::Symmetry symmetry_;
-  bool folded_ = false;  // true if the sites lie on fundamental elements only, so that sums must be folded
+  bool folded_ = false;  // true if the sites lie on fundamental elements only, so that sums must be folded onto fundamental points
   stokes::Sites sites_;
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // N_A and its derivatives, shape (sites, N); w_q N_A, shape (N, sites)

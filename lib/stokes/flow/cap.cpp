@@ -16,7 +16,7 @@ using surface::Vec2;
 
 constexpr int close_order = 16;
 
-/// Points closer to the plane of the cap than this, in half lengths of the longest piece, get adaptive rules.
+/// Distance from the plane of the cap, divided by half the length of the longest curve segment of the outline, below which points get adaptive rules.
 constexpr double close_by = 4;
 
 std::vector<double> breaks(const surface::Outline& outline, int side) {
@@ -24,10 +24,10 @@ std::vector<double> breaks(const surface::Outline& outline, int side) {
   return outline.knots(side, 32);
 }
 
-/// Returns the outward normal times dl/du.
+/// Returns the outward normal of the outline times dl/du, l the arc length and u the parameter.
 Vec2 weighted_normal(const surface::PlaneJet& at) { return {at.d[1], -at.d[0]}; }
 
-/// Returns the two integrands rho.nu / r and nu / r.
+/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per du.
 Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   const Vec2 rho = at.x - p, nu = weighted_normal(at);
   const double r = std::sqrt(rho.squaredNorm() + h * h);
@@ -35,14 +35,14 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// Returns the integrand r nu of own_flow().
+/// Returns the integrand r nu (distance times normal) of own_flow(), per du.
 Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
   return {0, nu[0], nu[1]};
 }
 
-/// Returns the integral of f over a part of one side, begin <= u <= end, for a point at p in the plane and at the height h above it. The part is
-/// bisected until each piece is no longer than its distance from the point or than `smallest`.
+/// Returns the integral of f over the part begin <= u <= end of one side of the outline, for a point at the position p in the plane and at the height
+/// h above the plane. The part is bisected until each interval is no longer than its distance from the point or than `smallest`.
 template <class Integrand>
 Vec3 stretch(const Integrand& f, const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h,
              double smallest) {
@@ -146,7 +146,7 @@ Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   return 6 * over_8_pi * (m * n);
 }
 
-/// Uses int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'.
+/// Computes the double integral of G over the cap by int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'.
 double Cap::own_flow() const {
   const Nodes n = nodes(6);
   double sum = 0;

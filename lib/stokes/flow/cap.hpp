@@ -12,8 +12,8 @@ namespace tanktread::stokes {
 ///
 ///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
 ///
-/// by its closed line integral over the outline, exact for any section. With rho = (x - x0) in the plane, the outward normal nu of the outline in the
-/// plane, h = place - x0_1 and r^2 = rho^2 + h^2,
+/// Computes c by a line integral over the outline, which is exact for any section. With rho = (x - x0) in the plane, the outward normal nu of the
+/// outline in the plane, h = place - x0_1 and r^2 = rho^2 + h^2,
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
 ///
@@ -31,8 +31,8 @@ class Cap {
   /// Returns c at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
-  /// Returns the flow rate along x1 through the cap due to the double layer of one point, for each component j of its strength: int (1 / 8 pi)
-  /// T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
+  /// Returns the flow rate along x1 through the cap due to a point source of a double layer at y with normal n, for each component j of its strength:
+  /// int (1 / 8 pi) T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
   /// Returns the flow rate through the cap due to c itself: int c_1 dS.
@@ -46,8 +46,8 @@ class Cap {
   const Nodes& nodes_for(double distance) const;
 
   surface::Outline outline_;
-  double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest piece
-  std::vector<std::pair<double, Nodes>> rules_;  ///< smallest distance from the plane for which the nodes are used; nodes
+  double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest curve segment of the outline
+  std::vector<std::pair<double, Nodes>> rules_;  ///< pairs: smallest distance from the plane at which the nodes are used; the nodes
 };
 
 }  // namespace tanktread::stokes

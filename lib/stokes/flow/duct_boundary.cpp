@@ -21,8 +21,8 @@ using Crowding = OutlineSpace::Crowding;
 
 constexpr double right_angle = std::numbers::pi / 2;
 
-/// Returns the exponent p or r of a side at a corner. At a corner of angle a the density behaves like s^(pi/a - 1), and like s log s at a right
-/// angle.
+/// Returns the grading exponent (p or r of OutlineSpace) for a corner with this angle. At the distance s from a corner of angle a the density behaves
+/// like s^(pi/a - 1), and like s log s at a right angle.
 double exponent(double angle) { return angle < 1.05 * right_angle ? 2 : 3; }
 
 double crowded(const Crowding& c, double t) {
@@ -35,14 +35,14 @@ double crowded_slope(const Crowding& c, double t) {
   return std::pow(t, c.first - 1) * std::pow(1 - t, c.last - 1) * (c.first * (1 - t) + c.last * t) / ((a + b) * (a + b));
 }
 
-/// Inverts w by bisection; w is increasing.
+/// Returns t with w(t) = w, where w(t) is the increasing grading function of OutlineSpace, by bisection.
 double uncrowded(const Crowding& c, double w) {
   double low = 0, high = 1;
   for (int k = 0; k < 60; ++k) (crowded(c, (low + high) / 2) < w ? low : high) = (low + high) / 2;
   return (low + high) / 2;
 }
 
-/// Returns the knots of the outline's spline, as values of t.
+/// Returns the knots of the outline's own spline on this side, as values of the parameter t of OutlineSpace.
 std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) {
   const auto [first, last] = surface::range(side);
   const bool open = !surface::closed(side);
@@ -56,8 +56,8 @@ std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) 
   return out;
 }
 
-/// Returns the number of elements of each side, at least two, proportional to the square root of its length, because all of a short side is near a
-/// corner.
+/// Returns the number of elements of each side, at least two, proportional to the square root of its length, because a short side, all of which is
+/// near a corner, needs more elements per length.
 std::vector<int> shares(const Outline& outline, int elements) {
   if (outline.smooth()) return {elements};
   double total = 0;
@@ -68,7 +68,8 @@ std::vector<int> shares(const Outline& outline, int elements) {
   return out;
 }
 
-/// Returns the knots with every interval divided evenly into pieces of about (last - first)/elements, at most 1.25 times as long.
+/// Returns the knots with every interval divided evenly into elements of about the length (last knot - first knot)/elements, and at most 1.25 times
+/// this length.
 std::vector<double> divided(const std::vector<double>& knots, int elements) {
   const double most = 1.25 * (knots.back() - knots.front()) / elements;
   std::vector<double> out;
@@ -91,7 +92,7 @@ OutlineSpace::OutlineSpace(const Outline& outline, int elements) : outline_(outl
   }
 }
 
-/// `knots`: the eight knots around the element, which lies between the fourth and the fifth.
+/// Adds an element. `knots`: the eight knots around the element, which lies between the fourth and the fifth knot.
 void OutlineSpace::add_element(int side, double begin, double end, const std::array<int, 4>& functions,
                                const std::array<double, 8>& knots) {
   OutlineElement element{side, begin, end, functions, {}};
@@ -149,7 +150,7 @@ surface::PlaneJet OutlineSpace::at(int side, double t) const {
 namespace {
 
 constexpr int points = 8, points_far = 10,
-              points_log = 16;  // Gauss points: per element for (2.17); for (2.15) at a distance; for (2.15) with a logarithm
+              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for the logarithm
 constexpr int sweeps = 2;
 using std::numbers::pi;
 using surface::PlaneJet;
@@ -173,7 +174,7 @@ class Row {
   void element(const OutlineElement& e) {
     e_ = &e;
     weight_.setZero();
-    double t = site_.t;  // on a closed side the last knot coincides with the first
+    double t = site_.t;  // a target at the first knot of a closed side is also at its last knot, see below
     if (site_.side == e.side && t < e.begin && surface::closed(space_.outline().side(e.side))) {
       const auto [first, last] = surface::range(space_.outline().side(e.side));
       t += last - first;
@@ -208,7 +209,7 @@ class Row {
     }
   }
 
-  /// Bisects the interval until the target is at least an interval length away.
+  /// Integrates over a <= t <= b. Bisects the interval until its distance from the target is at least its length.
   void panel(double a, double b, int depth) {
     const double middle = (a + b) / 2;
     const Vec2 xa = space_.at(e_->side, a).x, xm = space_.at(e_->side, middle).x, xb = space_.at(e_->side, b).x;
@@ -255,16 +256,16 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
     matrix(i, n) = 1;
     right[i] = row.right();
   }
-  for (const OutlineElement& e : space.elements())  // the integral of a Bernstein polynomial is a quarter of the element
+  for (const OutlineElement& e : space.elements())  // the integral of each Bernstein polynomial is a quarter of the element's length
     for (int a = 0; a < 4; ++a) matrix(n, e.functions[static_cast<std::size_t>(a)]) += (e.end - e.begin) * e.bernstein.row(a).sum() / 4;
   return matrix.partialPivLu().solve(right).head(n);
 }
 
-/// Adds the nodes of (2.17), and returns q dl at the nodes.
+/// Adds the nodes of (2.17), and returns the flux q times the length dl of each node.
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // value at the start of the element
+  double psi = 0;  // psi (2.16) at the start of the current element
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;
@@ -288,8 +289,8 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
   return flux;
 }
 
-/// Improves psi between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0, evaluated by the sum over the nodes,
-/// with v_c unchanged:
+/// Improves psi of (2.17) between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0, evaluated by the sum over the
+/// nodes, with v_c unchanged:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
 /// The coefficients of psi in this sum are smooth, so that the error of the spline, which alternates in sign from knot to knot, averages out.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {

@@ -10,7 +10,7 @@
 
 namespace tanktread::stokes {
 
-/// One element of the outline: side, range of the parameter t, and its four basis functions,
+/// One element of the outline: the side that contains it, its range of the parameter t, and its four basis functions,
 ///   N_a(t) = sum_i bernstein(a, i) B_i((t - begin)/(end - begin)).
 struct OutlineElement {
   int side;

@@ -9,8 +9,8 @@
 
 namespace tanktread::stokes {
 
-/// Velocity in the fluid due to a plane end of a channel, through which the duct flow u(y2, y3) passes in the direction `along`, except for the
-/// contribution of its pressure:
+/// Velocity in the fluid due to a plane end of a channel, through which the duct flow u(y2, y3) passes in the direction `along`, without the
+/// contribution of the pressure at the end:
 ///
 ///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
 ///
@@ -35,7 +35,8 @@ class DuctEnd {
   const DuctFlow& flow() const { return flow_; }
 
  private:
-  /// Part of the section: rays to side k for u = t[0] .. t[1], over the fractions r[0] .. r[1] of their length.
+  /// Part of the section: the rays from the centroid to the points t[0] .. t[1] (curve parameter) of one side, over the fractions r[0] .. r[1] of
+  /// their length.
   struct Cell {
     int side;
     double t[2], r[2];

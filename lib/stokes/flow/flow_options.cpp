@@ -52,7 +52,7 @@ void FlowOptions::declare(deck::Section& section) {
   }
 }
 
-/// Reads the section of a registered type, and rejects sections of other registered types.
+/// Reads the section `Flow/<type>` of the chosen registered type, and rejects the sections of all other registered types.
 void FlowOptions::declare_registered(deck::Section& section) {
   user.reset();
   for (const std::string& name : registered->names()) {

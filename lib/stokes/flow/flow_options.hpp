@@ -21,7 +21,7 @@ struct FlowOptions {
   std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
   std::optional<Vec3> velocity;          ///< set for `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
-  std::optional<double> mean_velocity;   ///< v_m = Q/(area of the section); set for `duct`
+  std::optional<double> mean_velocity;   ///< mean velocity, flow rate/(area of the section); set for `duct`
   std::string held = "flow rate";        ///< quantity of `duct` that is held constant when particles disturb the flow: flow rate, pressure drop
   std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
@@ -39,8 +39,8 @@ struct FlowOptions {
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
   /// Returns the rate in Ca: the shear rate, the largest singular value of the gradient for `linear`, or the maximum velocity over the half width for
-  /// `parabolic`. It is 0 for a flow without gradient, and for a duct, for which the speed is used instead. For a flow that changes in time it refers
-  /// to amplitude 1. Units 1/time.
+  /// `parabolic`. It is 0 for a flow without gradient, and for a duct, for which the speed is used instead. For a flow that changes in time the rate
+  /// refers to amplitude 1. Units 1/time.
   double rate() const;
 
   /// Returns the velocity in Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.

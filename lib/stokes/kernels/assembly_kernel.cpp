@@ -6,7 +6,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// Computes the entries c of the kernel for node k and target l: g[block (6 k + c) + l].
+// Computes the six entries c of the kernel G, or T n if Double, for each node k and target l: g[block (6 k + c) + l].
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
@@ -42,7 +42,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Four functions and six kernel entries at a time: 24 packs of sums in registers, if there are as many registers.
+// Adds the moments for four basis functions and six kernel entries at a time: 24 packs of sums, which stay in registers if there are that many.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
   using Several = typename RegisterOf<Real>::Type;

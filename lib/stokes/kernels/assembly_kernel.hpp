@@ -6,7 +6,7 @@
 namespace tanktread::stokes {
 
 constexpr int assembly_block = 16;  ///< number of targets that are processed together in one pass
-constexpr int assembly_tile = 4;    ///< basis functions are padded to a multiple of this
+constexpr int assembly_tile = 4;    ///< the number of basis functions is padded to a multiple of this number
 
 /// One panel with its far nodes: positions, weights (area included) or normals times area, basis values basis[n_nodes A + k] for
 /// A = 0 .. functions - 1, and the row of `sums` to which each function adds.
@@ -20,9 +20,9 @@ struct PanelNodes {
   const int* rows = nullptr;
 };
 
-/// Adds sums[block (6 rows[A] + c) + l] += sum_k G_c(x_k, x0_l) N_A(x_k) w_k for the targets l whose bit in `skip` is not set; c = 11, 12, 13, 22,
-/// 23, 33 (2.1). If normals are given, T_ijk n_k replaces G. Target l has the coordinates target[l], target[block + l], target[2 block + l], where
-/// block = 16. Differences are computed in double precision. `scratch`: 6 n_nodes blocks.
+/// Adds sums[block (6 rows[A] + c) + l] += sum_k G_c(x_k, x0_l) N_A(x_k) w_k for each target l unless bit l of `skip` is set; c = 11, 12, 13, 22, 23,
+/// 33 (2.1). If normals are given, T_ijk n_k replaces G. Target l has the coordinates target[l], target[block + l], target[2 block + l], where block
+/// = 16. Differences are computed in double precision. `scratch`: 6 n_nodes blocks.
 void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
 void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
 template <class Real>

@@ -11,7 +11,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-/// Nodes of one direction, and the barycentric weights 1 / prod_{b != a} (x_a - x_b).
+/// Chebyshev nodes in one direction, and their barycentric weights 1 / prod_{b != a} (x_a - x_b).
 struct Nodes {
   double x[most_chebyshev], scale[most_chebyshev];
 };
@@ -50,7 +50,7 @@ void lagrange(int n, const Register& x, Register* value) {
   }
 }
 
-/// Lagrange polynomials of the three directions at a register of points.
+/// Lagrange polynomials of the three directions of a box at as many points as fit into a register.
 struct Basis {
   Register along[3][most_chebyshev];
 
@@ -75,7 +75,7 @@ void spread_components(const ChebyshevBox& box, const Charges& points, Register*
   std::fill_n(scratch, N * box.n_nodes(), Register{});
   Basis basis;
   for (int k = 0; k < points.n; k += lanes) {
-    const int n = points.n - k;  // lanes beyond the last point have zero strength
+    const int n = points.n - k;  // number of points left; lanes beyond the last point get zero strength
     basis.place(box, load_some(points.x + k, n), load_some(points.y + k, n), load_some(points.z + k, n));
     Register q[N];
     for (int d = 0; d < N; ++d) q[d] = load_some(points.q[d] + k, n);

@@ -19,7 +19,7 @@ Number coincident(const Number& x0, const Number& y0, const Number& z0) {
   return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
 }
 
-/// Computes the sums of the targets of one tile.
+/// Computes the sums for the targets of one tile (`tile` packs).
 void tile_sum(const PointForces& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
   for (int p = 0; p < tile; ++p) {
@@ -47,7 +47,7 @@ void tile_sum(const PointForces& forces, const double* target, double* u) {
   }
 }
 
-/// Computes, for each pack of targets with `in` coordinates, the sums over the nodes k of term(k, r, target, 1/|r|, sums).
+/// Computes, for each pack of targets with `in` input values each, the `out` sums over the nodes k of term(k, r, target, 1/|r|, sums).
 template <int in, int out, class Nodes, class Term>
 void sums_of_packs(const Nodes& nodes, const double* target, double* value, const Term& term) {
   for (int p = 0; p < packs; ++p) {

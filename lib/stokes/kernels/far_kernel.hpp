@@ -1,5 +1,5 @@
 #pragma once
-// Direct sums of every node for every target, on plain arrays.
+// Direct sums of the contributions of all nodes at each target, on plain arrays.
 
 #include <array>
 #include <span>
@@ -38,10 +38,11 @@ constexpr int far_block = 16;
 /// (2^-40 of the target's distance from the origin), is skipped.
 void far_sum(const PointForces& forces, const double* target, double* u);
 
-/// Computes this sum for any number of targets; result u[3 k + c].
+/// Computes the far_sum() of point forces for any number of targets k; result u[3 k + c].
 void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
 
-/// Computes this sum for one target x0[3], u[3]. It is subtracted when a better rule replaces these nodes.
+/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. The caller subtracts it from the far sum when a better quadrature
+/// rule replaces these nodes.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
 /// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 for the position, 3, 4, 5 for the velocity v0
@@ -50,10 +51,10 @@ void far_sum(const Stresslets& nodes, const double* target, double* u);
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
 
-/// Compute these sums in single precision. Position differences have a relative error of 1e-7 even for close points, because the part of a position
-/// that single precision drops is stored separately. The terms of `single_run` nodes are summed before they are added to the double-precision sum.
-/// The error is 3e-8 of the sum of the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the
-/// other targets.
+/// Number of terms that are summed in single precision. The functions below compute far_sum() with terms in single precision. Position differences
+/// have a relative error of 1e-7 even for close points, because the part of a position that single precision drops is stored separately. The terms of
+/// `single_run` consecutive nodes are summed in single precision; this sum is then added to the double-precision sum. The error is 3e-8 of the sum of
+/// the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the other targets.
 constexpr int single_run = 64;
 void far_sum_in_single(const PointForces& forces, const double* target, double* u);
 void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
@@ -71,7 +72,7 @@ struct Charges {
   }
 };
 
-/// Kernels for TreeSum: `in` components per source, `out` components per target, and the sum for far_block targets with the layout of far_sum();
+/// Kernels for TreeSum: sums at far_block targets of sources with several components. Targets have the layout of far_sum(); results are
 /// value[far_block c + l].
 void stokeslet_sum(const Charges& points, const double* target, double* value);
 void stresslet_sum(const Charges& points, const double* target, double* value);
@@ -80,21 +81,21 @@ void stokeslet_sum_in_single(const Charges& points, const double* target, double
 void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
 using KernelSum = void (*)(const Charges& points, const double* target, double* value);
 
-/// Computes one of these sums with three components per target for any number of targets; result u[3 k + c].
+/// Computes a sum `kernel` that has three components per target, for any number of targets k; result u[3 k + c].
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
 
-struct StokesletKernel {  ///< maps forces f to G f
+struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to G f
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
 /// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-struct StressletKernel {  ///< maps (S_jk + S_kj)/2, in this order, to T_ijk S_jk
+struct StressletKernel {  ///< maps (S_jk + S_kj)/2, components ordered as in `stresses`, to T_ijk S_jk
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
-struct NormalStressKernel {  ///< maps n_k to T_ijk n_k, ij in this order
+struct NormalStressKernel {  ///< maps n_k to T_ijk n_k, components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
   static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // evaluated only once per shape
 };

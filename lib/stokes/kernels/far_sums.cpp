@@ -6,7 +6,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Number of nodes that are summed for all targets before the next nodes are loaded into the cache: 48 or 72 bytes each.
+/// Number of nodes, of 48 or 72 bytes each, that fit into the cache and are summed for all targets before the next nodes are loaded.
 constexpr int nodes_in_cache = 4096;
 
 /// Computes u[3 k + c] of target k by sum(nodes, block, sums). The target has the coordinates given[0][k] and, if Vectors is 2, the additional vector

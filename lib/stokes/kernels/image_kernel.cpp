@@ -9,7 +9,7 @@ namespace {
 
 constexpr int packs = far_block / lanes;
 
-/// Coefficients of G^I for a register of pairs.
+/// Coefficients of the image Stokeslet G^I (2.35) for a register of pairs of node and target.
 struct ImageOfForce {
   Register z, i, i3, h, c, isotropic, dyadic, normal;
 
@@ -22,7 +22,7 @@ struct ImageOfForce {
     normal = c * (i3 - 6 * h * r[2] * i5);
   }
 
-  /// Adds G^I f, where f consists of registers or numbers.
+  /// Adds G^I f (2.35) to u. The components of f are registers or numbers.
   template <class Number>
   void add(const Register (&r)[3], const Number& fx, const Number& fy, const Number& fz, Register (&u)[3]) const {
     const Register along = r[0] * fx + r[1] * fy + r[2] * fz, push = c * i3 * fz, of_r = along * dyadic - push;
@@ -32,7 +32,7 @@ struct ImageOfForce {
   }
 };
 
-/// Coefficients of T^I for a register of pairs.
+/// Coefficients of the image stresslet T^I (2.36) for a register of pairs of node and target.
 struct ImageOfStress {
   Register z, i5, i7, h;
 
@@ -41,7 +41,7 @@ struct ImageOfStress {
     i5 = i2 * i2 * i, i7 = i5 * i2;
   }
 
-  /// Adds T^I S, where Sr = S r and trace = tr S.
+  /// Adds T^I S (2.36) to u, where sr = S r and trace = tr S.
   void add(const Register (&r)[3], const Register (&sr)[3], const Register& trace, Register (&u)[3]) const {
     const Register form = r[0] * sr[0] + r[1] * sr[1] + r[2] * sr[2];
     const Register of_r = 6 * form * i5 - 60 * z * h * form * i7 - 12 * trace * z * z * i5, of_sr = 24 * z * h * i5;
@@ -115,7 +115,7 @@ struct Sums {
     project<Degree, 9>(table, g, moment);
   }
 
-  /// Adds T^I S for S = (w n + n w)/2 times the weight; `height` is r.n times the weight.
+  /// Adds T^I S (2.36) for S = (w n + n w)/2 times the quadrature weight `weight`; `height` is r.n times this weight.
   static void add(const ImageOfStress& image, const Register (&r)[3], const Register (&w)[3], const Register (&n)[3], const Register& height,
                   const Register& weight, Register (&u)[3]) {
     const Register along = weight * (r[0] * w[0] + r[1] * w[1] + r[2] * w[2]);
@@ -125,8 +125,8 @@ struct Sums {
   }
 };
 
-/// Computes sums over the points for a block of targets. `add` adds the contribution of point k, at r from the target; z0 is the height of the real
-/// target.
+/// Computes sums over the points for a block of targets. `add` adds the contribution of point k, at the position r relative to the mirrored target;
+/// z0 is the height of the target itself above the wall.
 template <class Add>
 void image_sum(const Charges& points, const double* target, double* value, const Add& add) {
   for (int p = 0; p < packs; ++p) {

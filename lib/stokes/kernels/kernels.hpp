@@ -6,7 +6,7 @@
 
 namespace tanktread::stokes {
 
-/// Factor of the integrals of both kernels.
+/// Factor 1/(8 pi) of the single-layer and double-layer integrals (2.1), (2.2).
 constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 
 /// Returns the free-space Stokeslet: velocity at x0 due to a unit point force at x, times 8 pi mu.

@@ -8,7 +8,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// n_b is a template argument for common degrees, and 0 if it is known at run time only.
+// Bernstein: number of Bernstein polynomials n_b for common degrees, known at compile time; 0 if n_b is known at run time only.
 template <int Bernstein>
 void extract_all(int n_bernstein, int functions, const int* points, const double* extraction, const double* net,
                  double* __restrict bezier) {

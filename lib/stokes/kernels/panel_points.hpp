@@ -7,7 +7,7 @@
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 
-/// One pack of points of a table. The degree is a template argument for common degrees, and 0 if it is known at run time only.
+/// One pack of points of a PointTable. Degree: polynomial degree for common degrees, known at compile time; 0 if it is known at run time only.
 template <int Degree>
 struct Points {
   const int n;
@@ -65,7 +65,7 @@ void project(const PointTable& table, const Register* g, double* moment) {
     }
 }
 
-/// Calls `use` with the sums for a common degree, or with those for a degree known at run time.
+/// Calls `use` with the class Sums for this degree if it is common, and otherwise with the class for a degree known at run time.
 template <template <int> class Sums, class Use>
 void with_degree(int degree, const Use& use) {
   if (degree == 3) return use(Sums<3>());

@@ -24,8 +24,8 @@ struct Split {
   }
 };
 
-/// A run of nodes and a block of targets relative to the first node of the run. Scaled by the distance of the farthest target, so that powers of
-/// distances stay within the range of single precision in any units.
+/// A run of nodes and a block of targets relative to the first node of the run. Coordinates are scaled by the distance of the farthest target, so
+/// that powers of distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;
@@ -48,7 +48,7 @@ struct Sight {
     }
   }
 
-  /// Computes r from the targets of one register to node k.
+  /// Computes the vectors r from the targets of one register to node k.
   void difference(int first, int k, FloatRegister (&r)[3]) const {
     for (int c = 0; c < 3; ++c) {
       const FloatRegister place = as_it_stands(nodes.place[c][k] - load(&targets.place[c][first]));
@@ -57,7 +57,7 @@ struct Sight {
   }
 };
 
-/// Computes n values minus `origin` in single precision.
+/// Computes the differences of n values to `origin` and rounds them to single precision.
 template <int size>
 void narrow(int n, const double* from, double origin, float (&to)[size]) {
   for (int k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - origin);
@@ -95,7 +95,8 @@ void add_run(const Stresslets& nodes, const double* target, double* u) {
   const Sight sight(nodes.n, {nodes.x, nodes.y, nodes.z}, target);
   float v[3][single_run], n[3][single_run], v0[3][far_block];
   const double *const velocity[3] = {nodes.vx, nodes.vy, nodes.vz}, *const normal[3] = {nodes.nx, nodes.ny, nodes.nz};
-  for (int c = 0; c < 3; ++c) {  // close velocities differ little from the first, so that the difference loses no accuracy
+  for (int c = 0; c < 3; ++c) {  // relative to the first node's velocity: differences of close nodes are small, so that rounding is
+                                 // harmless
     narrow(nodes.n, velocity[c], velocity[c][0], v[c]);
     narrow(far_block, target + far_block * (3 + c), velocity[c][0], v0[c]);
     narrow(nodes.n, normal[c], 0, n[c]);

@@ -13,7 +13,7 @@
 namespace tanktread::stokes {
 
 /// Evaluates sum_k G^I f_k or sum_k T^I S_k (stokes/kernels/image_kernel.hpp) over all nodes, directly or by clusters. Sources are the nodes at their
-/// own positions, and targets are mirrored, all in the wall's axes.
+/// own positions; targets are replaced by their mirror images. All positions are in the wall's axes.
 class ImageSum {
  public:
   enum class Kind { forces, stresslets };
@@ -23,13 +23,13 @@ class ImageSum {
 
   const PlaneWall& wall() const { return wall_; }
 
-  /// Shares the sums by clusters among ranks, as TreeSum does.
+  /// Shares the sums by clusters among ranks, see TreeSum::share().
   void share(int part, int parts);
 
   /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Sets all targets, and the indices of those to compute. Returns whether these or the nodes have changed.
+  /// Sets all targets, and the indices of those to compute. Returns whether the targets, the indices or the nodes have changed since the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
   /// Returns one row for each selected target, in their order. Source strengths of the nodes have 3 components (forces) or the 6 components of S in
@@ -55,7 +55,7 @@ class ImageSum {
   std::vector<double> node_[3];  // far nodes in the axes of the wall
   std::vector<Vec3> targets_;    // targets in the laboratory frame
   std::vector<int> wanted_;
-  bool placed_ = false;          // true if the targets were set since the nodes were
+  bool placed_ = false;          // true if the targets were set after the nodes were set last
   long long interactions_ = 0;
 };
 

@@ -66,7 +66,7 @@ struct Smooth {
   }
 };
 
-/// Multiplies an array by a matrix (n, m) along its first index, which has length m, and moves that index to the end.
+/// Multiplies an array by a matrix (n, m) along its first index, which has length m, and moves the first index to the end.
 template <class Number>
 void contract(const Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>& by, std::vector<Number>& array) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
@@ -109,13 +109,14 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // modes with an in-plane wave number k != 0 decay like |k| z e^{-|k| z}
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // long enough, because modes with an in-plane wave number k != 0 decay like |k| z
+                                                         // e^{-|k| z}
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
 }
 
-/// Returns the sum over k != 0 in (2.25), or its stresslet (2.26).
+/// Returns the sum over wave vectors k != 0 in (2.25), or the corresponding part of the stresslet (2.26).
 std::vector<double> PeriodicKernel::waves(const std::array<std::vector<double>, 3>& s) const {
   using Complex = std::complex<double>;
   using Matrix = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic>;
@@ -171,7 +172,7 @@ void PeriodicKernel::add_smooth_images(const Vec3& r0, double* values) const {
   }
 }
 
-/// Adds the correction (2.27) for two periods.
+/// Adds the correction (2.27) of the mode k = 0 for two periods.
 void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const Vec3 e = cell_.vectors().col(2);
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());
@@ -199,8 +200,8 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images of one period beyond the near ones, in pairs +n and -n, minus the limits of their Stokeslets far along the row. The next `direct`
-/// pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
+/// Adds all images in a row with one period except the near images, in pairs +n and -n, minus the limits of their Stokeslets far along the row. The
+/// next `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
   const Vec3 h = cell_.vectors().col(0), e = h.normalized();

@@ -1,5 +1,5 @@
 #pragma once
-// Lattices of periodic images, and the contribution of the images that are not near.
+// Periodic lattices, and the kernel that sums all periodic images except the near ones.
 
 #include <array>
 #include <vector>
@@ -78,7 +78,7 @@ class PeriodicKernel {
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // A - G of the near images
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25) of the near images to `values`
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

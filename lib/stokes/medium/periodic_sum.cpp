@@ -10,8 +10,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Rounds the extent in directions that do not repeat outwards, to steps between an eighth and a quarter of its length. A moving shape then seldom
-/// needs a new table, and the box depends on the shape only.
+/// Rounds the extent outwards in the directions that are not periodic, to multiples of a step between an eighth and a quarter of its length. A moving
+/// shape then seldom needs a new table, and the box depends on the shape only.
 std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent) {
   for (int d = cell.n(); d < 3; ++d) {
     const double step = std::exp2(std::floor(std::log2(extent[1][d] - extent[0][d]))) / 4;
@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns, for each lattice vector, up to how many steps images count as near, and the distance of the nearest other image. This distance is about
-/// `far` lengths of the box for any pair of points in the box.
+/// Returns, for each lattice vector, the number of steps up to which images count as near, and the distance of the nearest image that does not. For
+/// any two points in the box this distance is about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -35,11 +35,12 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
   return {steps, distance};
 }
 
-/// Returns the tolerance, reduced for the stresslet. The kernel of the stresslet is steeper by one order. On cubic, tilted and oblong cells, its
-/// error was up to three times as large as the error of the Stokeslet.
+/// Returns the tolerance, reduced for the stresslet. The stresslet is singular by one order more than the Stokeslet. On cubic, tilted and oblong
+/// cells, its error was up to three times as large as the error of the Stokeslet.
 double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
-/// Returns the number of Chebyshev nodes on [-1, 1] for a function whose nearest pole is y half-lengths away.
+/// Returns the number of Chebyshev nodes on [-1, 1] for interpolation to this tolerance of a function whose nearest pole is y half-lengths of the
+/// interval away from its middle.
 int order_for(double tolerance, double y) { return static_cast<int>(std::ceil(-std::log(tolerance) / std::asinh(y))); }
 
 std::vector<double> chebyshev(int n) {
@@ -68,7 +69,7 @@ Eigen::MatrixXd interpolation(const std::vector<double>& places, const std::vect
   return result;
 }
 
-/// Returns the distinct differences of nodes. `number`: for each pair of nodes a, b, the index of its difference b - a.
+/// Returns the distinct differences between two nodes. `number`: for each pair of nodes a, b, the index of its difference b - a.
 std::vector<double> differences(const std::vector<double>& nodes, std::vector<int>& number) {
   std::vector<double> all;
   for (const double a : nodes)
@@ -92,7 +93,8 @@ std::vector<double> interpolated(std::vector<double> values, const std::array<Ei
   return values;
 }
 
-/// Returns for each component of the source strength the three components of the velocity it contributes to, contiguous and padded to four.
+/// Returns the kernel's components reordered: for each component of the source strength, the three components of the velocity that it produces,
+/// contiguous and padded to four.
 std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>& components, int n) {
   constexpr int number[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
   const int in = kind == PeriodicKernel::Kind::stokeslet ? 3 : 6;
@@ -106,7 +108,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Indices of the differences of two nodes in the table.
+/// Indices in the table of the differences between two nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;

@@ -25,21 +25,22 @@ class PeriodicSum {
   const PeriodicCell& cell() const { return cell_; }
   const std::vector<Vec3>& images() const { return images_; }  ///< lattice vectors H n of the near images, including 0
 
-  /// Returns whether a sum constructed for this extent would equal this one.
+  /// Returns whether this sum is also valid for the given extent, that is, equal to a sum constructed for it.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
   /// Returns the position moved into the cell. The cell is far from the origin, because near the origin kernels would treat close points as
   /// identical.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
-  /// Adds the rest at targets in the cell: u[3 k + c]. Sources are positions in the cell with 3 components of a force, or 6 components of a stresslet
-  /// in the order of StressletKernel.
+  /// Adds the smooth rest (all images that are not near) at targets in the cell: u[3 k + c]. Sources are positions in the cell with 3 components of a
+  /// force, or 6 components of a stresslet in the order of StressletKernel.
   void add_rest(const Charges& sources, std::span<const Vec3> targets, double* u);
 
   /// Returns the Lagrange polynomials of the interpolation nodes at positions in the cell, shape (number of positions, n_nodes).
   Eigen::MatrixXd lagrange(std::span<const Vec3> places) const;
 
-  /// Returns component c = 11, 12, 13, 22, 23, 33 of the rest of the Stokeslet between the interpolation nodes, shape (n_nodes, n_nodes).
+  /// Returns component c = 11, 12, 13, 22, 23, 33 of the smooth rest of the Stokeslet (images that are not near) between the interpolation nodes,
+  /// shape (n_nodes, n_nodes).
   Eigen::MatrixXd between_nodes(int component) const;
   int n_nodes() const { return box_.n_nodes(); }
 
@@ -49,13 +50,13 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;    // displacement of the cell; lowest corner and side lengths of the box, in lattice coordinates
-  std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that do not repeat
+  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box, lattice coordinates
+  std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
   std::array<std::vector<int>, 3> difference_;  // index of the difference of nodes a, b of one direction, at n a + b
   std::array<std::size_t, 3> differences_;      // number of differences
-  std::vector<double> table_;  // the rest: components_ values of difference (i, j, k) from components_ ((n_1 i + j) n_2 + k) on
+  std::vector<double> table_;  // smooth rest: components_ values per node difference (i, j, k), from components_ ((n_1 i + j) n_2 + k) on
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

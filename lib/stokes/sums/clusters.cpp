@@ -9,11 +9,11 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Ratio of the smallest to the second largest variance of a cluster below which it counts as flat.
+/// A cluster counts as flat if its smallest principal variance divided by its second largest is below this ratio.
 constexpr double flat = 0.1;
 
-/// Returns the number of nodes along the longest axis. More nodes make clusters usable at smaller distances, and cost more. Measured on deformed
-/// spheres at tolerances of 1e-3 to 1e-8.
+/// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each one
+/// costs more. Measured on deformed spheres at tolerances of 1e-3 to 1e-8.
 int longest_order(double tolerance) {
   return std::clamp(static_cast<int>(std::lround(2.8 - 0.72 * std::log10(tolerance))), 3, most_chebyshev);
 }
@@ -62,7 +62,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   }
   clusters_.clear(), order_.clear();
   const auto lower = [](const Group& one, const Group& other) { return std::ranges::lexicographical_compare(one.centre, other.centre); };
-  std::ranges::sort(groups_, lower);  // clusters do not depend on the order in which the groups are given
+  std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order in which the groups are given
   split(0, n_groups, Mat3::Identity(), starts);
   for (int c = 0; c < 3; ++c) {
     point_[c].resize(order_.size());
@@ -73,7 +73,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   for (auto cluster = clusters_.rbegin(); cluster != clusters_.rend(); ++cluster) enclose(*cluster);
 }
 
-/// Builds the cluster of groups first .. last - 1 and its descendants, and returns its index. `axes`: axes of its parent.
+/// Builds the cluster of groups first .. last - 1 and its descendants, and returns its index. `axes`: axes of the parent's box.
 int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts) {
   Vec3 mean = Vec3::Zero();
   Mat3 covariance = Mat3::Zero();
@@ -115,8 +115,8 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
   return number;
 }
 
-/// Computes the box of a cluster and its nodes. The box encloses the points of a leaf, or else the nodes of both children (the points of bare
-/// children).
+/// Computes the box of a cluster and its nodes. The box of a leaf encloses its points. The box of another cluster encloses the Chebyshev nodes of its
+/// two children, or the points of a child that has no nodes.
 void Clusters::enclose(Cluster& cluster) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const auto take = [&](const std::vector<double>(&at)[3], int first, int n) {

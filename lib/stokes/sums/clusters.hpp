@@ -14,19 +14,21 @@ struct Cluster : ChebyshevBox {
   int first = 0, last = 0;       ///< range of its points, in the order of the tree
   int child[2] = {-1, -1};       ///< indices of the children; -1 for a leaf
   int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
-  int first_block = 0;           ///< index of its first block among those of all clusters; a block has far_block nodes
-  double radius = 0, reach = 0;  ///< half the diagonal; distance from the centre beyond which the nodes are accurate
-  bool bare = false;             ///< true if the box has no nodes, because it has no more points than nodes; its parent then uses its points
+  int first_block = 0;           ///< index of its first block of nodes among the blocks of all clusters; a block has far_block nodes
+  double radius = 0, reach = 0;  ///< half the box's diagonal; distance from the centre beyond which the nodes are accurate
+  bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are
+                                 ///< used instead
 
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }
 
-  /// Returns whether the nodes of this box are accurate for targets in `other` shifted by `beyond`, or for sources there if this is a box of targets.
+  /// Returns whether the nodes of this box are accurate for targets in `other` shifted by `beyond`, or for sources in `other` if this is a box of
+  /// targets.
   bool serves(const ChebyshevBox& other, const Vec3& beyond) const;
 };
 
 /// A binary tree over points that come in groups (the far nodes of a panel, or single points). A group is never split. The boxes of flat clusters are
-/// aligned with the cluster, so that a patch of a surface needs only two or three nodes across.
+/// aligned with the cluster, so that a patch of a surface needs only two or three nodes across its thickness.
 ///
 /// Interpolation of G (2.1) along the half-width a of a box with n nodes has an error of rho^(-n) at the distance z a from its centre, where
 /// rho = z + sqrt(z^2 - 1), cf. (2.9). The number n along the longest axis follows from the tolerance, reach = z a from n, and the numbers of nodes
@@ -51,7 +53,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
-    double along;  // coordinate along the axis in which its cluster is split
+    double along;  // coordinate of the centre along the axis in which its cluster is split
     int number;
   };
   int split(int first, int last, Mat3 axes, std::span<const int> starts);

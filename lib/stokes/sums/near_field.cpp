@@ -12,8 +12,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns the error permitted for one panel relative to the whole integral. Errors of several panels add up, and the estimate rho^(-2 n) omits
-/// factors that grow with the order. Measured on deformed surfaces (tests/verify/layers.cpp).
+/// Returns the error permitted for one panel, relative to the integral over the whole surface. Errors of several panels add up, and the error
+/// estimate rho^(-2 n) (2.9) omits factors that grow with the order. Measured on deformed surfaces (tests/verify/layers.cpp).
 double share(double tolerance) { return 0.3 * std::pow(tolerance, 1.125); }
 
 Vec3 point(const double* bezier, int n_b, int b) { return {bezier[b], bezier[n_b + b], bezier[2 * n_b + b]}; }
@@ -24,7 +24,8 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
   return {(a + b + c + d) / 4, (b - a + c - d) / 4, (c - b + d - a) / 4};
 }
 
-/// Numbers the connected surfaces, whose panels share control points, and returns how many there are.
+/// Finds the connected surfaces: panels that share control points are on the same surface. Sets the index of the surface of each panel and returns
+/// the number of surfaces.
 int connected(const Panels& panels, std::vector<int>& surface) {
   std::vector<int> first;  // for each control point, the first panel that depends on it; -1 if not found yet
   std::vector<int> root(static_cast<std::size_t>(panels.size()));
@@ -88,7 +89,7 @@ void NearField::view(int e) {
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
   view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // equal at all corners
-  for (int j = 1; j < t.degree; ++j)  // over all inner points, so that the result does not depend on the orientation of s and t
+  for (int j = 1; j < t.degree; ++j)  // over all inner Bezier points, so that the result does not depend on the directions of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }
@@ -131,8 +132,9 @@ bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
   return !own.empty() && surface_[own.front().panel] == surface_[e];
 }
 
-/// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation is therefore reduced by the bulge,
-/// which costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs no such reduction.
+/// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation of the panel is therefore reduced
+/// by the height of the bulge, which costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface
+/// needs no such reduction.
 quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
   if (!across) return quadrature::sight(view.flat, target);
   const double height = (target - view.flat.centre).dot(view.normal);

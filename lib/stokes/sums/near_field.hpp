@@ -20,14 +20,15 @@ class NearField {
  public:
   /// `tolerance`: accuracy relative to int dG / r over the closed surface that contains the panel, about sqrt(4 pi area), regardless of other
   /// surfaces. `steep`: the integrand grows like 1 / r^2 instead of 1 / r at targets off the closed surface of the panel (double layer). On the
-  /// surface, subtracting the value of the density at the target lowers the singularity by one order. `off_surface`: there are targets on no surface.
+  /// surface, subtracting the value of the density at the target lowers the singularity by one order. `off_surface`: true if there are targets that
+  /// are not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
-  /// Sets the shape from the Bezier points of panels that are not images. The points must outlive the calls below. `rule` also needs the points of
-  /// its panel if it is an image.
+  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. `rule` also needs the
+  /// points of its panel if it is an image.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
-  /// Includes periodic images of the panels. An image is treated as a different surface. Must be called before update().
+  /// Includes periodic images of the panels. A periodic image of a panel is treated as part of a different surface. Must be called before update().
   void repeat() { across_gaps_ = true; }
 
   /// Returns the index of the closed surface that contains a panel.
@@ -46,7 +47,7 @@ class NearField {
     quadrature::Patch flat;
     Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand, across;  ///< demands for targets on the surface of the panel, and for targets off it
+    quadrature::Demand demand, across;  ///< accuracy required for targets on the panel's own surface; for all other targets
   };
   void view(int e);
   bool on_same_surface(int e, std::span<const SelfPair> own) const;
@@ -54,14 +55,14 @@ class NearField {
   bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;  ///< demand without the parts that depend on the area
-  std::vector<int> surface_;   ///< index of the surface of each panel
+  quadrature::Demand demand_;  ///< required accuracy, without the parts that depend on the area
+  std::vector<int> surface_;   ///< for each panel, the index of the surface that contains it
   int n_surfaces_ = 1;
   bool steep_, across_gaps_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
-  std::vector<double> centre_[3], reach_;  ///< squared distance from the centre beyond which the far rule suffices
+  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from it beyond which the far rule suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< (degree, order) -> tensor Gauss on the whole panel

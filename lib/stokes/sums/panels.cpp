@@ -72,7 +72,7 @@ void node_values(const Panels& panels, int e, const std::vector<double>& bezier,
 
 namespace {
 
-/// Computes the weighted normals of one panel: normal[c] points to the value at its first node. `scratch` stores tangents.
+/// Computes the weighted normals of one panel: normal[c] points to component c at the first node of the panel. `scratch`: memory for tangents.
 void panel_normals(const Panel& panel, const double* bezier, std::vector<double>& scratch, const std::array<double*, 3>& normal) {
   const NodeTable& t = *panel.table;
   scratch.resize(static_cast<std::size_t>(6) * t.n_nodes);

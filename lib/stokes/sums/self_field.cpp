@@ -12,13 +12,13 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Returns the number of radial points for a tolerance. The integrand is smooth along a ray. Measured on the cube mesh, n = 3 and up
-/// (tests/verify/layers.cpp).
+/// Returns the number of radial points of a polar rule for a tolerance. Few are needed, because the integrand is smooth along a ray. Measured on the
+/// cube mesh, n = 3 and up (tests/verify/layers.cpp).
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
 /// Returns the permitted distance of a corner from the position predicted by the tangents, relative to the distance of the corner from the target. If
-/// it is exceeded, orders are raised. It decreases with the tolerance. Measured on spheroids of aspect ratio 10 (tests/verify/layer_shapes.cpp),
-/// whose tip radius is as small as their elements.
+/// the distance is larger, more quadrature points are used. The permitted distance decreases with the tolerance. Measured on spheroids of aspect
+/// ratio 10 (tests/verify/layer_shapes.cpp), whose tip radius is as small as their elements.
 double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
 
 /// Maximum number of cached rules, and of their points (136 bytes each). The limit is needed because metrics change in a long run, and a strongly
@@ -30,7 +30,7 @@ quadrature::Rule whole_square(int order) {
   return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
 }
 
-/// Returns sum B_i(s) B_j(t) p_ij. At corners and on sides of a panel most of the polynomials vanish.
+/// Returns sum B_i(s) B_j(t) p_ij for the Bezier points p_ij. At corners and on sides of a panel most of the polynomials vanish.
 Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   Vec3 sum = Vec3::Zero();
   for (int j = 0; j < n; ++j) {
@@ -43,8 +43,8 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   return sum;
 }
 
-/// Evaluates the Bernstein polynomials at the site at first use. The first pair of a site is evaluated at construction; the other pairs are needed
-/// only on the rank that owns the target.
+/// Evaluates the Bernstein polynomials at the site if that has not been done yet. The first pair of a site is evaluated at construction, the other
+/// pairs at their first use, because only the rank that owns the target needs them.
 void fill(SelfPair& pair, int degree) {
   if (!pair.bernstein.empty()) return;
   const int n = degree + 1;
@@ -94,7 +94,8 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
   return *pair.table;
 }
 
-/// Returns raised orders, or none if the corners are close to the positions predicted by the tangents a1, a2 at the collocation point.
+/// Returns higher orders of the polar rule for a distorted element. Returns zeros if the corners of the element are close to the positions predicted
+/// by the tangents a1, a2 at the site.
 quadrature::PolarOrders SelfField::raised_orders(const SelfPair& pair, int degree, const double* bezier, quadrature::Shear shear,
                                                  const Vec3& a1, const Vec3& a2) const {
   const int n = degree + 1, n_b = n * n;

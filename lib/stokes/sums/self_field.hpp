@@ -21,16 +21,17 @@ using Sites = std::vector<std::vector<spline::Site>>;
 /// A site on one of the panels that contain it.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;         ///< bin of the metric for which the rule was constructed
-  quadrature::PolarOrders orders;  ///< orders of the rule if the element is distorted, otherwise 0; if only the radial order is set, no polar rule is
-                                   ///< used
+  quadrature::Shear shear;         ///< interval of metrics (shear of the element at the site) for which the rule was constructed
+  quadrature::PolarOrders orders;  ///< higher orders if the element is distorted, otherwise 0; if only the radial order is set, no polar
+                                   ///< rule is used
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site
   double s = 0, t = 0;
 };
 
-/// All such pairs of a set of sites, and the polar rules that they share: one rule per position on a panel, degree and bin of the metric.
+/// All pairs of a site and a panel that contains it, for a set of sites, and the polar rules that the pairs share: one rule for each position on a
+/// panel, degree and interval of metrics.
 class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);
@@ -38,7 +39,7 @@ class SelfField {
   /// Returns the pairs of site i.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// Returns the rule on the pair's panel for its current metric. Stored weights of an earlier rule are discarded.
+  /// Returns the singular rule on the pair's panel for the current metric at the site. If the rule changes, stored weights are discarded.
   const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
   /// Discards all stored weights.

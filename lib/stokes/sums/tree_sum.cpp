@@ -6,10 +6,10 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of points of a leaf. Measured on deformed spheres; half or twice as many cost 10 % more.
+/// Maximum number of points of a leaf. Measured on deformed spheres; half or twice as many points per leaf take 10 % more time.
 constexpr int source_leaf = 256, target_leaf = 2 * far_block;
 
-/// Factor on the tolerance. The error of clusters is proportional to the sum of |f| / r. Loads on a membrane are in equilibrium, so that velocities
+/// Factor on the tolerance of clusters. Their error is proportional to the sum of |f| / r. Loads on a membrane are in equilibrium, so that velocities
 /// are an order of magnitude smaller than this sum. Measured on capsules in shear flow: with this factor the largest error is a third of the
 /// tolerance.
 constexpr double allowance = 0.3;
@@ -86,7 +86,7 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
   }
 }
 
-/// Returns the row of the position with index k in the order of the trees; each tree starts at a new block.
+/// Returns the row (index of the target in the caller's order) of position k in the order of the target trees; each tree starts at a new block.
 int TreeSum::row(std::size_t k) const {
   const std::size_t n = target_tree_.order().size(), size = static_cast<std::size_t>(far_block) * blocks_of(static_cast<int>(n));
   return target_tree_.order()[k % size] + static_cast<int>(n * (k / size));
@@ -101,8 +101,8 @@ void TreeSum::want(std::span<const int> rows) {
   ask();
 }
 
-/// Keeps the pairs of this part. Each part has an equal share of the work and contains adjacent source clusters, so that source strengths are
-/// collected for each cluster by few parts only.
+/// Keeps the pairs of clusters that belong to this part (share()). Each part has an equal share of the work and contains adjacent source clusters, so
+/// that only few parts compute the strengths of a given cluster.
 void TreeSum::take_part() {
   std::ranges::stable_sort(pairs_, {}, &Pair::source);
   long long before = 0, all = 0;
@@ -114,7 +114,8 @@ void TreeSum::take_part() {
   });
 }
 
-/// Determines which source clusters need strengths at Chebyshev nodes, and which source nodes the pairs need.
+/// Determines which source clusters need strengths at their Chebyshev nodes, and which source nodes are needed, for the pairs of clusters to be
+/// summed.
 void TreeSum::ask() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);
@@ -165,7 +166,8 @@ Charges TreeSum::nodes() const {
           {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
 }
 
-/// Copies the source strengths into the order of the tree, and collects them at the Chebyshev nodes of all clusters in use, from the leaves upwards.
+/// Copies the source strengths into the order of the tree, and computes the strengths at the Chebyshev nodes of all clusters in use, from the leaves
+/// upwards.
 void TreeSum::collect(const std::array<const double*, 6>& carried) {
   for (int c = 0; c < in_; ++c) {
     q_[c].resize(sources_.order().size());
@@ -190,7 +192,7 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
   }
 }
 
-/// Determines which target clusters contain rows that are needed.
+/// Determines which target clusters contain a target whose row is in `wanted`.
 void TreeSum::mark(std::span<const int> wanted) {
   row_.assign(n_trees_ * target_tree_.order().size(), 0);
   for (const int i : wanted) row_[i] = 1;
@@ -250,7 +252,8 @@ void TreeSum::add(const Pair& pair) {
   interactions_ += static_cast<long long>(n) * from.n;
 }
 
-/// Interpolates the values at Chebyshev nodes to the nodes of the children, and in leaves and bare children to their targets.
+/// Interpolates the values at the Chebyshev nodes of each target cluster to the nodes of its children. In a leaf, and for a child that has no nodes,
+/// interpolates to the targets themselves.
 void TreeSum::hand_down() {
   const std::vector<Cluster>& all = targets_;
   for (std::size_t t = 0; t < all.size(); ++t) {

@@ -22,8 +22,8 @@ class TreeSum {
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Sets the positions of the nodes x, y, z, in groups starts[g] .. starts[g + 1] - 1 that are not split, and of all n targets. Row i + n k of the
-  /// sums belongs to the image of target i in reflections[k - 1]. The clusters of image targets are the images of clusters.
+  /// Sets the positions of the nodes x, y, z, in groups starts[g] .. starts[g + 1] - 1 that clusters do not split, and of all n targets. Row i + n k
+  /// of the sums belongs to the image of target i in reflections[k - 1]. The clusters of image targets are the images of clusters.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
@@ -89,10 +89,10 @@ class TreeSum {
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of their Chebyshev nodes
   std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
   std::vector<double> target_u_, node_u_;       // values at targets and at their Chebyshev nodes
-  std::vector<char> row_, wanted_, has_nodes_;  // targets needed; target clusters with any needed target; target clusters with values at Chebyshev
-                                                // nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at
+                                                // Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
-  std::vector<char> asked_, in_use_;            // source nodes whose strength is used; source clusters whose Chebyshev nodes are used
+  std::vector<char> asked_, in_use_;            // flags: source nodes in use (strengths); source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };

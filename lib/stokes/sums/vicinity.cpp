@@ -8,7 +8,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of balls in a leaf, which are tested one by one. With fewer balls a box would cost as much as its balls.
+/// Maximum number of balls in a leaf, which are tested one by one. With fewer balls per leaf, testing the boxes would cost as much as testing the
+/// balls.
 constexpr int leaf = 64;
 
 }  // namespace
@@ -27,7 +28,7 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
   holds_.resize(leaf);
 }
 
-/// Appends a box and its descendants. During place() the centres are in the original order.
+/// Appends the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's order.
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {

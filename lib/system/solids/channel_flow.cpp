@@ -26,7 +26,7 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
   ends_.push_back(section(channel_->end(), -1));
 }
 
-/// Returns the plane at s with the flow of a straight duct that has this section and flow rate.
+/// Returns the cross-section at the position s along the centre line, with the flow of a straight duct of this section and flow rate.
 stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
   const surface::Channel::Section at = channel_->section(s);
   const double area = channel_->outline().area() * at.factor.prod();
@@ -52,8 +52,8 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   return wall_;
 }
 
-/// Returns the velocity that drives the flow in addition to the wall: the profiles at the ends, or in a channel that repeats Poiseuille's flow of a
-/// unit pressure gradient in a circular tube, for any section.
+/// Returns the velocity that drives the flow, without the response of the wall: in an open channel the contributions P of both ends (2.29), in a
+/// periodic channel Poiseuille flow in a circular tube with a unit pressure gradient, whatever the shape of the section.
 Net ChannelFlow::ends(const Net& x) const {
   if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
   Net v = Net::Zero(x.rows(), 3);
@@ -94,7 +94,8 @@ quadrature::Options ChannelFlow::sharper() const {
   return options;
 }
 
-/// Returns the velocity due to wall and pressure drop, and `driving` times the velocity of `ends`. If there are many points, ranks share them.
+/// Returns the velocity due to the wall traction and the pressure drop, plus `driving` times the velocity ends(x). If there are many points, ranks
+/// share them.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {

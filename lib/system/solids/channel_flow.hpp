@@ -24,8 +24,8 @@ namespace tanktread::coupling {
 /// wall operator is constructed by all ranks when a velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities
 /// refer to the inlet.
 ///
-/// In a channel that repeats, Poiseuille's flow of the pressure gradient dp/L in a circular tube stands for c dp and P. Then f is the difference of
-/// the tractions of the fluid inside and of the fluid outside, in which the velocity vanishes on the wall too.
+/// In a periodic channel of period L, Poiseuille flow in a circular tube with the pressure gradient dp/L replaces c dp and P. Then f is the traction
+/// of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
   /// `wall_solver`: as for Wall.
@@ -75,8 +75,8 @@ class ChannelFlow : public stokes::DuctFlow {
   quadrature::Options quadrature_;
   std::string wall_solver_;
   std::vector<stokes::DuctEnd> ends_;
-  mutable std::shared_ptr<stokes::Layer> layer_;  // layer of the wall, with a smaller tolerance than in Wall, because pressures at the ends are large
-                                                  // compared with the velocity
+  mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall, with a smaller tolerance than in Wall, because large
+                                                  // pressures at the ends amplify errors of the velocity
   mutable std::shared_ptr<Wall> wall_;
   mutable std::shared_ptr<const Solved> solved_;
   mutable Net latest_at_, latest_;

@@ -73,7 +73,8 @@ RigidMotion FreeBodyInTube::motion_of_unknowns() const {
   return {motion.head<3>(), motion.tail<3>() / radius_};
 }
 
-/// Unknowns are f R_C/mu, U and Omega R_C. Force and torque are divided by 6 pi mu R_C and 6 pi mu R_C^2.
+/// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C; so are the equations of
+/// force and torque, divided by 6 pi mu R_C and 6 pi mu R_C^2.
 void FreeBodyInTube::solve_in_tube(const Net& place) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
@@ -93,8 +94,8 @@ void FreeBodyInTube::solve_in_tube(const Net& place) const {
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 }
 
-/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have the given values. A second change
-/// of the motion corrects the collocation error of force and torque.
+/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have their prescribed values. A second
+/// change of the motion corrects the collocation error of force and torque.
 void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(place);

@@ -22,7 +22,8 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   }
 }
 
-/// Returns the inverse of R B = R (v -> <v>) - H. For a prescribed motion (1/mu) A (v -> (mu/R_C) <v>) replaces R (v -> <v>).
+/// Returns the inverse of the operator w -> R <w> - H w of (2.23) for one body: R is the collocation matrix, <w> the rigid motion nearest to w, and H
+/// the double layer. If the motion is prescribed, the single layer (1/mu) A of the load (mu/R_C) <w> replaces R <w>.
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
@@ -80,7 +81,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest width of a film, divided by the smaller radius. Across wider films, modes whose wavelength is the width are damped by a third or more.
+/// Largest width of a film, divided by the smaller radius, for which a film inverse is set up. Wider films need none: across them, modes whose
+/// wavelength is the width are damped by a third or more.
 constexpr double widest = 0.5;
 
 /// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.
@@ -105,7 +107,8 @@ struct Side {
   }
 };
 
-/// Returns C, the effect of `by` on the sites of another body: -H M^-1, from the rows of H of that body and the columns of M^-1 for sites of `by`.
+/// Returns C = -H M^-1 (FilmInverses), the effect of the body `by` on the sites of another body. `rows`: rows of the double layer H for the sites of
+/// the other body. `sites`: sites of `by`, for which the columns of M^-1 are used.
 Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
                          const RigidParticles& placed) {
   return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);

@@ -32,10 +32,11 @@ class OneBodyInverses {
   /// Returns whether particle p has an inverse.
   bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
 
-  /// Replaces the rows of bodies, control values, by values at the collocation sites.
+  /// Replaces control values by values at the collocation sites, in the rows of rigid bodies.
   void take_to_sites(Net& y) const;
 
-  /// Replaces the rows of bodies, right-hand sides at sites, by the solution for each isolated body. `placed`: current positions of the bodies.
+  /// Replaces right-hand sides at the collocation sites by the control values of the solution for each isolated body, in the rows of rigid bodies.
+  /// `placed`: current positions of the bodies.
   void solve(const RigidParticles& placed, Net& y) const;
 
   /// Returns the columns of the inverse of particle p for right-hand sides at `sites`; shape (3 points, 3 sites).
@@ -59,23 +60,24 @@ class OneBodyInverses {
   std::vector<Use> factors_;
 };
 
-/// Inverses for the films between pairs of bodies. Modes of w of wave number k that are equal on both sides of a film of width h have eigenvalues of
-/// the order of k h, even after preconditioning by the isolated bodies. With the operator M_p of the isolated body p, and C_pq = -H_pq M_q^-1, the
-/// effect of body q on body p, both restricted to the sites of a film,
+/// Inverses for the films between pairs of bodies. Modes of the density w (2.23) with wave number k that are equal on both sides of a film of width h
+/// have eigenvalues of the order of k h, even after preconditioning by the isolated bodies. With the operator M_p of the isolated body p, and C_pq =
+/// -H_pq M_q^-1, the effect of body q on body p, both restricted to the sites of a film,
 ///
 ///   1 + C on those sites
 ///
 /// is factored for each pair of bodies. Its inverse minus 1 is added to the preconditioner of the isolated bodies (additive Schwarz; Smith, Bjørstad
-/// & Gropp 1996, chapter 1). Films of one body are assumed to have no common sites. Common sites cost iterations but no accuracy.
+/// & Gropp 1996, chapter 1). Two films of one body are assumed to have no sites in common; if they do, the solver needs more iterations, but its
+/// result is the same.
 class FilmInverses {
  public:
-  /// Returns the rows `targets` of H, three per target, in their order; shape (3 targets, 3 N).
+  /// Returns the rows of the double layer H for the sites `targets`, three per site, in their order; shape (3 targets, 3 N).
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
   /// `x`: net of all particles. Films are set up for the pairs of bodies that have an inverse in `alone`.
   FilmInverses(std::span<const Particle> particles, const OneBodyInverses& alone, const RigidParticles& placed, const Net& x, const RowsOf& rows_of);
 
-  /// Adds ((1 + C)^-1 - 1) y to y, the values at the sites.
+  /// Adds ((1 + C)^-1 - 1) y to the values y at the sites of each film.
   void add(Net& y) const;
 
  private:

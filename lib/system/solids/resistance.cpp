@@ -37,7 +37,7 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   membrane::DirectSolver mass(solvers.direct);
   mass.factor(mass_);
   normal_ = mass.solve(flux_);
-  // The single layer of a uniform density on a sphere of radius a is 2 a / 3 times the density.
+  // Sets the scale s of (2.10) to 2 a / 3, because the single layer of a uniform density on a sphere of radius a is 2 a / 3 times the density.
   const double radius = std::cbrt(3 * geometry.volume(surface) / (4 * M_PI));
   weight_ = 2 * radius / 3 / flux_.cwiseProduct(normal_).sum();
 
@@ -114,7 +114,7 @@ Net Resistance::apply(const Net& f) const {
   const Net in_space = wall_ ? Net(f * turn_.transpose()) : Net();
   for (size_t k = 0; k < own_points_.size(); ++k) {
     const auto row = 3 * static_cast<Eigen::Index>(k);
-    for (int i = 0; i < 3; ++i)  // row by row, so that the sum of a row does not depend on the number of rows of this rank
+    for (int i = 0; i < 3; ++i)  // row by row, so that rounding does not depend on the number of rows of this rank
       u(own_points_[k], i) = rows_.row(row + i).dot(flat);
     if (!wall_) continue;
     Vec3 images;
@@ -176,7 +176,7 @@ Eigen::VectorXd Resistance::residual_work(const std::function<Net(const Net& x)>
 }
 
 Vec3 Resistance::force(const Net& f) const {
-  const Net weighted = mass_ * f;  // rows int N_A f dG; they sum to the integral
+  const Net weighted = mass_ * f;  // rows int N_A f dG, whose sum is int f dG
   return weighted.colwise().sum().transpose();
 }
 

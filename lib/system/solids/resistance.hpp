@@ -32,7 +32,8 @@ namespace tanktread::coupling {
 /// because GMRES alone does not converge for thin films.
 ///
 /// In a tube A f - mu u(f) replaces A f, where u is the response of the wall and the pressure drop (2.5). The operator then depends on the position,
-/// and GMRES is preconditioned by the factors of the isolated body. Fields are always given in the axes of `surface`, wherever the body has moved.
+/// so that GMRES is used, preconditioned by the factors of the isolated body. Fields are always given in the axes of `surface`, wherever the body has
+/// moved.
 class Resistance {
  public:
   /// `surface`: control net. The constructor assembles the rank-owned rows of A in double precision; they are valid for any position and orientation.
@@ -41,7 +42,7 @@ class Resistance {
              const SolverOptions& solvers, Ranks& ranks, Phases& phases, Tube* tube = nullptr,
              const std::optional<stokes::PlaneWall>& wall = {});
 
-  /// Sets the position of the body: control net in the laboratory frame, and the rotation from `surface` to it.
+  /// Sets the position of the body: its control net x in the laboratory frame, and the rotation `turn` from `surface` to x.
   void place(const Net& x, const Mat3& turn);
 
   /// Returns the control values, in body-fixed axes, of the ambient flow at the current position, interpolated at the collocation points.
@@ -53,7 +54,7 @@ class Resistance {
   /// Returns the control values of f for the control values u of a velocity. Throws RunFailure, with the residuals, if the solver stops early.
   Net force_density(const Net& u);
 
-  /// Returns the velocity (1/mu) A f of a force density f, up to the multiple of n of (2.10).
+  /// Returns the velocity (1/mu) A f of a force density f, including the regularising term of (2.10).
   Net velocity(const Net& f) { return apply(f) / viscosity_; }
 
   /// Returns whether the surface at its current position is inside the tube or in front of the wall, if there is one.

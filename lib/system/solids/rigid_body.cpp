@@ -11,7 +11,7 @@ namespace {
 
 constexpr int affine_modes = 11, quadratic_modes = 18;
 
-/// Indices of the fields y_b y_c e_i, b <= c.
+/// Indices of a quadratic velocity field y_b y_c e_i, b <= c: component i and the two coordinates.
 struct UnitQuadratic {
   int i, b, c;
 };

@@ -12,7 +12,7 @@
 
 namespace tanktread::coupling {
 
-/// Returns element k = 0 to 4 of a basis of the strains (trace-free symmetric matrices).
+/// Returns matrix k = 0 .. 4 of a basis of the strain rates (trace-free symmetric matrices).
 Mat3 unit_strain(int k);
 
 /// Returns the strain E with the given products E : unit_strain(k).
@@ -29,8 +29,8 @@ struct RigidModes {
   std::vector<Mat3> stresslet;                  ///< stresslet of each mode
 };
 
-/// Returns the state of a rigid body as a net of three rows: the centre; the vector part, and in the third row the scalar part, of the quaternion
-/// that rotates the body from its initial orientation.
+/// Returns the state of a rigid body in its initial orientation. A state is a net of three rows: the centre, and the vector part and the scalar part
+/// of the quaternion that rotates the body from its initial orientation.
 Net placed(const Vec3& centre);
 Vec3 centre_of(const Net& place);
 Mat3 rotation_of(const Net& place);
@@ -98,19 +98,20 @@ class FreeBody : public LoneRigidBody {
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< rigid motions due to unit forces and torques
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion relative to the flow for each strain and quadratic field
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion of a free body relative to the flow, for each strain and quadratic
+                                                    ///< flow
 };
 
 /// A free body in a tube or near a plane wall. At each position the traction and the rigid motion are solved for together,
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u is the response of wall and pressure drop. The previous solution is the initial guess. Near a plane wall A includes the images, the unit
-/// motions are solved for one by one, and the collocation errors of the force and torque of f are corrected (2.11). Calls are collective. Repeated
-/// calls at one position take one solve. The motion is not finite if the body intersects the wall.
+/// where u is the response of wall and pressure drop. The previous solution is the initial guess. Near a plane wall the single layer A includes the
+/// images, the densities of the unit motions are solved for one by one, and the collocation errors of the force and torque of f are corrected (2.11).
+/// Calls are collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
-  /// `body`: surface with its tube or wall. `solvers`: options of the system above.
+  /// `body`: surface of the body with its tube or wall. `solvers`: solver options of the linear system for traction and motion.
   FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const SolverOptions& solvers, const Rigid& driven = {});
 

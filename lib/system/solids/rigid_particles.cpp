@@ -26,7 +26,7 @@ std::vector<int> numbers(int first, int last) {
   return all;
 }
 
-/// Returns A f at sites for each f.
+/// Returns the single layer A f at sites for each of six densities f.
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
@@ -38,7 +38,8 @@ std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Spa
   return u;
 }
 
-/// Returns S H for weights S, shape (N, sites), with row 3 a + c for component c. Rows of H are assembled in chunks.
+/// Returns the product of weights, shape (N, sites), with the double-layer matrix H at the sites. Row 3 a + c of the product belongs to row a of the
+/// weights and component c. Rows of H are assembled in chunks.
 Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::SparseMatrix<double>& weights, const spline::Space& space,
                                       const Net& surface, const quadrature::Options& quadrature) {
   constexpr int at_a_time = 512;
@@ -87,7 +88,7 @@ OwnLacking::OwnLacking(const spline::Space& space, const Net& surface, const qua
 
 namespace {
 
-/// Returns r x as a matrix.
+/// Returns the matrix of the cross product with r: cross(r) v = r x v.
 Mat3 cross(const Vec3& r) {
   Mat3 matrix;
   matrix << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
@@ -263,7 +264,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
 }
 
-/// Computes the integral from df = -(a + b x r).
+/// Computes int df r dG in closed form for the load df = -(a + b x r).
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.load();

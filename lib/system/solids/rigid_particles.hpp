@@ -17,15 +17,17 @@
 namespace tanktread::coupling {
 
 /// Collocation correction M^-1 int N_A u dG - R^-1 u, projected minus collocated, of the velocity u that the layers of a body induce on the body
-/// itself, for unit viscosity. A spline surface of n elements per side is higher at its collocation sites than between them by about 1/n^4, and the
-/// velocity differs on the two sides of the surface. By collocation a sphere rotated by a torque therefore rotates too slowly by a relative
-/// 0.035/n^4, and its stresslet in a strain has a similar error.
+/// itself, for unit viscosity. A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4, and
+/// the velocity differs on the two sides of the surface. Without this correction a sphere rotated by a torque therefore rotates too slowly by a
+/// relative 0.035/n^4, and its stresslet in a strain has a similar error.
 struct OwnLacking {
-  std::array<Net, 6> loads;  ///< corrections for u = A f with the loads f = e_k and e_k x r, k = 0, 1, 2, r from the centre of the volume
-  Eigen::MatrixXd density;   ///< correction for u = H w as a matrix acting on w, shape (3 N, 3 N); empty for more than `most_points` control points
+  std::array<Net, 6> loads;  ///< corrections for u = A f (single layer) with the loads f = e_k and e_k x r, k = 0, 1, 2; r: position from
+                             ///< the centre of volume
+  Eigen::MatrixXd density;   ///< correction for u = H w (double layer) as a matrix acting on w, shape (3 N, 3 N); empty if there are more
+                             ///< than `most_points`
 
-  /// Takes 72 bytes per pair of control points. Stored in double precision, because GMRES mistakes single-precision rounding for a residual that does
-  /// not decrease.
+  /// Largest number of control points for which `density` is stored, which takes 72 bytes per pair of control points. It is stored in double
+  /// precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
@@ -35,11 +37,12 @@ struct OwnLacking {
 ///
 ///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
 ///
-/// w replaces v in the unknowns. The integral does not change if a rigid motion is added to w, so that the rigid motion <w> nearest to w is free to
-/// represent other unknowns. If force and torque on a body are given, V = <w> and df = -(a + b x r) with this force and torque on the fluid. If V is
-/// given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power & Miranda 1987; Kim & Karrila 1991, chapter 15.
+/// The density w replaces v in the unknowns. The integral does not change if a rigid motion is added to w, so that the rigid motion <w> nearest to w
+/// (least squares) is free to represent other unknowns. If the force and torque of a body are given, V = <w>, and the load df = -(a + b x r) has this
+/// force and torque on the fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power &
+/// Miranda 1987; Kim & Karrila 1991, chapter 15.
 ///
-/// Nets are stacked nets of all particles. A body's rows of a net x are interpreted as the nearest rigid image of the body at rest.
+/// Nets are stacked nets of all particles. A body's rows of a net x stand for the position of the rigid body that fits these rows best.
 class RigidParticles {
  public:
   /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid. `solved_here`: true if the bodies are
@@ -49,25 +52,26 @@ class RigidParticles {
   bool empty() const { return bodies_.empty(); }
   bool prescribed() const;  ///< true if the motion of any body is prescribed
 
-  /// Moves every body to the position that fits its rows of x best, and sets its rows to this position.
+  /// Moves every body to the position that fits its rows of x best, and sets its rows of x to this position.
   void place(Net& x);
 
-  /// Sets forces on the bodies in addition to the given ones, by their virtual work with one row per control point of all particles. The forces act
-  /// on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
+  /// Sets forces on the bodies in addition to the prescribed forces, by their virtual work with one row per control point of all particles. The
+  /// forces act on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
   void push(const Net& work);
 
-  void add_load(Net& load) const;            ///< adds the load of given forces and torques
-  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of -R^-1 A f/mu, f the load of the body
-  void subtract_prescribed(Net& v) const;          ///< subtracts V of the bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< subtracts w, adds <w> if force and torque are given, and adds the collocation correction of
-                                              ///< R^-1 D w, in the rows of v
-  Net completing_load(const Net& w) const;   ///< (mu/R_C) <w> for bodies with prescribed motion, 0 in other rows
-  void move(Net& v);                         ///< replaces w in the rows of v by V; w is stored
+  void add_load(Net& load) const;            ///< adds the load df (2.23) of bodies with given force and torque
+  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
+                                             ///< body's load f
+  void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
+  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w, adds <w> (2.23) if force and torque are given, and
+                                              ///< adds the collocation correction of the double layer R^-1 D w
+  Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> (2.23) of bodies with prescribed motion; 0 in other rows
+  void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, the system is solved for the images of the bodies in the cell. `enter` replaces the bodies by these images: shifts[p] is the
   /// position of particle p minus the position of its image, and `gradient` is the gradient of the flow. `carry` moves the image of particle p, if it
-  /// is a body, by `along` back to the position of the body, and adds `faster` to its velocity.
+  /// is a body, by `along` back to the position of the body, and adds the velocity difference `faster` to its velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -77,7 +81,7 @@ class RigidParticles {
   const RigidMotion& motion(std::size_t p) const { return body(p).motion; }
   const Net& density(std::size_t p) const { return body(p).density; }  ///< w, rows of this body
   Vec3 force(std::size_t p) const { return body(p).force; }            ///< force on the fluid
-  Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< torque on the fluid, about the centre
+  Vec3 torque(std::size_t p) const { return body(p).torque; }          ///< torque on the fluid about the centre of volume
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
@@ -91,7 +95,7 @@ class RigidParticles {
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
-  /// The body is in its position at rest.
+  /// Valid for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -99,13 +103,13 @@ class RigidParticles {
   struct Body {
     spline::Block block;
     Rigid rigid;
-    Net pushed;  // virtual work set by `push`; no rows if none
+    Net pushed;  // virtual work of the forces set by push(); no rows if there are none
     double radius = 0, viscosity = 0;
-    Net rest;             // net at rest relative to the centre
+    Net rest;             // control net at rest relative to the centre of volume
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // integrals over the surface: forces and torques of the six rigid motions as loads
+    Eigen::Matrix<double, 6, 6> inertia;  // force and torque (columns) of each unit rigid motion taken as a load
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
@@ -116,17 +120,19 @@ class RigidParticles {
     Vec3 force, torque;
 
     Rigid given() const;
-    RigidMotion mean(const Net& w) const;      // <w>, from w of all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // rigid field a + b x r with this integral and moment over the surface
+    RigidMotion mean(const Net& w) const;      // rigid motion <w> nearest to w (2.23); `w`: net of all particles
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this integral and moment over the surface
     Net field(const RigidMotion& of) const;                             // values of a rigid field at the control points of the body
-    RigidMotion load() const;                                           // a and b of the force on the fluid
-    Net lacking_of(const RigidMotion& load) const;                      // collocation correction of R^-1 A f, f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation correction of R^-1 H w, w of all particles
+    RigidMotion load() const;                                           // coefficients a and b of the load -df = a + b x r (2.23) on the
+                                                                        // fluid
+    Net lacking_of(const RigidMotion& load) const;                      // collocation correction (OwnLacking) of R^-1 A f for f = a + b x r
+    Net lacking_of(const Net& w) const;                                 // collocation correction (OwnLacking) of R^-1 H w; `w`: net of all
+                                                                        // particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 
   std::vector<Body> bodies_;
-  std::vector<int> of_particle_;  // index among the bodies, or -1
+  std::vector<int> of_particle_;  // for each particle, its index in bodies_; -1 if it is not a rigid body
 };
 
 }  // namespace tanktread::coupling

@@ -17,7 +17,7 @@ Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
 Eigen::Map<const Net> as_net(const Eigen::Ref<const Eigen::VectorXd>& numbers) { return {numbers.data(), numbers.size() / 3, 3}; }
 
-/// Sets the six columns of the unit motions of a body in its rows, at points or as control values.
+/// Sets six columns to the velocities of a body's unit motions at x, in the rows of the body. If x is a control net, they are control values.
 void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net own = block.rows(x);
   for (int k = 0; k < 6; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(rigid_velocity(own, unit_motion(k), centre));
@@ -25,13 +25,13 @@ void set_unit_motions(const Net& x, const spline::Block& block, const Vec3& cent
 
 constexpr int strains = 5;
 
-/// Sets the five columns of the unit strains at a body's sites.
+/// Sets five columns to the velocities of the unit strain flows at the sites of a body.
 void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& centre, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Net from_centre = block.rows(at).rowwise() - centre.transpose();
   for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
-/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Motions that are not free do not change.
+/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Prescribed motions do not change.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
   if (free.empty()) return motion;
@@ -71,8 +71,8 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
-/// Sets b and s (R c)/(b.c) of each body. Any velocity with nonzero flux makes the system regular; the radial field about the mean of the sites is
-/// used.
+/// Sets the two factors b and s (R c)/(b.c) of the regularising term of (2.10) for each body. Any field c with nonzero flux b.c makes the system
+/// regular; the radial field about the mean of the sites is used.
 void RigidTractions::make_regular(const Net& x, const Net& at) {
   flux_ = outward_ = Net::Zero(x.rows(), 3);
   for (const Particle& body : particles_) {
@@ -97,7 +97,7 @@ Eigen::MatrixXd RigidTractions::system() {
   return all;
 }
 
-/// Returns the product of the regularised A of all lattice images with f.
+/// Returns the product of f with the regularised single layer A that includes all lattice images.
 Net RigidTractions::images_of(const Net& f) {
   Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
   for (const Particle& body : particles_)
@@ -114,7 +114,7 @@ void RigidTractions::factor() {
     factors_.emplace(std::exchange(alone_, {}));
 }
 
-/// Returns the densities for velocities at the sites, one per column, for the viscosity 1.
+/// Returns the force densities that produce the given velocities at the sites, one per column, for the viscosity 1.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!repeats_ && !tube_) return factors_->solve(velocities);
@@ -185,7 +185,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
-  Eigen::MatrixXd work(n, m);  // work of a density in each unit motion
+  Eigen::MatrixXd work(n, m);  // column k, product with a density: its work in the unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);

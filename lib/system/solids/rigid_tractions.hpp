@@ -31,14 +31,14 @@ namespace tanktread::coupling {
 ///
 /// where either the motion or the force and torque of each body is given. The operator is assembled at every position, made regular by one flux
 /// condition per body as in (2.10), and factored, so that films cost no iterations. f is a sum of the densities z_k of unit motions and the density
-/// of the flow. By the reciprocal theorem (2.11) the collocation error of a force or torque is corrected by adding int z_k.(v - (1/mu) A f) dG over
-/// all bodies. The error of a stresslet is corrected in the same way with the densities of unit strains of its body, except in a tube. The remaining
-/// errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which limits the
-/// number of control points to a few thousand.
+/// due to the ambient flow. By the reciprocal theorem (2.11) the collocation error of a force or torque is corrected by adding int z_k.(v - (1/mu) A
+/// f) dG over all bodies. The error of a stresslet is corrected in the same way with the densities of unit strains of its body, except in a tube. The
+/// remaining errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which
+/// limits the number of control points to a few thousand.
 ///
-/// On a lattice, A includes all images. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. These additions are
-/// smooth. Each density is therefore found by a few iterations, and the preconditioner is the factored operator without these additions. The pressure
-/// drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
+/// On a lattice, A includes all images. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. Each density is then
+/// found by iteration, preconditioned by the factored operator without the images or the response; a few iterations suffice, because both are smooth.
+/// The pressure drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
@@ -53,20 +53,21 @@ class RigidTractions {
   struct Body {
     RigidMotion motion;
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) on the fluid
-    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, not corrected
+    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the correction of moment()
   };
 
-  /// Solves for bodies with net x, for which the tube has been set, with these centres and drives. Results are kept until the next call. Collective.
+  /// Solves for bodies with net x, for which the tube has been set, with these centres and driving forces or motions. Results are kept until the next
+  /// call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
 
   /// Returns int f r dG of a body for the latest solve. Its symmetric part, except for the trace, is corrected for the collocation error, which takes
-  /// five more solves. In a tube it is not corrected. Collective.
+  /// one more solve per unit strain (five). In a tube it is not corrected. Collective.
   Mat3 moment(std::size_t p);
 
   const Net& density() const { return density_; }  ///< control values of f
-  double lacking_pressure() const { return lacking_pressure_; }         ///< correction of (2.7), for all copies
+  double lacking_pressure() const { return lacking_pressure_; }         ///< correction of the pressure drop (2.7), for all bodies together
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
@@ -92,7 +93,7 @@ class RigidTractions {
   Krylov krylov_;
   double tolerance_;
   std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
-  Net flux_, outward_;     // b of each body, and a velocity field with nonzero flux divided by this flux
+  Net flux_, outward_;     // flux vector b of each body; a velocity field with nonzero flux, divided by this flux (2.10)
   Eigen::MatrixXd alone_;  // system without the response of the tube; kept only in a tube
   std::optional<DenseFactors> factors_;  // LU factors of `alone_`
   Net at_;                               // positions of the sites in the latest call of `solve`; left_: residual (2.11) of the density there

@@ -104,7 +104,7 @@ Net Tube::images_on_particle(const Net& f, const Net& v) {
   return on_particle(particle_->cause(f, v, *wall_).at_sites);
 }
 
-/// Distributes the rank-owned rows to all ranks.
+/// Returns the rank-owned rows of all ranks, one row per collocation point of the particle.
 Net Tube::on_particle(const Net& own) const {
   return particle_->ranks.filled(own.rows(), [&](Net& u) {
     for (const int i : particle_->own) u.row(i) = own.row(i);
@@ -150,12 +150,14 @@ double Tube::empty_pressure_drop() const {
   return channel ? channel->pressure_drop() : flow_->pressure_gradient() * wall().length();
 }
 
-/// Returns the fraction by which the particle reduces the flow rate if the pressure drop is prescribed, otherwise 0.
+/// Returns the fraction by which the particle reduces the flow rate if the pressure drop of the duct is prescribed, otherwise 0. `pressure_drop`: dp
+/// (2.7).
 double Tube::slowed(double pressure_drop) const {
   return particle_->parameters.holds_pressure_drop ? pressure_drop / empty_pressure_drop() : 0;
 }
 
-/// Returns mu c at points in the wall's frame: mu times the velocity due to a unit pressure drop, without the response of the wall's traction.
+/// Returns mu c (2.5) at points in the wall's frame: mu times the velocity due to a unit pressure drop, without the velocity due to the wall's
+/// traction.
 Net Tube::driven(const Net& at) const {
   return cell() ? Net(viscosity() / empty_pressure_drop() * flow_->velocities(at)) : wall_->inlet().integral(at);
 }

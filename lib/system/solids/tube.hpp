@@ -27,7 +27,7 @@ struct BetweenSites;
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
   double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
-  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points: none
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; a symmetry without points: no symmetry
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
@@ -52,8 +52,9 @@ struct TubeParameters {
 /// then the excess over the pressure drop of the empty tube at the reduced flow rate Q (1 - dp/dp_0).
 ///
 /// A duct that repeats along x1 is represented by one period of its wall, without ends and with the kernels of one period (Layer::repeat). c is then
-/// the empty duct's flow v_inf per unit pressure drop of a period. It vanishes on the wall, so that the response without it is that of a prescribed
-/// pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on the particle.
+/// the empty duct's flow v_inf per unit pressure drop of a period. This flow vanishes on the wall, so that the response without the term dp c is the
+/// response at a prescribed pressure drop. dp is the pressure drop of one period, and the response includes the effect of the particle's images on
+/// the particle.
 ///
 /// The wall of a channel is fixed in the laboratory frame, and v_inf is the flow of ChannelFlow. The contribution of v to dp then follows, without
 /// f_inf, from the condition that the disturbance has zero flow rate (2.14).
@@ -65,29 +66,29 @@ class Tube {
   /// Constructs a channel with the wall of its flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs the same tube for another mesh of the particle. All data of the wall are shared.
+  /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
   /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
-  /// Sets 1 - lambda of the particle of each control point, if there are several particles. For a rigid body the contrast is -1, and the argument `v`
-  /// of other functions is w of (2.23).
+  /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
+  /// in its rows, the argument `v` of the functions below is w of (2.23).
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particle's control net, in the laboratory frame; later calls use this shape. `centroid`: origin along x1 of the frame of a straight
   /// wall; by default the particle's centroid.
   void place(const Net& x, std::optional<double> centroid = {});
 
-  /// Returns the lattice of a duct that repeats.
+  /// Returns the lattice of a periodic duct; not set for other ducts.
   const std::optional<stokes::PeriodicCell>& cell() const;
 
   struct Response {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
     Net wall_traction;  ///< f^D, control values on the wall
     double pressure_drop = 0;
-    Net load, moves;  ///< load f and velocity v of the particle, only in a duct that repeats
+    Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };
 
   /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: known correction of the pressure drop.
@@ -103,47 +104,49 @@ class Tube {
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
-  /// Parts of the block system, at the collocation points of the wall and the particle.
+  /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
   Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int T v n
+  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
-  Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity of the particle's images in a duct that repeats
+  Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
 
-  /// Returns c on the particle. In a duct that repeats, this is v_inf of the empty duct per unit pressure drop of a period.
+  /// Returns c (2.5) at the particle's collocation points. In a periodic duct this is v_inf of the empty duct per unit pressure drop of a period.
   const Net& inlet_on_particle() const;
-  const Net& ambient() const;                           ///< v_inf at the collocation points, with amplitude 1
+  const Net& ambient() const;                           ///< v_inf (2.7) at the particle's collocation points, with amplitude 1
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
-  /// Returns the correction of `pressure_of` for a force density f, if the ambient flow is a duct flow with this amplitude. `work`: residual work of
-  /// the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the points of
-  /// `between` (2.41).
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors, if the ambient flow is a duct flow with this amplitude. `work`: residual
+  /// work of the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the
+  /// points of `between`.
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
-  /// Independent checks: errors of a response in conditions that it must satisfy (2.14).
+  /// Independent checks: errors of a response in conditions (2.14) that it satisfies exactly if discretisation errors vanish.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< A dp minus the axial forces on wall and particle, divided by the duct's A G R_T
+    double force = 0;         ///< axial balance: section area times dp minus axial forces on wall and particle, per area x pressure
+                              ///< gradient x radius of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops for which `flux` or `force` would vanish
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops: that would make `flux` zero; that would make `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
   /// Residual of the response to a load f: int N_A u dG of the velocity on the wall between its collocation points, and the flow rate through the
-  /// inlet. Exactly, both are zero.
+  /// inlet. Both vanish for the exact response.
   struct Leak {
     Net velocity;
     double flow = 0;
   };
   Leak leak(const Net& f);
 
-  /// Returns the contribution of the wall and the inlet to the correction (2.42). It is the work f^D.leak.velocity - dp leak.flow, where the leak is
-  /// due to one load, and f^D and dp belong to the response `of` to another load.
+  /// Returns the contribution of the wall and the inlet to the correction (2.42): the work f^D.leak.velocity - dp leak.flow, where `leak` is due to
+  /// one load, and f^D and dp are the response `of` to another load.
   double work(const Leak& leak, const Response& of) const;
 
-  /// Returns the flow rate if the particle's pressure drop has this value: Q, or the reduced flow rate if the pressure drop is prescribed.
+  /// Returns the flow rate if the particle causes this additional pressure drop: Q, or the reduced flow rate if the pressure drop of the duct is
+  /// prescribed.
   double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
@@ -159,9 +162,9 @@ class Tube {
   bool inside(const Net& x, std::span<const int> rows) const;
 
   const surface::TubeWall& wall() const;
-  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards the data that the wall's iterative solver keeps
+  void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< number for both surfaces, including the assembly of the wall
+  stokes::Evaluations kernel_evaluations() const;  ///< sum for the particle and the wall, including the assembly of the wall
 
  private:
   struct Particle;
@@ -178,9 +181,11 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall's traction; computed at first use, like the next three members
-  Net flow_of_wall_;  // weights of a velocity on the wall: give the flow rate through the inlet due to the traction that cancels the velocity
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop: of mu c; of mu c and the wall's response
+  Net flow_weights_, force_weights_;  // weights of the wall's traction in flow rate and force; they, flow_of_wall_, own_flow_ and
+                                      // flow_of_pressure_ are computed at first use
+  Net flow_of_wall_;  // weights of a velocity on the wall; their product is the flow rate through the inlet due to the traction that
+                      // cancels this velocity
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop, of mu c (2.5) only; of mu c with the wall's response
 };
 
 }  // namespace tanktread::coupling

@@ -1,4 +1,4 @@
-// Independent checks of the pressure drop, and the distance to the wall.
+// Checks of the response of a tube by conditions that are not used to compute it, and the distance to the wall.
 
 #include <algorithm>
 #include <limits>
@@ -12,10 +12,13 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only() with which no target excludes the surface
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // tolerance of integrals over the wall with large pressures: factor and upper limit
+constexpr int everything = std::numeric_limits<int>::max();  // see_images_only(everything): no target is at or after this row, so that the
+                                                             // surface itself contributes to all targets
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // tolerance of wall integrals in leak(), where pressures are large: factor on
+                                                           // the usual tolerance, upper limit of the result
 
-/// Adds those points between the centroid and the outline of a section that are inside the outline. `place`: maps points of the section into space.
+/// Adds points on the straight lines from the centroid of a section to points of its outline, except points that are not inside the outline. `place`:
+/// maps points of the section into space.
 template <class Place>
 void add_points_of_cap(const surface::Outline& outline, const Place& place, std::vector<Vec3>& points) {
   const surface::Vec2 centre = outline.centroid();
@@ -27,7 +30,7 @@ void add_points_of_cap(const surface::Outline& outline, const Place& place, std:
       }
 }
 
-/// Returns points on the caps at both ends.
+/// Returns points on the plane caps that close both ends of the tube.
 std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
   std::vector<Vec3> points;
   for (const double s : {wall.start, wall.end}) {
@@ -67,7 +70,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   const double area = wall_->surface().outline.area();
   weigh_flow();
   double flow = -dot(flow_weights_, response.wall_traction) / mu + dp / mu * own_flow_;
-  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // dp of a period acts on the wall
+  double force = (cell() ? 0 : area * dp) - dot(force_weights_, response.wall_traction);  // a periodic duct has no caps on which dp acts
   std::vector<double> value[3];
   if (f.size() > 0) {
     particle.single.values(f, value);
@@ -149,7 +152,7 @@ double Tube::gap() const {
   const surface::Patches patches(particle_->geometry.bezier(), particle_->shape);
   if (fixed()) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend across the seam
+    for (const double beyond : {0., wall().period, -wall().period}) {  // the particle may extend beyond the end of the period
       const surface::Patches seen(particle_->geometry.bezier(), particle_->shape.rowwise() + beyond * Vec3::UnitX().transpose());
       if (beyond == 0 || wall().period > 0)
         nearest =

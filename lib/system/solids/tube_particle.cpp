@@ -124,9 +124,9 @@ const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
   return flow_of_strength_;
 }
 
-/// Computes the weights of (2.7) divided by Q. In a straight tube v_inf and f_inf are evaluated at the layers' nodes, so that the flow rate of the
-/// disturbance is 0 for every load. In a channel, evaluating v_inf at the nodes would require integrals over the wall, and v_inf is interpolated at
-/// the collocation points instead.
+/// Computes the weights of the load f and of the velocity v in the pressure drop (2.7). In a straight tube v_inf and f_inf are evaluated at the
+/// layers' nodes, so that the flow rate of the disturbance is 0 for every load. In a channel, evaluating v_inf at the nodes would require integrals
+/// over the wall, and v_inf is interpolated at the collocation points instead.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   const auto n = static_cast<std::size_t>(single.n_nodes());

@@ -18,10 +18,10 @@
 namespace tanktread::coupling {
 
 struct Tube::Particle {
-  /// Data of a duct that repeats.
+  /// Data of a periodic duct.
   struct Period {
     stokes::PeriodicCell cell;
-    std::array<Vec3, 2> across;  ///< extent of the wall, in the axes of the cell
+    std::array<Vec3, 2> across;  ///< lowest and highest coordinates of the wall, in the axes of the cell
     Net targets;                 ///< targets of the wall, then the collocation points of the particle
     std::vector<int> own;        ///< rank-owned rows of `targets`
   };
@@ -32,8 +32,9 @@ struct Tube::Particle {
   /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
-  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of the velocity on the wall in dp, or empty. If
-  /// given, the weights of v in dp are computed from them before rows are rounded to low precision, which would be too inaccurate for these weights.
+  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of a velocity on the wall in the pressure drop
+  /// dp, or empty. If given, the weights of the particle's velocity v in dp are computed from them before rows are rounded to low precision, which
+  /// would be too inaccurate for these weights.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
@@ -44,18 +45,19 @@ struct Tube::Particle {
   /// Returns (1 - lambda) v: the strength of the double layer.
   Net strength(const Net& v) const { return contrasts.asDiagonal() * v; }
 
-  /// Adds to rows of u the velocity at these points, in the wall's frame, that a load f and a velocity v cause by the images of the particle in a
-  /// duct that repeats. Empty nets are skipped.
+  /// Adds to rows of u the velocity at the points `at` (in the wall's frame) due to the images of the particle in a periodic duct, for the load f and
+  /// the velocity v. Empty nets are skipped.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Velocities that the load f and the velocity v of the particle cause in a duct that repeats, for rank-owned rows. At the targets on the wall,
-  /// both the particle and its images contribute. At the collocation points of the particle, only the images contribute. Empty nets are skipped.
+  /// Velocities that the load f and the velocity v of the particle cause in a periodic duct, for rank-owned rows. At the targets on the wall, both
+  /// the particle and its images contribute. At the collocation points of the particle, only the images contribute. Empty nets are skipped.
   struct Cause {
     Net at_wall, at_sites;
   };
   Cause cause(const Net& f, const Net& v, const Wall& wall);
 
-  /// Returns the weights of the strength (1 - lambda) v in the flow rate of its double layer along the duct. Cached for the current shape.
+  /// Returns the weights with which the strength (1 - lambda) v contributes to the flow rate along the duct by its double layer. Cached for the
+  /// current shape.
   const Net& flow_of_strength(const Wall& wall);
 
   stokes::Evaluations evaluations() const;
@@ -67,20 +69,20 @@ struct Tube::Particle {
   Ranks ranks;
   surface::Geometry geometry;
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
-  membrane::DirectSolver from_sites;        ///< factored R, to compute control values from values at the sites
+  membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
   std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
-  std::optional<Period> period;       ///< set in a duct that repeats
+  std::optional<Period> period;       ///< set if the duct is periodic
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
   Net shape;                                   ///< net of the particle in the frame of the wall
-  double centroid = 0;                         ///< position along x1 of the origin of that frame
+  double centroid = 0;                         ///< position along x1 of the origin of the wall's frame
   Net sites;                                   ///< collocation points, in the wall's frame
   Net inlet;                                   ///< (1/mu) c at the sites
-  Net ambient, interpolated_ambient;           ///< duct flow at the sites; in a channel also its control values
-  Net pressure_of_load, pressure_of_velocity;  ///< weights of f and v in (2.7); the weights of v are empty if lambda = 1
-  std::vector<int> nearest;                    ///< nearest site for each target on the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< cached for the iterations if lambda != 1
+  Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites; its control values (in a channel only)
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in (2.7); the second is empty if lambda = 1
+  std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections, cached for the iterations if lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

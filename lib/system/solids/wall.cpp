@@ -76,10 +76,12 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-constexpr double residual = 1e-2;        // residual of the iterative solve divided by the tolerance of integrals
-constexpr double mean_of_wave = 0.516;  // m of (2.39); harmonics k^-5, as in the single layer of the interpolation error of cubic splines
+constexpr double residual = 1e-2;        // tolerance of the iterative solve divided by the quadrature tolerance
+constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints;
+                                        // the error has harmonics k^-5, as the single layer of the interpolation error of
+                                        // cubic splines has
 
-/// Returns options with a smaller tolerance, for the matrix of the wall on itself. This matrix is assembled only once.
+/// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
   return options;
@@ -92,8 +94,8 @@ Net collocation_points(const surface::TubeWall& wall) {
   return at;
 }
 
-/// Returns the lattice of a wall that repeats. The reference distance is well outside the duct, because with a distance close to the duct's radius
-/// the wall could not move the fluid along the duct.
+/// Returns the lattice of a periodic wall. The reference distance l of (2.43) is well outside the duct: if it were close to the duct's radius,
+/// tractions on the wall could not move the fluid along the duct.
 std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
   constexpr double far = 4;
   if (wall.period == 0) return {};
@@ -144,7 +146,7 @@ std::array<Vec3, 2> Wall::across() const {
   return extent;
 }
 
-/// Appends the middles of elements to the targets.
+/// Appends the midpoints of the wall's elements to the targets (2.39).
 void Wall::add_middles() {
   const auto n = static_cast<int>(surface_.middles.size()), first = static_cast<int>(sites_.rows());
   targets_.conservativeResize(first + n, 3);
@@ -157,11 +159,12 @@ void Wall::add_middles() {
     if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
 }
 
-/// Returns the weight of each middle around a collocation point in the mean (2.39). The residual velocity is nearly a wave that vanishes at the
-/// collocation points; its mean is `mean_of_wave` times its value at the middles.
+/// Returns the weight, in the mean velocity (2.39), of each element midpoint around a collocation point. The residual velocity is nearly a wave that
+/// vanishes at the collocation points; its mean is `mean_of_wave` times its value at the midpoints.
 double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
 
-/// Returns the indices of the middles of the density elements that contain a collocation point.
+/// Returns the indices (in `middles`) of the midpoints of the elements that contain a collocation point. The elements are those on which the traction
+/// density is smooth.
 std::vector<int> Wall::middles_around(int point) const {
   std::vector<int> all;
   for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
@@ -169,7 +172,8 @@ std::vector<int> Wall::middles_around(int point) const {
   return all;
 }
 
-/// Computes the two fields that make A regular, weighted so that a uniform pressure produces about the velocity of a tangential traction.
+/// Computes the two fields pressure_ and flux_ whose product is added to A to make it regular, because a uniform pressure produces no velocity. They
+/// are scaled so that with them it produces about the velocity of a tangential traction of equal size.
 void Wall::find_pressure() {
   flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
   pressure_.resize(sites_.rows(), 3);
@@ -179,7 +183,7 @@ void Wall::find_pressure() {
 }
 
 /// Returns, on every rank, the matrix between the components of fundamental points that symmetry does not make zero (4.12). Many rows are assembled
-/// at a time, because neighbouring points share middles.
+/// at a time, because neighbouring points share element midpoints (2.39).
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();
@@ -230,7 +234,8 @@ template <class Real>
 void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
                      stokes::Rows<Real>& rows) const {
   if (!has_middles()) return assemble(sites, rows);
-  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // index of each middle among the targets, or -1
+  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // row: index of each midpoint among the targets,
+                                                                                           // or -1
   for (const int i : sites)
     for (const int e : middles_around(i))
       if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {
@@ -304,7 +309,7 @@ Net Wall::solve_transposed(const Net& weights) const {
   return fundamental_net(factors_.solve_transposed(fundamental(folded)));
 }
 
-/// Returns the vector of the components of fundamental points that symmetry does not make zero.
+/// Returns the components of a net at fundamental points as a vector, without the components that symmetry makes zero.
 Eigen::VectorXd Wall::fundamental(const Net& net) const {
   std::vector<double> numbers;
   for (const int a : symmetry_.fundamental())
@@ -313,7 +318,7 @@ Eigen::VectorXd Wall::fundamental(const Net& net) const {
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 
-/// Returns the net with these components at fundamental points. Rows of image points are zero.
+/// Returns the net whose components at fundamental points are `numbers` (inverse of `fundamental`). Rows of image points are zero.
 Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   Net net = Net::Zero(sites_.rows(), 3);
   Eigen::Index n = 0;
@@ -324,7 +329,7 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
 }
 
 /// Returns int N_A field dG for every A. Along the wall, the Gauss points are clustered at the ends of each element by s = 3 q^2 - 2 q^3, because the
-/// inlet's integral is steep at the rim.
+/// inlet's integral (2.13) is steep at the rim of the inlet.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);

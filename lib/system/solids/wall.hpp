@@ -53,10 +53,10 @@ class WallPatches {
 ///
 /// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through the wall. In a channel this
 /// leak would be a part of the flow rate, and for a train of particles it would grow with the pressure from one particle to the next. On the wall of
-/// a channel the mean velocity around each collocation point vanishes instead (2.39).
+/// a channel the mean velocity around each collocation point is therefore set to zero instead of the velocity at the point (2.39).
 ///
-/// A wall that repeats is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of
-/// control values per site. A constant pressure q n produces no velocity, so that the condition int f.n dG = 0 is added to A.
+/// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
+/// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
   /// Assembles and factors the operator. Collective. `phases`: if given, records the time of exchanges, also in `apply`; must outlive this object.
@@ -72,10 +72,11 @@ class Wall {
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
-  const std::vector<int>& own() const { return own_; }  ///< rank-owned rows among the fundamental ones
+  const std::vector<int>& own() const { return own_; }  ///< rank-owned rows, all of fundamental points
   const Net& sites() const { return sites_; }           ///< collocation points
 
-  /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the middles of elements.
+  /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the midpoints of elements
+  /// (2.39).
   const Net& targets() const { return targets_; }
   const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
 
@@ -89,33 +90,34 @@ class Wall {
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
 
-  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows; other rows are their images
-  stokes::Layer& layer() { return layer_; }             ///< layer of the wall at points off it, for control values on its space
-  const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a wall that repeats
+  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows among the ranks; other rows are their images
+  stokes::Layer& layer() { return layer_; }             ///< single layer at points off the wall, for control values on the layer's space
+  const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
-  /// Returns the lattice of a wall that repeats; not set for an open wall.
+  /// Returns the lattice of a periodic wall; not set for an open wall.
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
 
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const;
 
-  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. The two differ only if the wall repeats:
-  /// f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
+  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. The two differ only if the wall is
+  /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< transforms the columns of an operator, three per control point
+  void from_space(stokes::Rows<float>& rows) const;  ///< transforms an operator's columns, three per control point, to columns for f
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
-  /// a wall that repeats, A includes the condition int f.n dG = 0.
+  /// a periodic wall, A includes the condition int f.n dG = 0.
   Net apply(const Net& f) const;
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
-  /// Returns A^-T weights: its product with any rhs equals the product of `weights` with solve(rhs). Only if the operator is factored.
+  /// Returns A^-T weights: its product with any right-hand side rhs equals the product of `weights` with solve(rhs). Available only if the operator
+  /// is factored.
   Net solve_transposed(const Net& weights) const;
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< c of the inlet, collocated; zero for a wall that repeats
-  const Net& pumped() const { return pumped_; }              ///< A^-1 c: traction in the open, empty tube per unit pressure drop
+  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
+  const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
 
   /// Returns int N_A c dG and int N_A e1 dG for every A. Their products with a traction are its contribution to the flow rate through the inlet,
   /// times mu, and to the axial force.
@@ -123,13 +125,13 @@ class Wall {
   Net force_weights() const;
 
   /// Returns mu times the flow rate along the duct that a unit force at each of these points causes, one column per axis of the force. In an open
-  /// wall this is c of the inlet (2.13). In a wall that repeats, the sum of the forces must vanish, and the result is -rho^2/(4 L) e1, where rho is
-  /// the distance from the axis x1 (2.44).
+  /// wall this is c of the inlet (2.13). In a periodic wall, the sum of the forces must vanish, and the result is -rho^2/(4 L) e1, where rho is the
+  /// distance from the axis x1 (2.44).
   Net flow_of_forces(const Net& at) const;
 
   /// Returns the flow rate that a double layer of unit strength at a point with normal n causes, one component per axis of the strength. In an open
-  /// wall this is the flow rate through the inlet. In a wall that repeats, the strengths must have no flux, and the result is
-  /// (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
+  /// wall this is the flow rate through the inlet. In a periodic wall, the total flux of the strengths through their surface must vanish, and the
+  /// result is (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Returns the bounding boxes of the elements of a channel wall, to compute distances.
@@ -159,8 +161,8 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // only of a wall that repeats: traction w n of a constant pressure w, at the sites; int N_A n dG
-  std::unique_ptr<stokes::Layer> on_itself_;  // layer of the wall at the targets
+  Net pressure_, flux_;  // set for a periodic wall: traction w n of a constant pressure w, at the sites; int N_A n dG
+  std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;
   std::unique_ptr<Krylov> krylov_;

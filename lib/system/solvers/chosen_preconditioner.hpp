@@ -11,8 +11,8 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y: maps the part in the span of y by Z Y^T and the rest
-/// by another preconditioner (2.24)
+/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y: maps the part of a vector in the span of the y by Z
+/// Y^T, and the remaining part by another preconditioner (2.24).
 class RecycledProducts {
  public:
   /// Records a product of the current solve, which is used from the next solve on.
@@ -21,7 +21,7 @@ class RecycledProducts {
   /// Ends the current solve.
   void refresh();
 
-  /// Computes out = Z Y^T in + P (in - Y Y^T in), with `other` as P.
+  /// Computes out = Z Y^T in + P (in - Y Y^T in), with the preconditioner `other` as P (2.24).
   void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const;
 
   double scale() const { return scale_; }
@@ -35,7 +35,7 @@ class RecycledProducts {
 
   static constexpr std::size_t most = 10;
   std::vector<Product> present_, kept_;
-  double scale_ = 1;  // s that minimises |z - s y|: one over the size of the operator
+  double scale_ = 1;  // s that minimises |z - s y| for the latest z, y = A z: an estimate of 1/|A|
 };
 
 /// Preconditioner `Solvers/<system>/preconditioner` of the deck, with its data from earlier solves.
@@ -43,11 +43,11 @@ class ChosenPreconditioner {
  public:
   explicit ChosenPreconditioner(std::string kind = "own") : kind_(std::move(kind)) {}
 
-  /// Returns the system with this preconditioner. The result refers to `system` and to this object.
+  /// Returns `system` with the chosen preconditioner. The result keeps references to `system` and to this object.
   LinearSystem join(const LinearSystem& system);
 
   void refresh() { recycled_.refresh(); }  ///< ends a solve
-  void forget() { recycled_ = {}; }        ///< discards data of an earlier system
+  void forget() { recycled_ = {}; }        ///< discards the products recorded from earlier solves
 
  private:
   std::string kind_;

@@ -13,14 +13,14 @@
 namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet. Each block has six entries, each rounded to 16
-/// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because a Jacobian without (dA/dx) f contracts by a
-/// factor of about a tenth in any case. A product is memory-bound and takes a third of the time of floats.
+/// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
+/// therefore reduces its error by a factor of only about ten per iteration in any case. A product is memory-bound and takes a third of the time that
+/// it takes with floats.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
 
-  /// Assembles the rows of the rank-owned targets for a net of n points. `assemble(targets, rows)` sets three float rows per target, for a few
-  /// targets at a time.
+  /// Function that computes three float rows per target. assemble() calls it for a few of the rank-owned `targets` at a time, for a net of n points.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
   void assemble(const std::vector<int>& targets, int n, const Assemble& assemble);
 
@@ -32,7 +32,7 @@ class FrozenOperator {
  private:
   std::vector<int> targets_;
   int n_ = 0;
-  std::vector<std::uint16_t> entries_;       // [6 n target + n entry + point], entries 11, 12, 13, 22, 23, 33
+  std::vector<std::uint16_t> entries_;       // index 6 n target + n entry + point for n points and the block entries 11, 12, 13, 22, 23, 33
   mutable std::vector<float> f1_, f2_, f3_;
 };
 

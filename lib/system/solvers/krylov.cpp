@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* block_gmres = "Block GMRES";
 
-constexpr double least_recursive_residual = 1e-12;  // below this value the recursively computed residual is dominated by round-off
+constexpr double least_recursive_residual = 1e-12;  // relative residual below which the recursively computed residual is only round-off
 
 /// Returns the names that Stratimikos uses for the solvers of Belos' factory. "GMRES" is flexible GMRES, which needs no additional product to detect
 /// convergence.

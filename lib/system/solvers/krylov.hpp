@@ -27,7 +27,8 @@ using Apply = std::function<void(const double* in, double* out)>;
 struct LinearSystem {
   Blocks blocks;
   Apply product;
-  Apply precondition;  ///< approximate inverse of the product, optional; applied from the right, so that residuals refer to the original system
+  Apply precondition;  ///< optional: approximate inverse of `product`; applied from the right, so that residuals are those of the
+                       ///< unpreconditioned system
 };
 
 /// Result of a linear solve.
@@ -47,14 +48,14 @@ class Krylov {
   /// Returns the names of the available solvers: the names of Belos' factory.
   static std::vector<std::string> names();
 
-  /// Constructs one of these solvers ("GMRES", "BICGSTAB", …). Its parameter list is passed to Belos unchanged and overrides our defaults. Throws
-  /// UserError if Belos does not know the name or a parameter.
+  /// Constructs the Belos solver named in the options ("GMRES", "BICGSTAB", …). The parameter list of the options is passed to Belos unchanged and
+  /// overrides the defaults set here. Throws UserError if Belos does not know the name or a parameter.
   explicit Krylov(const IterativeOptions& options);
   Krylov(const std::string& solver, const std::shared_ptr<Teuchos::ParameterList>& list) : Krylov(IterativeOptions{solver, list}) {}
   ~Krylov();
 
   /// Solves the system for the right-hand side b to the residual `tolerance` relative to |b|, with initial guess x. Collective. Does not throw if the
-  /// solver stops early or breaks down (x is then not a number); check the report.
+  /// solver stops early or breaks down (x is NaN after a breakdown); check the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
   /// Discards the products that the preconditioner `recycled` keeps from earlier solves. Checkpoints do not contain them.

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Tolerance of the sum by clusters: a tenth of the error of the rule. Number of nodes above which clusters are faster, measured on capsules in shear
-/// flow.
+/// Tolerance of the sum by clusters, a tenth of the error of the trapezoidal rule; and number of nodes above which the sum by clusters is faster than
+/// the direct sum, measured on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
 constexpr Eigen::Index nodes_worth_a_tree = 4000;
 
@@ -87,7 +87,7 @@ void NodalOperator::find_near(const Surface& surface, double reach) {
   }
 }
 
-/// Computes K from A by subtracting the rule.
+/// Computes the corrections K (4.11) from the assembled blocks of A by subtracting the terms of the trapezoidal rule.
 void NodalOperator::subtract_rule(const Surface& surface) {
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
@@ -99,7 +99,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
   }
 }
 
-/// Computes w_B (R f)_B at all nodes.
+/// Computes the point forces w_B (R f)_B of (4.11) at all nodes.
 void NodalOperator::spread(const Net& f) {
   const Net values = values_ * f;
   for (std::size_t b = 0; b < row_.size(); ++b)
@@ -109,7 +109,7 @@ void NodalOperator::spread(const Net& f) {
     }
 }
 
-/// Computes rows of u by the rule: rows of the targets, or rows of all points if ranks share the sums.
+/// Computes the sum of the trapezoidal rule in (4.11): rows of the rank-owned targets, or rows of all points if ranks share the sums.
 void NodalOperator::sum(Net& u) {
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());

@@ -22,26 +22,28 @@ namespace tanktread::coupling {
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
 /// The node at the target itself is omitted. The sum is evaluated in every product, in double precision, because single-precision noise would grow
-/// from step to step to the size of the difference between symmetric and full runs (1e-8 of D). Only the near blocks are stored, about thirty per
-/// target, and on a large surface the sum is taken by clusters. The error of the operator is the error of the rule at a distance of a few elements.
-/// It slows the quasi-Newton iteration slightly and does not affect accuracy.
+/// from step to step until it dominates the difference between runs with and without symmetry (1e-8 in the deformation D). Only the near blocks are
+/// stored, about thirty per target, and on a large surface the sum is taken by clusters. The error of the operator is the error of the trapezoidal
+/// rule for nodes a few elements away. It slows the quasi-Newton iteration slightly and does not affect accuracy.
 class NodalOperator {
  public:
   struct Surface {
     Net sites;                          ///< x_B, collocation sites
     Eigen::SparseMatrix<double> values;  ///< R, collocation matrix, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
-    Eigen::VectorXd areas;               ///< current areas: a control point C is near if |x_C - x_i| < reach sqrt(area_C)
+    Eigen::VectorXd areas;               ///< current area of each control point; C is near the target x_i if |x_C - x_i| < reach
+                                         ///< sqrt(area_C)
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 
-  /// Computes blocks A_iC of near control points as Layer::assemble does.
+  /// Function that computes the blocks A_iC of near control points (Layer::assemble).
   using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Lets ranks share sums by clusters: this rank computes one of `parts` parts of equal work of the rows `everybody`, which include its own targets.
+  /// Lets ranks share sums by clusters: this rank computes part number `part` of `parts` parts of equal work of the sums for the rows `everybody`,
+  /// which include its own targets.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to

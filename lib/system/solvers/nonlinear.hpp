@@ -24,18 +24,18 @@ class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
-  /// Returns the number of iterates to combine for a steady shape with `size` unknowns. Near a fold and with travelling waves four iterates do not
-  /// converge, and on fine meshes twenty do not; on coarse meshes forty are linearly dependent.
+  /// Returns the number of iterates that Anderson's method combines for a steady shape with `size` unknowns. Near a fold and with travelling waves
+  /// four iterates do not converge, and on fine meshes twenty do not; on coarse meshes forty are linearly dependent.
   static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
-  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`, with products with dg/dx by finite differences of g,
-  /// Belos' solver `linear` and its preconditioner ("own" means none). `list` is passed to NOX unchanged and overrides our defaults. `depth`: number
-  /// of iterates that `anderson` combines, if the list does not set it.
+  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`, with products with dg/dx by finite differences of g, with
+  /// the Belos solver and preconditioner of `linear` (preconditioner "own": none). `list` is passed to NOX unchanged and overrides the defaults set
+  /// here. `depth`: number of iterates that `anderson` combines, if the list does not set it.
   FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"}, int depth = 4);
   ~FixedPoint();
 
-  /// Iterates from x until rest(g(x) - x) <= tolerance or until `most` iterations have been made. `rest` is `norm` if not given. A value of g that is
-  /// not finite ends the iteration. Throws UserError if NOX rejects the list. Collective.
+  /// Iterates from x until rest(g(x) - x) <= tolerance or until `most` iterations have been made. `rest` is the norm used by this test; if not given,
+  /// it is `norm`. A value of g that is not finite ends the iteration. Throws UserError if NOX rejects the list. Collective.
   NonlinearReport solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest = {}) const;
 
   /// Returns the path of a parameter of the given list that the last solve did not use; empty if all were used.

@@ -22,7 +22,7 @@ struct InterfaceOptions {
   /// material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and tangentially so that elements
   /// keep their shape. If not set: relaxed for a surface tension, material otherwise.
   std::optional<std::string> motion;
-  double relaxation = 1;  ///< speed of the mesh relaxation: the speed of an elastic surface at capillary number 1 / relaxation
+  double relaxation = 1;  ///< relaxation speed of the mesh, which moves like an elastic surface at capillary number 1/relaxation
 
   void declare(deck::Section& section);
 };
@@ -30,8 +30,8 @@ struct InterfaceOptions {
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
-  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< its parameter list, passed unchanged; if neither this nor the name is set, the list of
-                                                    ///< SolverOptions
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged; if neither list nor solver
+                                                    ///< is set, the list of SolverOptions
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
   int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
@@ -51,23 +51,25 @@ struct SolverOptions {
   std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
                                       ///< auto: matrix-free if far sums are taken by clusters
   std::string tube = "schur";                     ///< unknowns in a tube: v with the wall eliminated, or all blocks (BlockForm)
-  std::string wall = "auto";                      ///< wall of a channel: factored, iterative, or auto: iterative if the factors are large (Wall)
+  std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
+                                                  ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), first kind, rigid
                                       ///< bodies only (RigidTractions), or auto (Scene::by_tractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
-  std::string frozen_operator = "nodal";          ///< single layer of the Jacobian: a sum over nodes, or assembled
+  std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
+                                                  ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
   /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// Returns the options of a system. Where they are not set, the solver and the list for all systems are used.
+  /// Returns the options `system` with unset solver and parameter list replaced by the ones for all systems.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);
 };
 
-/// Solves a system of some dozens of unknowns with each solver whose name or list the deck sets: Belos', Amesos2's, and NOX' with the method
+/// Solves a small test system with each solver whose name or parameter list the deck sets: Belos', Amesos2's, and NOX' with the method
 /// `nonlinear_solver` (Time/nonlinear solver). Throws UserError, naming the key, if a solver or a list fails, or if NOX does not use a parameter.
 /// Collective.
 void try_solvers(const SolverOptions& solvers, const std::string& nonlinear_solver);

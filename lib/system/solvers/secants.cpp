@@ -6,7 +6,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr double regularisation = 1e-2;  // regularisation of the normal equations; corrections have norm 1 and may be nearly parallel
+constexpr double regularisation = 1e-2;  // regularisation of the normal equations; needed because the corrections (scaled to norm 1) may be
+                                         // nearly parallel
 
 }  // namespace
 

@@ -13,8 +13,8 @@ namespace tanktread::coupling {
 ///
 ///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
 ///
-/// The part omitted from (4.3) is bounded and changes with the shape, so that pairs remain useful for a few steps. This is a multisecant update: Fang
-/// & Saad, Numer. Linear Algebra Appl. 16 (2009).
+/// The part of the Jacobian that (4.3) omits is bounded and changes only as the shape changes, so that pairs remain useful for a few steps. This is a
+/// multisecant update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
 class Secants {
  public:
   /// `pairs`: d_1, e_1, d_2, e_2, ..., oldest first.

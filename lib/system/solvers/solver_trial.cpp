@@ -20,7 +20,7 @@ using List = Teuchos::ParameterList;
 using Works = std::function<bool(const List&)>;
 
 constexpr Eigen::Index n = 60;           // number of unknowns, larger than the number of products that Krylov stores
-constexpr int most_products = 10 * n;  // limit for a method that converges on this system
+constexpr int most_products = 10 * n;  // products with the matrix after which a method counts as not converging
 
 /// Returns the result of a trial, or false if a library throws anything.
 bool runs(const std::function<bool()>& trial) {
@@ -32,7 +32,7 @@ bool runs(const std::function<bool()>& trial) {
   return false;
 }
 
-/// Returns a symmetric, positive definite and diagonally dominant matrix, for which every method converges.
+/// Returns a symmetric, positive definite and diagonally dominant matrix, with which every method converges if its parameters are usable.
 Eigen::SparseMatrix<double> system_matrix() {
   Eigen::SparseMatrix<double> a(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -63,8 +63,8 @@ bool solves(IterativeOptions options, const List& list) {
   });
 }
 
-/// Returns the path of the first parameter of `given` that makes a trial of `whole` fail when added after the parameters before it; empty if none
-/// does. `grown`: the part of `whole` at `path`.
+/// Adds the parameters of `given` one by one to `whole` and returns the path of the first parameter with which the trial works(whole) fails; empty if
+/// none does. `grown`: sublist of `whole` at `path`, to which the parameters are added.
 std::string culprit(const List& given, const Works& works, const std::string& path, const List& whole, List& grown) {
   for (const auto& item : given) {
     const std::string here = path + "/" + item.first;

@@ -8,7 +8,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Views of the four blocks in one array of unknowns or residuals.
+/// Views of the four blocks (v, f^D, dp, multiplier) in one array of unknowns or residuals.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
@@ -42,8 +42,8 @@ void product(const BlockSystem& s, const In& x, Out r) {
   r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
 }
 
-/// Solves for the velocity and the multiplier with B = 1, then for the pressure drop and the wall traction. If `triangular`, these two include the
-/// contributions of the unknowns before them.
+/// Solves for the velocity and the multiplier with B = 1, then for the pressure drop and the wall traction. If `triangular`, the right-hand sides of
+/// the pressure drop and the traction include the contributions of the unknowns solved for before.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   x.multiplier = r.multiplier;

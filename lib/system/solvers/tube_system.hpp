@@ -22,16 +22,16 @@ struct BlockSystem {
   Tube& tube;
   std::function<Net(const Net&)> viscous;          ///< B v
   std::function<Net(const Net&)> control_values;   ///< applies R^-1
-  const Net& flux;                                 ///< b; empty if the volume is not constrained, which sets pi = 0
+  const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, which sets pi = 0
   const Net& normal;                               ///< n = M0^-1 b
   double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
 
   /// Returns the system with one of the preconditioners. All use B = 1 and the factored wall. `block triangular` solves for v and pi, then dp, then
-  /// f^D, each with the contributions of the unknowns before it. `block diagonal` omits these contributions. `block` uses no preconditioner. The
-  /// result refers to this object.
+  /// f^D, each with the contributions of the unknowns solved for before. `block diagonal` omits these contributions. `block` uses no preconditioner.
+  /// The result refers to this object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
 
-  /// Returns the right-hand side for the load f: r_v, and the contributions of f at the wall and to the pressure drop.
+  /// Returns the right-hand side for the load f. `velocity`: r_v; r_W and r_p are computed from f.
   Eigen::VectorXd right_hand_side(const Net& velocity, const Net& f) const;
 };
 
