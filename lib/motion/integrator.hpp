@@ -72,8 +72,8 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
 /// of time.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
-/// Returns the step to use towards `limit` when the controller proposes `step`: the whole remaining time if it fits, or half of it if two steps are
-/// needed, so that the last step is not tiny.
+/// Returns the step to use towards `limit` when the controller proposes `step`: all of the remaining time if it is not longer than `step`, or half of
+/// it if two steps are needed, so that the last step is not tiny.
 double step_towards(double time, double limit, double step);
 
 /// Continuous output within a step: the cubic Hermite interpolant of positions and slopes at both ends, of fourth order, without further evaluations.

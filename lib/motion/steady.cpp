@@ -26,7 +26,8 @@ void SteadyOptions::declare(deck::Section& section) {
 
 namespace {
 
-/// Adds to orthonormal fields the component of a field that is orthogonal to them, if it is more than the fraction `least` of the field.
+/// Adds the component of `field` that is orthogonal to the orthonormal fields in `all`, normalised, if its norm is more than the fraction `least` of
+/// the field's norm.
 void join(std::vector<Net>& all, Net field, double least) {
   const double size = field.norm();
   for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
@@ -39,7 +40,9 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  constexpr double rounding = 1e-6, between_meshes = 0.05;  // mesh error of an axisymmetric drop on a rotated mesh
+  // Least fraction of a field that must be independent of the others: above round-off, or above the mesh error of an axisymmetric drop on a rotated
+  // mesh.
+  constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
   for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
@@ -69,7 +72,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Takes shorter implicit steps until a step of full length changes x by little.
+/// Makes implicit steps, at first shorter than the step of the equations, until a step of full length changes x by little.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
@@ -110,7 +113,8 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const coupling::FixedPoint::Norm left = [&](const Net&) {  // a first correction is not an error estimate, unless it is 0
+  // Norm of the error for NOX. The first correction alone is no error estimate, so it ends the iteration only if it is 0.
+  const coupling::FixedPoint::Norm left = [&](const Net&) {
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);
