@@ -77,8 +77,8 @@ double wall_points(const Scene& scene) {
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 
-/// Returns the bytes per pair of control points that the assembled layer operators of the particle take: rows of doubles, and frozen operators of six
-/// entries of 16 bits. Frozen operators of Time/scheme `auto` are not counted, because it does not assemble operators that are too large.
+/// Returns the bytes per pair of control points of the assembled layers of the particle: rows of doubles, and frozen operators of six entries of 16
+/// bits. `auto` is not counted because it does not assemble operators that are too large.
 double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
@@ -87,8 +87,8 @@ double bytes_a_pair(const Scene& scene) {
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
-/// Throws UserError if the viscosity ratio is too large. Round-off takes one digit of the velocity per factor of ten of the ratio, so the linear
-/// solver stagnates at a ratio of 1e15 times its tolerance, first in a tube.
+/// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten: the solver
+/// stagnates at a ratio of 1e15 times the tolerance, first in a tube.
 void check_viscosity_ratio(const Scene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
@@ -97,8 +97,7 @@ void check_viscosity_ratio(const Scene& scene) {
                               most, ratio));
 }
 
-/// Throws UserError if the assembled operators for `n_points` points exceed the memory limit. The message says what the keys `keys`, which determine
-/// this number, `must` be.
+/// Throws UserError if the operators of `n_points` points are too large. The message says what `keys`, which determine this number, `must` be.
 void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
   if (bytes * n_points * n_points > most_bytes)
     throw UserError(keys + " must " + must +
@@ -122,8 +121,7 @@ void check_size(const Scene& scene) {
               formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }
 
-/// Throws UserError if the vectors that each rank stores for an iterative solver, together with the matrix of their inner products, exceed the memory
-/// limit.
+/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their products, are too large.
 void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;
