@@ -8,8 +8,9 @@
 
 namespace tanktread::quadrature {
 
-/// Metric at the target up to a factor, rounded to bins, so that one rule serves many elements. The rounding costs one or two points and no accuracy.
-/// |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to 11.
+/// Shape of the metric at the target, rounded to few values (bins), so that one rule serves many elements. The rounding costs one or two points and
+/// no accuracy. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to
+/// 11.
 struct Shear {
   int doublings = 0, steps = 6;
 
