@@ -31,10 +31,10 @@ inline void require_none(std::vector<std::string> mistakes) {
   if (!mistakes.empty()) throw UserErrors(std::move(mistakes));
 }
 
-/// Collects sentences about choices that contradict each other. They are added by the classes that know the reasons.
+/// Collects sentences about choices that contradict each other. Each class adds the sentences whose reasons it knows.
 class Rejections {
  public:
-  /// Adds a sentence if both choices are made, which contradict each other. `why`: reason, appended to the sentence.
+  /// Adds a sentence if both of two contradictory choices are made. `why`: reason, appended to the sentence.
   void pair(bool both, const std::string& one, const std::string& other, const std::string& why) {
     if (both) sentences_.push_back(one + " and " + other + " contradict each other: " + why + ".");
   }
@@ -47,7 +47,7 @@ class Rejections {
   std::vector<std::string> sentences_;
 };
 
-/// Throws UserError if both choices are made.
+/// Throws UserError if both of two contradictory choices are made.
 inline void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
   Rejections all;
   all.pair(both, one, other, why);
