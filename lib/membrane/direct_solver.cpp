@@ -31,8 +31,8 @@ constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 // an Amesos2 solve (maps, import of several columns). Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Number of rows above which an iterative solver is as fast as substitution with LU factors, and is set up in a small part of the time of a
-// factorisation. Measured with the mass and collocation matrices of spheres.
+// Number of rows above which an iterative solver is as fast as substitution with LU factors, and its setup takes a small part of the time.
+// Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_iterating = 5000;
 
 /// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.

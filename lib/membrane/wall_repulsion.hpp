@@ -44,7 +44,7 @@ class WallRepulsion : public Load {
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // per element: function values, one row per Gauss point
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // per element: values, one row per Gauss point
   std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
   std::vector<Place> latest_;                                                                  // points at the linearisation
 };
