@@ -32,7 +32,8 @@ void PeriodicOptions::declare(deck::Section& section) {
               "tolerance of the difference between the shape and its return after a period: root mean square displacement of the control points "
               "divided by R_C; about ten times Time/tolerance. If disturbances decay within a period, the error of the shape is less than a "
               "hundredth of the tolerance");
-  section.key("iterations", iterations, deck::between(1, 1000), "1", "largest number of NOX iterations, each of which integrates over one period");
+  section.key("iterations", iterations, deck::between(1, 1000), "1",
+              "largest number of iterations of NOX (a package of Trilinos), each of which integrates over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
               "largest displacement of the perturbed shapes whose returns after a period give the multipliers by finite differences, with Spectrum");
 }

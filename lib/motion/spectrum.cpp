@@ -25,8 +25,8 @@ void SpectrumOptions::declare(deck::Section& section) {
               "the leading eigenvalues by block Krylov-Schur on (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
               "preconditioned by the frozen Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
-              "shift of the method `krylov`, which finds modes in the order of |shift - rate|; if not given, the rate of the flow, or of the "
-              "membrane without flow");
+              "shift of the method `krylov`, which finds the modes with the growth rates closest to this value first. If not given, the rate of the "
+              "flow; without flow, the rate of the membrane, modulus / (viscosity x R_C)");
   section.key("block", block, deck::between(1, 50), "1",
               "block size of the method `krylov`: number of vectors multiplied together. At most this many modes of equal rate are found reliably");
   section.key("parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
