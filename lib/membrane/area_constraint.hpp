@@ -19,7 +19,7 @@ namespace tanktread::membrane {
 /// P approximates the inverse of the system of an implicit step. The same operator moves a shape until its t equal those of another shape.
 class AreaConstraint {
  public:
-  /// Sets up the conditions. `mobility`: m, one entry per control point.
+  /// Sets up one area condition per Gauss point. `mobility`: velocity per force m_A of each control point.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
   /// Returns true if no material of the membrane integrates its area elasticity separately.

@@ -17,7 +17,7 @@ std::vector<int> everything(const spline::Space& space) {
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
-/// Returns a zero matrix with an entry for every pair of functions that share an element.
+/// Returns a sparse matrix that stores a zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
   std::vector<spline::LocalMatrix> local;

@@ -24,7 +24,7 @@ void extract(const Register* e, int across_r, int across_k, const Register* x, i
     for (int c = 0; c < 3; ++c) out[3 * (first + k) + c] = sum[k][c];
 }
 
-// Computes the same product for all k = 0 .. n_k - 1, four at a time.
+// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = 0 .. n_k - 1, four values of k at a time.
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int n_k, Register* out) {
   int k = 0;
   for (; k + 4 <= n_k; k += 4) extract<4>(e, across_r, across_k, x, n_r, k, out);

@@ -114,7 +114,7 @@ class Branch {
   Net x_;
   std::vector<Solved> last_;  // up to three points, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
-  std::vector<Fold> folds_;       // the two latest folds of the second parameter
+  std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
   double last_share_ = 1;         // distance between the two latest folds, as a fraction of the interval between two values
   std::size_t values_ = 0;        // number of values of the second parameter that have been reached
   std::string failure_;

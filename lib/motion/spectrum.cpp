@@ -237,7 +237,7 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
-    // The kind follows from the conserved quantity, because near a fold the shape of this mode hardly differs from that of a true mode.
+    // Near a fold, the shape of this mode hardly differs from that of a true mode, so its kind follows from the conserved quantity.
     modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;
   }
   return modes;

@@ -75,7 +75,7 @@ Id new_file() {
 std::string_view image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  void* handle = nullptr;  // for a file in memory: address of the pointer to its bytes
+  void* handle = nullptr;  // address of a pointer to the bytes of the file, which is in memory
   if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
   return {reinterpret_cast<const char*>(*static_cast<unsigned char**>(handle)), static_cast<std::size_t>(size)};
 }

@@ -253,7 +253,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    // In a straight tube x1 is measured from the centroid, as in the coordinates of the wall.
+    // In a straight tube, x1 of the wall is measured from the centroid of the particle, so the particle is moved accordingly.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = scene;
