@@ -9,8 +9,9 @@ namespace tanktread {
 /// Exit code of a run that was stopped and can be resumed.
 constexpr int stopped = 4;
 
-/// Runs the scene to its end, by one of the functions below if it is not a run in time. Returns the exit code: 0 if every expectation is met, 1 if
-/// one is not, or `stopped`. Throws UserError, RunFailure, and motion::Stopped if a stop signal arrives before the first step. Collective.
+/// Runs the scene to its end: the run in time, or one of the functions below if the deck requests a steady shape, a spectrum or a prescribed motion.
+/// Returns the exit code: 0 if every expectation is met, 1 if one is not, or `stopped`. Throws UserError, RunFailure, and motion::Stopped if a stop
+/// signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
 /// Runs the computation that Steady, Periodic or Spectrum request. Returns and throws like `simulate`. Collective.

@@ -24,7 +24,7 @@ void catch_signals() {
     sigaction(signal, nullptr, &before);
     if (before.sa_handler == SIG_IGN) continue;
     struct sigaction action {};
-    action.sa_handler = remember;  // without SA_RESTART, so that the signal interrupts a blocking read
+    action.sa_handler = remember;  // SA_RESTART is not set, so that the signal interrupts a blocking read
     sigaction(signal, &action, nullptr);
   }
   std::signal(SIGPIPE, SIG_IGN);

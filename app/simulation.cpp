@@ -27,7 +27,7 @@ namespace tanktread {
 
 namespace {
 
-/// Reasons for which a run ends before its final time, as in its status.
+/// Reasons for which a run ends before its final time, as written to `status` of the summary.
 const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
 
 /// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so
@@ -40,7 +40,7 @@ motion::TimeOptions time_options(const Scene& scene) {
   return time;
 }
 
-/// Returns whether any mesh may change.
+/// Returns whether the mesh of any particle may change.
 bool adapts(const Scene& scene) {
   return std::ranges::any_of(scene.alone(), [](const Scene& one) { return one.adaptation.enabled; });
 }
@@ -145,7 +145,7 @@ class Run {
     return by_signal;
   }
 
-  /// Runs `act`. Returns the message of a failure on any rank, or an empty text if it succeeds or a stop signal interrupts it.
+  /// Runs `act`. Returns the message if it fails on any rank, or an empty text if it succeeds or a stop signal interrupts it.
   std::string error_of(const std::function<void()>& act) {
     return coupling::failure_of_any([&] {
       try {
@@ -174,7 +174,7 @@ class Run {
     record();
   }
 
-  /// Adapts the mesh if the rule requires it, and evaluates the velocity on the new mesh. Loads on a finer mesh differ, and steps that continued with
+  /// Adapts the mesh if the rule requires it. Then computes the velocity on the new mesh, because the loads on it differ: steps that continued with
   /// the velocity of the old mesh were ten times shorter.
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
@@ -184,7 +184,8 @@ class Run {
     motion::begin(motion, state_);
   }
 
-  /// Makes a step of the scheme. If it begins at a kink of the motion, sets `before` to the state after the kink.
+  /// Makes a step of the time scheme, at most up to `limit`. If the step begins at a time where the motion is not smooth (a kink), the scheme starts
+  /// again there, and `before` becomes the state after the kink.
   void integrate(double limit, motion::State& before) {
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     try {
@@ -199,7 +200,7 @@ class Run {
     }
   }
 
-  /// Makes a step, and repeats it with half its size until the particles can be held apart, if the deck requests this.
+  /// Makes a step. If the limiter cannot keep the particles apart after it, repeats it from the state `before` with half its size.
   void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
@@ -240,7 +241,7 @@ class Run {
                      ", for a newer one cannot be had: " + unsaved);
   }
 
-  /// Interpolates the state at the last snapshot time within the latest step.
+  /// Interpolates the state at the last snapshot time within the latest step, for a snapshot.
   void picture_within(const motion::State& before) {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
@@ -267,7 +268,7 @@ class Run {
     quality_ = soundness(particle_->bezier(), state_.x, ranks_);
   }
 
-  /// Warns of limits of validity that the step has come close to.
+  /// Prints a warning for each limit of validity that the last step has come close to.
   void warn_of_limits() {
     if (first_.particle.rigid()) return;
     const auto n_elements = static_cast<int>(particle_->body().space.elements.size());
@@ -279,7 +280,7 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // the snapshot has added to the totals, and the next solution starts from the solution of the snapshot
+    if (pictured_) settle();  // the snapshot has added to the totals, and the next solve starts from the solution of the snapshot
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);
@@ -298,14 +299,14 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
-  /// Throws RunFailure if a particle touches the wall. `list` is the section of the wall in the deck.
+  /// Throws RunFailure if a particle is closer to the wall than `contact_gap`. `list` is the section of the wall in the deck.
   void end_at_wall(const std::string& list, double contact_gap) {
     const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
     fail(formatted("a particle touches the wall: the gap is %.4g, less than %s/contact gap, %g R_C = %.4g,", gap, list.c_str(), contact_gap, least));
   }
 
-  /// Throws RunFailure if two particles touch.
+  /// Throws RunFailure if two particles are so close that they count as touching.
   void end_at_contact() {
     const double gap = row_.value("smallest_gap"), least = scene_.contact.end() * scene_.least_radius();
     if (gap >= least) return;
@@ -313,7 +314,8 @@ class Run {
          formatted(": the gap is %.4g, less than Contact/limit, %g R_C = %.4g,", gap, scene_.contact.limit, least));
   }
 
-  /// Returns the reason to end the run after a finished step, or an empty text. Throws RunFailure if there is a contact.
+  /// Returns the reason to end the run after a finished step, or an empty text if it continues. Throws RunFailure if particles touch each other or a
+  /// wall.
   std::string reason_to_stop() {
     if (scene_.tube.present) {
       end_at_wall(scene_.tube.list(), scene_.tube.contact_gap);
@@ -345,7 +347,7 @@ class Run {
     return last.whole ? code : stopped;
   }
 
-  /// Returns a status without its colon.
+  /// Returns a status text without its colon, for a message.
   static std::string spoken(std::string status) {
     std::erase(status, ':');
     return status;
@@ -356,7 +358,7 @@ class Run {
   const Clock::time_point start_ = Clock::now();
   double earlier_wall_seconds_ = 0;  // wall time of the earlier parts of a resumed run
   Phases phases_ = started();
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // times everything outside of other phases
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // phase `set-up`: the time outside of all other phases
   coupling::Ranks ranks_;
   std::unique_ptr<ParticleSystem> particle_;
   Results results_;
@@ -373,12 +375,12 @@ class Run {
   output::Entries<double> earlier_seconds_;
   struct Pictured {
     motion::State state;
-    std::optional<Results::Sampled> sampled;  // snapshot on the mesh before its adaptation
+    std::optional<Results::Sampled> sampled;  // snapshot sampled on the previous mesh, if the latest step has adapted the mesh
   };
-  std::optional<Pictured> pictured_;  // set if a snapshot is due within the last step
+  std::optional<Pictured> pictured_;  // state of the snapshot that is due at a time within the last step, if any
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
-  Warnings warnings_{first_};  // uses the parameters of the first particle that deforms
+  Warnings warnings_{first_};  // warnings, which use the parameters of the first particle that deforms
 };
 
 }  // namespace

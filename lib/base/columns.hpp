@@ -28,16 +28,17 @@ class Columns {
   /// `every`: if true, `when` always returns true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
-  /// Returns whether to add a column that has this condition.
+  /// Returns whether to add a column that exists only under this condition.
   bool when(bool condition) const { return condition || every_; }
 
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.
   void add(double value, Column column);
 
-  /// Adds one column per component, separated by spaces in `components`. The component is appended to the name and replaces `#` in the description.
+  /// Adds one column per component of `values`. `components` lists the components, separated by spaces. Each is appended to the name and replaces `#`
+  /// in the description.
   void add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view components, const Column& column);
 
-  /// Adds the columns of another row, with the prefix before each name: `<particle>/` if there are several particles.
+  /// Adds the columns of another row with `prefix` before each name: `<particle>/` if there are several particles.
   void append(const Columns& other, const std::string& prefix = {});
 
   /// Sorts by increasing rank of the name, and columns of equal rank in the order in which they were added.

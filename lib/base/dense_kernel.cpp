@@ -8,7 +8,7 @@ namespace tanktread {
 inline namespace INSTRUCTIONS {
 namespace {
 
-using Matrix = Eigen::Map<Eigen::MatrixXd>;  // unaligned, because the alignment that Eigen requires differs between instruction sets
+using Matrix = Eigen::Map<Eigen::MatrixXd>;  // unaligned map, because the alignment that Eigen requires differs between instruction sets
 
 }  // namespace
 

@@ -36,7 +36,7 @@ inline std::string contradiction(const std::string& one, const std::string& othe
   return one + " and " + other + " contradict each other: " + why + ".";
 }
 
-/// Throws UserError if both choices are made.
+/// Throws UserError if both of two contradictory choices are made.
 inline void refuse(bool both, const std::string& one, const std::string& other, const std::string& why) {
   if (both) throw UserError(contradiction(one, other, why));
 }

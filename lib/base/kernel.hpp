@@ -5,7 +5,8 @@
 #include "base/instruction_set.hpp"
 #include "base/register.hpp"
 
-/// Defines the function of the module. Arguments: result type, name, parameters in parentheses, arguments in parentheses.
+/// Defines the function of the module that calls the kernel for the instruction set in use. Arguments: result type, name, parameters in parentheses,
+/// arguments in parentheses.
 #if defined(SEVERAL_INSTRUCTION_SETS)
 #define KERNEL(result, function, parameters, arguments)                                \
   namespace avx2 {                                                                     \

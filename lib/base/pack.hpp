@@ -1,5 +1,5 @@
 #pragma once
-// Storage for the numbers of SIMD registers, for code that is not compiled for the instruction set of the kernels.
+// Memory for the numbers of SIMD registers, for code that is compiled without the instruction set of the kernels.
 
 namespace tanktread {
 

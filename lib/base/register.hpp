@@ -84,7 +84,8 @@ inline FloatRegister inverse_root(const FloatRegister& a, const FloatRegister& l
 #endif
 }
 
-/// Returns the difference, and prevents the compiler from merging it with other sums, although kernels are compiled so that sums may be reordered.
+/// Returns the difference, exactly as written. Kernels are compiled so that the compiler may reorder sums; this function prevents it from merging the
+/// difference with other sums.
 inline FloatRegister as_it_stands(FloatRegister difference) {
 #if defined(__x86_64__)
   asm("" : "+v"(difference));
@@ -94,7 +95,7 @@ inline FloatRegister as_it_stands(FloatRegister difference) {
   return difference;
 }
 
-/// Returns the sum of the lanes. Adds neighbours first.
+/// Returns the sum of all lanes of a register, adding neighbouring lanes first.
 inline double sum(const Register& a) {
   Register part = a;
   for (int n = lanes / 2; n > 0; n /= 2)

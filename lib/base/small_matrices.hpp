@@ -8,7 +8,7 @@ namespace tanktread {
 /// Returns exp(A).
 Mat3 exponential(const Mat3& a);
 
-/// Returns the largest real part of the eigenvalues.
+/// Returns the largest real part of the eigenvalues of a: the largest growth rate of x in dx/dt = a x.
 double largest_growth_rate(const Mat3& a);
 
 /// Returns the largest singular value.

@@ -14,13 +14,13 @@ std::string text_of_file(const std::filesystem::path& file, const std::string& w
 /// Returns the text without blanks at its beginning and end.
 std::string trimmed(const std::string& text);
 
-/// Fields of one line, which are separated by commas, without blanks around them.
+/// Fields of one line of a CSV file: the texts between commas, without blanks around them.
 struct CsvRow {
   int line;
   std::vector<std::string> fields;
 };
 
-/// Returns all lines of a text that are not empty. `#` begins a comment. The first row is left out if it begins with `heading`, the column names.
+/// Returns all lines of a CSV text that are not empty. `#` begins a comment. The first row is left out if it begins with `heading`, the column names.
 std::vector<CsvRow> csv_rows(const std::string& text, const std::string& heading);
 
 /// Returns the number in a field. Throws UserError, with `where` before the sentence, if it is not a number or its magnitude is not below 1e75.

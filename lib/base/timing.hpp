@@ -39,7 +39,7 @@ class Phases {
   Scope time(std::string_view name) { return Scope(*this, name); }
 
   const std::vector<Phase>& all() const { return phases_; }
-  double seconds(std::string_view name) const;  ///< returns 0 if the phase never ran; if it is running, the time up to its last pause
+  double seconds(std::string_view name) const;  ///< seconds of a phase; 0 if it never ran; if it is running, up to its last pause
   double total() const;                         ///< returns the sum over the phases
 
  private:

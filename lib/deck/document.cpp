@@ -40,7 +40,7 @@ void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterLis
   }
 }
 
-/// The merged layers of a deck, and for each expectation the keys that changed after it was declared.
+/// The merged deck, and for each expectation the keys that were changed by files or settings after it was declared.
 struct Layers {
   std::shared_ptr<Teuchos::ParameterList> merged = std::make_shared<Teuchos::ParameterList>(root_name);
   std::map<std::string, std::vector<std::string>> changed;
@@ -59,7 +59,7 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Returns whether the expectation is evaluated at a time `at` that is not after the end of the run. If so, it does not depend on the final time.
+  /// Returns whether the expectation has a time `at` that is not after the end of the run. If so, it does not depend on the final time.
   bool before_end(const Teuchos::ParameterList& expectation) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

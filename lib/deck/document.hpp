@@ -22,14 +22,14 @@ class Document {
   ~Document();
   Document(Document&&) noexcept;
 
-  /// Reads every key that `options` declares. Call it once per document.
+  /// Reads every key that `options.declare` declares, from the deck into `options`. Call it once per document.
   template <class Options>
   void declare(Options& options) {
     Section root = begin();
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // the error may be a consequence of a wrong value, whose key keeps its default
+      refuse_wrong_values();  // throws the errors of wrong values first: this error may be their consequence, because such keys keep their defaults
       throw;
     }
     finish();
@@ -38,7 +38,7 @@ class Document {
   /// Returns the effective deck as YAML text.
   std::string effective() const;
 
-  /// Returns the value of every key that is set, as text, by path.
+  /// Returns the values of all keys that are set, as texts by the path of the key.
   std::map<std::string, std::string> values() const;
 
   /// Returns the manual of all keys as Markdown.
@@ -47,7 +47,7 @@ class Document {
   /// Returns a JSON schema (draft 7) of decks, for editors: types, choices, bounds and descriptions.
   std::string schema() const;
 
-  /// Returns the given deck as YAML, with the description of each key above it.
+  /// Returns the deck that was given as YAML, with the description of each key above the key.
   std::string commented() const;
 
  private:

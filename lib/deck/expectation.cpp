@@ -10,7 +10,7 @@
 namespace tanktread::deck {
 
 void Expectation::declare(Section& section) {
-  if (name.front() != '<')  // `<name>` is the placeholder in the manual
+  if (name.front() != '<')  // `<name>` is no expectation but a placeholder in the manual
     for (const char* key : {"value", "tolerance"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
   section.key("series", series, Choice{}, "name of the series of the results that is compared; by default the name of the expectation");
@@ -94,7 +94,7 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   const std::size_t rows = times.size();
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   if (above < rows && times[above] == t) return values[above];
-  std::size_t begin = above, end = above;  // range of up to four rows without NaN on each side of t
+  std::size_t begin = above, end = above;  // range of up to four rows around t, without NaN
   while (begin > 0 && above - begin < 4 && !std::isnan(values[begin - 1])) --begin;
   while (end < rows && end - above < 4 && !std::isnan(values[end])) ++end;
   if (begin == above || end == above) return std::numeric_limits<double>::quiet_NaN();

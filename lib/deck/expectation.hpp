@@ -30,10 +30,10 @@ struct Expectations {
   void declare(Section& section);
 };
 
-/// Throws UserError, with the name that was probably meant, if the series of a binding expectation is not among `names`.
+/// Throws UserError if the series of a binding expectation is not among `names`; the message suggests the closest name.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// Returns a sentence for each binding expectation whose time is after `end`: a run that ends there does not meet it.
+/// Returns a sentence for each binding expectation with a time after `end`, because a run that ends there cannot meet it.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
 /// Result of the comparison of one expectation with the results.

@@ -16,8 +16,8 @@ namespace tanktread::deck {
 template <class Signature>
 class Parts;
 
-/// Registered parts of one kind, for example loads. A function makes the part `Made` from arguments `On...`, for example the surface it acts on.
-/// The deck has one section per part that it uses. The section has the name of the part and holds the keys of the part.
+/// Registered parts of one kind, for example loads. A function makes a part (type `Made`) from arguments `On...`, for example the surface on which a
+/// load acts. A deck that uses a part has a section with the name of the part, which holds the keys of the part.
 template <class Made, class... On>
 class Parts<Made(On...)> {
  public:
@@ -32,7 +32,7 @@ class Parts<Made(On...)> {
       if (values.size() != columns.size()) throw std::logic_error(name + " gives another number of values than it has columns");
       for (std::size_t k = 0; k < values.size(); ++k) to.add(values[k], columns[k]);
     }
-    /// Adds the columns with value 0, if only their names are needed.
+    /// Adds the columns with value 0, for a list of column names.
     void add_columns(Columns& to) const { add_columns(std::vector<double>(columns.size(), 0.), to); }
   };
 
@@ -65,7 +65,7 @@ class Parts<Made(On...)> {
     return all;
   }
 
-  /// Returns the parts whose sections the deck has, in the order of registration.
+  /// Returns the parts for which the deck has a section inside `section`, in the order of registration.
   std::vector<Chosen> read(Section& section) const {
     std::vector<Chosen> chosen;
     for (const Part& part : all_) {
@@ -75,7 +75,8 @@ class Parts<Made(On...)> {
     return chosen;
   }
 
-  /// Returns the parts whose sections are in the section `name` of the deck. Declares this section only if parts are registered.
+  /// Returns the parts for which the deck has a section inside the section `name` of `outer`. Declares the section `name` only if parts are
+  /// registered.
   std::vector<Chosen> read(Section& outer, const char* name, const char* meaning) const {
     struct List {
       const Parts& parts;
@@ -86,8 +87,8 @@ class Parts<Made(On...)> {
     return std::move(list.chosen);
   }
 
-  /// Returns the function that makes the part of this name, with its options read from the deck, whose section may be missing.
-  /// Returns an empty function if no part has this name.
+  /// Returns the function that makes the part of this name, with the options that the deck sets in the part's section, which may be missing. Returns
+  /// an empty function if no part has this name.
   Maker read(Section& section, const std::string& name) const {
     const auto part = std::ranges::find(all_, name, &Part::name);
     if (part == all_.end()) return {};

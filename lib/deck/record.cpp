@@ -22,7 +22,7 @@ std::vector<std::string> names_in(const List& list) {
   return names;
 }
 
-/// Returns the path of the first key with this name in `list` and its inner sections; empty if there is none.
+/// Returns the path of the first key named `key` in `list` or its inner sections; empty if there is none.
 std::string elsewhere(const List& list, const std::string& key) {
   for (const Entry& entry : list.entries)
     if (entry.key == key) return list.path_of(key);
@@ -46,8 +46,8 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
   return what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".";
 }
 
-/// Appends the sentences of all inner sections. If inner sections share keys, leaves out a sentence that differs from an earlier one only by the
-/// path.
+/// Appends the sentences (about mistakes or unknown keys) of all inner sections. If inner sections share keys, leaves out a sentence that differs
+/// from an earlier one only by the path.
 template <class Sentences>
 void add_inner(const List& list, const Sentences& sentences, std::vector<std::string>& all) {
   std::set<std::string> told;

@@ -13,10 +13,10 @@ namespace tanktread::deck {
 struct Entry {
   std::string key;
   std::string fallback;  ///< default value; empty if there is none
-  std::string values;    ///< rule for the values, in words
+  std::string values;    ///< rule for the allowed values, in words
   std::string unit;
   std::string meaning;
-  std::string value;  ///< YAML text of the value after reading; empty if not set
+  std::string value;  ///< YAML text of the value that was read; empty if not set
 };
 
 /// Declaration of one section of the deck.
@@ -24,15 +24,15 @@ struct List {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;   ///< section from the user, or `merged` if it is set; null if not given
-  const Teuchos::ParameterList* itself = nullptr;  ///< section from the user, without keys from `like` and `defaults`
-  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section from the user, with keys from `like` and `defaults`
+  const Teuchos::ParameterList* given = nullptr;   ///< section from the user (`merged` if it is set); null if not given
+  const Teuchos::ParameterList* itself = nullptr;  ///< section from the user, without the keys taken from sections named by `like` or from `defaults`
+  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section from the user, with the keys taken from sections named by `like` or from `defaults`
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
-  bool alike = false;                               ///< true if inner sections share keys by `like` and `defaults`
-  std::vector<std::string> mentioned;               ///< names that are allowed here but not declared
-  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null for a section of this program
+  bool alike = false;                               ///< true if inner sections share keys through the key `like` and the section `defaults`
+  std::vector<std::string> mentioned;               ///< names that are allowed in this section although they are not declared
+  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null if the section is for this program
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };

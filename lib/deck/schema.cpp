@@ -22,7 +22,7 @@ std::vector<std::string> quoted_words(const std::string& text) {
   return words;
 }
 
-/// Returns the bounds of a rule for the schema, `, "minimum": 3, "maximum": 200`. `rule` is the text of a Rule, `between 3 and 200`.
+/// Returns the bounds of a number in the notation of the schema, `, "minimum": 3, "maximum": 200`. `rule` is the text of a Rule, `between 3 and 200`.
 std::string bounds(const std::string& rule) {
   if (rule.find("positive") != rule.npos) return R"(, "exclusiveMinimum": 0)";
   if (rule.find("not negative") != rule.npos) return R"(, "minimum": 0)";
@@ -35,7 +35,7 @@ std::string bounds(const std::string& rule) {
   return (low.empty() ? "" : ", \"minimum\": " + low) + (high.empty() ? "" : ", \"maximum\": " + high);
 }
 
-/// Returns the type of a key for the schema, from the wording of its values in the manual. A value with a unit may be a text.
+/// Returns the JSON type of a key for the schema, from the description of its values in the manual. A value with a unit may be a text.
 std::string type(const std::string& values, const std::string& unit) {
   if (values == "text") return R"("type": "string")";
   if (values == "true or false") return R"("type": "boolean")";

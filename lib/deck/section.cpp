@@ -23,10 +23,10 @@ namespace {
   throw UserError(path + " must be " + must + in + ", but is " + given + ".");
 }
 
-/// Returns whether powers of the number stay in the range of double precision.
+/// Returns whether the number is 0, or finite and of moderate size, so that its powers do not overflow or underflow.
 bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
-/// Returns `a number, positive`, or if `several`, `three numbers, each positive`.
+/// Returns the description of a number with its rule, `a number, positive`, or if `several`, `three numbers, each positive`.
 std::string with_rule(const std::string& numbers, const Rule& rule, bool several) {
   return rule.text == any().text ? numbers : numbers + (several ? ", each " : ", ") + rule.text;
 }
@@ -48,15 +48,15 @@ std::string kind() {
   else return std::string(Value::SizeAtCompileTime == 2 ? "two" : Value::SizeAtCompileTime == 3 ? "three" : "nine") + " numbers";
 }
 
-/// Returns whether a text begins with a number that other characters, such as a unit, follow.
+/// Returns whether a text begins with a number followed by other characters, such as a unit.
 bool has_unit(const std::string& text) {
   double number = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && rest != text.data() + text.size();
 }
 
-/// Returns the numbers of an entry in the deck's units if at least one of its texts has a unit, otherwise none. Throws UserError if a unit is wrong
-/// or the deck has no section Units.
+/// Returns the numbers of an entry, converted to the deck's units, if at least one of its texts has a unit; otherwise none. Throws UserError if a
+/// unit is wrong or the deck has no section Units.
 std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
   const std::vector<std::string> texts = as_texts(entry);
   if (std::ranges::none_of(texts, has_unit)) return {};
@@ -107,7 +107,7 @@ std::string yaml(const Eigen::Matrix<double, rows, columns>& values) {
   return yaml(std::vector<double>(by_rows.data(), by_rows.data() + by_rows.size()));
 }
 
-/// Value type and YAML text of a field, which may be optional.
+/// Value type and YAML text of an options field, which may be std::optional.
 template <class Field>
 struct Held {
   using Value = Field;
@@ -133,8 +133,8 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
-/// Returns the section of this name merged with the keys that it takes from `like` or `defaults`. `above`: names of the sections whose `like` leads
-/// to this one.
+/// Returns the section of this name merged with the keys that it takes from the section named by its key `like`, or from `defaults`. `above`: names
+/// of the sections whose `like` led to this section, to detect a circle.
 std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);

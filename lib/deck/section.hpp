@@ -82,7 +82,7 @@ class Section {
   /// Declares a section that is passed to another library (Belos, Amesos2, NOX) without checks. The given keys override the defaults in `field`.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 
-  /// Sets the units of the deck. Afterwards values in this section, and in sections declared inside it, may have units.
+  /// Sets the units of the deck. Afterwards, values in this section and in the sections declared inside it may have units.
   void take(std::shared_ptr<const Units> units);
 
   /// Marks a name as allowed in this section although it is not declared. Messages about unknown keys list it.
@@ -92,7 +92,7 @@ class Section {
   /// keys that it does not set from the section that its key `like` names, or otherwise from the section `defaults`, for which `use` is not called.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike = false);
 
-  /// Returns whether the user gave this key, to detect contradictory alternatives.
+  /// Returns whether the user gave this key. Used to detect keys that contradict each other.
   bool given(std::string_view name) const;
   /// Removes a key that this section takes from `like` or `defaults` (see `each`). A key that the section sets itself stays.
   void leave_out(std::string_view name);

@@ -43,7 +43,7 @@ std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& 
 
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin) {
   if (levels_of_xml(text) > 100) throw UserError(origin + ": its elements lie more than 100 deep in each other.");
-  std::smatch name;  // name of the outermost list, which the reader of Teuchos does not return
+  std::smatch name;  // name of the outermost list, which the XML reader of Teuchos does not return
   std::regex_search(text, name, std::regex("<ParameterList\\s+name=\"([^\"]{1,60})\""));
   Teuchos::ParameterList whole;
   try {
@@ -57,7 +57,7 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
   std::string text = text_of_file(file, "The deck " + shortened(file, 80), 1'000'000);
-  const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors put it at the beginning of UTF-8 files
+  const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors write this mark at the beginning of UTF-8 files
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return file.ends_with(".xml") ? xml_list(text, file) : yaml_list(text, file);
 }

@@ -32,7 +32,7 @@ double ratio(const Unit& a, const Unit& b) {
   return cv_convert_double(converter.get(), 1);
 }
 
-/// Returns the unit `kind` with each word replaced by its text, one word after the other.
+/// Returns the text `kind` (`force/length`) with each word replaced by its unit, one word after the other.
 std::string replaced(std::string_view kind, const std::vector<std::pair<std::string_view, std::string>>& words) {
   std::string text(kind);
   for (const auto& [word, by] : words)

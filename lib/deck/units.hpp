@@ -20,14 +20,14 @@ struct UnitOptions {
 /// Converts between named units and the units of the deck. A `kind` is the unit of a key or of a series in the words of the deck: `force/length`.
 class Units {
  public:
-  /// Throws UserError if the option for a length, time or force is not one, or if UDUNITS finds no table of units.
+  /// Throws UserError if the option for the unit of length, time or force does not have this dimension, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 
-  /// Returns the number in the deck's units for `text`, which is a number with a unit or a plain number. Throws std::invalid_argument if its unit is
-  /// not of this kind. The message completes a sentence that begins with `text`.
+  /// Returns the number that `text`, a number with or without a unit, is in the deck's units. Throws std::invalid_argument if its unit is not of this
+  /// kind. The message completes a sentence that begins with `text`.
   double number(const std::string& text, std::string_view kind) const;
 
-  /// Returns a number of this kind, given in the deck's units, in SI units: `1e-06 N/m`. Empty if the kind is dimensionless.
+  /// Returns a quantity of this kind in SI units, `1e-06 N/m`. `number`: its value in the deck's units. Empty if the kind is dimensionless.
   std::string in_si(std::string_view kind, double number = 1) const;
 
   /// Returns the units of the deck in SI units, for the plan.

@@ -24,7 +24,7 @@ std::vector<double> doubles(const Values& values) {
   return out;
 }
 
-/// Returns an entry as YAML text, for all types that Teuchos reads from YAML or XML and that a deck may hold.
+/// Returns an entry as YAML text. The entry may have any type that Teuchos reads from YAML or XML and that a deck may hold.
 std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return real_text(*value);
   if (const auto* value = held<int>(entry)) return std::to_string(*value);

@@ -9,7 +9,7 @@
 
 namespace tanktread::deck {
 
-/// Each returns the value of the entry, or nothing if the entry has another type. Whole numbers are numbers, too.
+/// Each of these functions returns the value of the entry, or nothing if the entry has another type. A whole number also counts as a number.
 std::optional<double> as_number(const Teuchos::ParameterEntry& entry);
 std::optional<bool> as_truth(const Teuchos::ParameterEntry& entry);
 std::optional<std::string> as_text(const Teuchos::ParameterEntry& entry);
@@ -19,7 +19,7 @@ std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& ent
 /// Returns whether both entries have the same value. A whole number equals the same number of type double.
 bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);
 
-/// Returns the given value for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
+/// Returns the value that was given, as text for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
 std::string description(const Teuchos::ParameterEntry& entry);
 
 /// Returns a parameter list as YAML, indented by `depth` steps.

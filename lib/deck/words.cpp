@@ -50,7 +50,7 @@ bool is_plain(const std::string& text) {
 std::string shortened(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
   std::size_t end = most - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // does not split a UTF-8 character
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // moves the cut so that it does not split a UTF-8 character
   return text.substr(0, end) + "...";
 }
 
@@ -67,7 +67,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& las
 
 namespace {
 
-/// Returns the optimal string alignment distance.
+/// Returns the optimal string alignment distance: the number of insertions, deletions, replacements and swaps of neighbours that turn a into b.
 int edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = static_cast<int>(i);

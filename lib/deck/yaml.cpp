@@ -20,7 +20,7 @@ namespace tanktread::deck {
 namespace {
 
 constexpr int most_levels = 20;              // nesting depth of sections
-constexpr std::size_t most_nodes = 100'000;  // limit on keys and values; an alias counts each time it is used
+constexpr std::size_t most_nodes = 100'000;  // largest number of keys and values; an alias counts each time it is used
 constexpr std::size_t longest_key = 100;     // characters
 
 template <class Number>
@@ -30,7 +30,7 @@ bool reads(const std::string& text, Number& number) {
   return error == std::errc() && last == end;
 }
 
-/// Returns a word as the first type that it can be read as: truth value, whole number, number, text. A word in quotes is text.
+/// Returns a word, converted to the first of these types as which it can be read: truth value, whole number, number, text. A word in quotes is text.
 Teuchos::ParameterEntry typed(const YAML::Node& node) {
   const std::string& text = node.Scalar();
   const bool plain = node.Tag() == "?" || node.Tag().empty();
@@ -54,7 +54,7 @@ Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries)
   return Teuchos::ParameterEntry(values);
 }
 
-/// Returns a row as the first type that all its words can be read as: whole numbers, numbers, texts.
+/// Returns a row of words, converted to the first of these types as which all words can be read: whole numbers, numbers, texts.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));

@@ -41,7 +41,7 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
 }
 
-// dI2 = 2 (J_s^2 g^ab) (x,a . du,b), where J_s^2 g^ab are the cofactors of g_ab divided by |G|.
+// The change of the invariant I2 is dI2 = 2 (J_s^2 g^ab) (x,a . du,b). J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
 AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
   Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
   std::vector<Eigen::Triplet<double>> entries;
@@ -74,7 +74,8 @@ void AreaConstraint::factor(double time) {
   system_.factorize(system);
 }
 
-/// Returns time m D'(1 + time D m D')^-1 applied to a vector with one entry per Gauss point.
+/// Returns m D'(1 + time D m D')^-1 y multiplied by time, for a vector y with one entry per Gauss point: a displacement, shape (N, 3). See P in
+/// (4.25).
 Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
   const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
   return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);

@@ -1,5 +1,5 @@
 #pragma once
-// // Constraints of constant local area for nearly area-incompressible membranes: the stiff part of the membrane's tangent.
+// Constraints of constant local area for nearly area-incompressible membranes: the stiff part of the membrane's tangent.
 
 #include <vector>
 
@@ -19,16 +19,16 @@ namespace tanktread::membrane {
 /// P approximates the inverse of the system of an implicit step. The same operator moves a shape until its t equal those of another shape.
 class AreaConstraint {
  public:
-  /// Sets up the conditions. `mobility`: m, one entry per control point.
+  /// Sets up one area condition per Gauss point. `mobility`: velocity per force m_A of each control point.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
   /// Returns true if no material of the membrane integrates its area elasticity separately.
   bool empty() const { return points_.empty(); }
 
-  /// Evaluates D and t at x.
+  /// Evaluates the scaled gradient D and the conditions t at the shape x.
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Factors 1 + time D m D' for P.
+  /// Factors the matrix 1 + time D m D' that the operator P (4.25) contains.
   void factor(double time);
 
   /// Returns P r.
@@ -43,7 +43,7 @@ class AreaConstraint {
     int element;
     spline::Basis basis;
     AreaElasticity law;
-    double inverse_det, area;  // 1/|G| and the quadrature weight, on the unstressed surface
+    double inverse_det, area;  // 1/|G| of the unstressed surface, and its quadrature weight (an area)
   };
   struct Rows {
     Eigen::SparseMatrix<double, Eigen::RowMajor> d;

@@ -27,24 +27,24 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 
-// Number of rows up to which the explicit inverse is stored. A solve is then a product with the inverse. For these sizes the overhead of Amesos2 per
-// solve (maps, import of several columns) exceeds the cost of the product. Measured with the mass and collocation matrices of spheres.
+// Largest number of rows for which the explicit inverse is stored. A solve is then a product with the inverse, which costs less than the overhead of
+// an Amesos2 solve (maps, import of several columns). Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Number of rows from which iteration is as fast as substitution and the setup of the iteration takes a small part of the time. Measured with the
-// mass and collocation matrices of spheres.
+// Number of rows above which an iterative solver is as fast as substitution with LU factors, and its setup takes a small part of the time.
+// Measured with the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_iterating = 5000;
 
 /// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.
 std::vector<Eigen::Index> block_starts(const RowMajor& a) {
   const Eigen::Index n = a.rows();
   const int *row = a.outerIndexPtr(), *column = a.innerIndexPtr();
-  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // least column index in row i and all later rows
+  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // smallest column index of a nonzero in row i and all later rows
   for (Eigen::Index i = n; i-- > 0;) {
     if (row[i] == row[i + 1]) return {0, n};
     least[static_cast<std::size_t>(i)] = std::min<Eigen::Index>(least[static_cast<std::size_t>(i) + 1], column[row[i]]);
   }
-  Eigen::Index most = 0;  // largest column index in all rows so far
+  Eigen::Index most = 0;  // largest column index of a nonzero in all rows so far
   for (Eigen::Index i = 0; i < n; ++i) {
     most = std::max<Eigen::Index>(most, column[row[i + 1] - 1]);
     if (most <= i && least[static_cast<std::size_t>(i) + 1] > i) starts.push_back(i + 1);
@@ -92,7 +92,7 @@ struct DirectSolver::Impl {
   Teuchos::RCP<const Map> map;
   Teuchos::RCP<Amesos2::Solver<Matrix, MultiVector>> solver;
   Eigen::MatrixXd inverse;                            // inverse of a small matrix, otherwise empty
-  std::optional<spline::IncompleteSolver> iterative;  // incomplete factors, used instead of `solver`
+  std::optional<spline::IncompleteSolver> iterative;  // iterative solver with incomplete LU factors, used instead of `solver`
 
   /// A set of equal blocks: the first row of each, and one solver for all of them.
   struct Kind {
@@ -100,9 +100,9 @@ struct DirectSolver::Impl {
     Eigen::Index size;
     DirectSolver solver;
   };
-  std::vector<Kind> kinds;  // solvers of equal blocks; if not empty, used instead of the members above
+  std::vector<Kind> kinds;  // solvers of equal diagonal blocks; if not empty, used instead of `inverse`, `iterative` and `solver`
 
-  /// Factors one block of each kind if at least half of the blocks are equal to earlier ones. Otherwise does nothing and returns false.
+  /// Factors one diagonal block of each kind, if at least half of the blocks are equal to earlier blocks. Otherwise does nothing and returns false.
   bool factor_equal_blocks() {
     kinds.clear();
     const std::vector<Eigen::Index> starts = block_starts(a);
@@ -119,7 +119,7 @@ struct DirectSolver::Impl {
     }
     if (2 * kinds.size() > n_blocks) kinds.clear();
     for (Kind& kind : kinds) kind.solver.factor(a.block(kind.starts.front(), kind.starts.front(), kind.size, kind.size));
-    if (!kinds.empty()) RowMajor().swap(a);  // a swap releases the memory, an assignment would not
+    if (!kinds.empty()) RowMajor().swap(a);  // a swap frees the memory of the matrix, whereas an assignment would keep it
     return !kinds.empty();
   }
 
@@ -129,7 +129,7 @@ struct DirectSolver::Impl {
       for (auto column : all.colwise()) column = iterative->solve(column);
     } else if (inverse.size() == 0) {
       all = substituted(all);
-    } else if (all.cols() <= 3) {  // Eigen's product with a few columns would copy the inverse first
+    } else if (all.cols() <= 3) {  // a loop over rows, because Eigen's product with few columns would copy the inverse first
       for (auto column : all.colwise()) column = Eigen::VectorXd(inverse * column);
     } else {
       all = inverse * all;
@@ -184,7 +184,7 @@ struct DirectSolver::Impl {
     inverse = std::move(all);
   }
 
-  /// Solves with the factors of Amesos2.
+  /// Solves with the LU factors of Amesos2.
   Eigen::MatrixXd substituted(const Eigen::MatrixXd& right) const {
     MultiVector known(map, right.cols()), found(map, right.cols());
     for (Eigen::Index c = 0; c < right.cols(); ++c)
@@ -196,7 +196,7 @@ struct DirectSolver::Impl {
     return left;
   }
 
-  // Returns the relative residual of a solve with a known solution that has no small or repeated entries.
+  // Returns the relative residual of a test solve, whose exact solution has no small or repeated entries.
   double residual(const DirectSolver& self) const {
     Net known(a.rows(), 3);
     for (int i = 0; i < known.size(); ++i) known.data()[i] = 1 + 0.5 * std::sin(1.7 * i);
@@ -225,7 +225,7 @@ void DirectSolver::factor(const Eigen::SparseMatrix<double>& a) {
   if (impl_->iterates()) {
     if (impl_->iterative.emplace().factor(impl_->a) && impl_->residual(*this) < residual_of_iteration) return;
   }
-  impl_->iterative.reset();  // complete factors work for any matrix
+  impl_->iterative.reset();  // complete LU factors, which work for any regular matrix, replace the iterative solver
   std::string trouble;
   try {
     impl_->factor();

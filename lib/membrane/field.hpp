@@ -34,7 +34,7 @@ class Field {
   virtual double energy() const = 0;                         ///< energy stored in the field
   virtual double dissipation() const { return 0; }           ///< power that the field turns into heat in the membrane, not in the surface flow
 
-  /// Stores the state set last and the slip for the four functions below.
+  /// Stores the state set last and the slip (fluid minus control-point velocity) for the four linearised functions value_change() to solve().
   virtual void linearise(const Net& slip) = 0;
 
   /// Returns the change of the field's values (the concentration, the strain) for changes of x and q.
@@ -54,18 +54,20 @@ class Field {
   /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with the sums of r to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
-  /// Returns the rate of q if the control points slide along the surface with this velocity and nothing else moves, at the state set last.
+  /// Returns the rate of change of q if the control points slide along the surface with this velocity while the material is at rest, at the state set
+  /// last.
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
 
-  /// Returns q on this space with the shape x, transferred from a field of the same kind on another mesh of the surface, whose state was set. The
-  /// function maps a site of this space to the site at the same position in the other space.
+  /// Returns the coefficients q on this space, for the surface with the shape x, transferred from the field `from` of the same kind on another mesh
+  /// of the same surface. The state of `from` must be set. The function maps a site of this space to the site at the same position in the other
+  /// space.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
   /// Returns the gradient with respect to q of a sum that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns the values, at the state set last, of the columns registered with the field. snapshot() returns the fields that are written to
-  /// snapshots.
+  /// Returns the values, at the state set last, of the columns that were registered together with the field. snapshot() returns the fields that are
+  /// written to snapshots.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
@@ -73,8 +75,8 @@ class Field {
   /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
-  /// Returns the index of the image of each coefficient, and the sign by which it is multiplied. If the result is empty, the images are unknown. The
-  /// field is then not made symmetric, and modes (4.16) are computed on the whole surface.
+  /// Returns, for each coefficient, the index of its image under the symmetry and the sign by which it is multiplied. An empty result means that the
+  /// images are unknown: the field is then not made symmetric, and modes (4.16) are computed on the whole surface.
   virtual std::vector<std::pair<int, double>> images(const surface::Image&) const { return {}; }
 };
 

@@ -40,7 +40,7 @@ using Symmetric = Eigen::Vector3d;  // components 11, 12, 22
 
 Eigen::Matrix2d matrix(const Symmetric& a) { return (Eigen::Matrix2d() << a[0], a[1], a[1], a[2]).finished(); }
 
-/// Applies a function to a symmetric matrix by its eigenvalues.
+/// Applies a scalar function to a symmetric 2 x 2 matrix, through its eigenvalues.
 template <class Function>
 Symmetric function_of(const Eigen::Matrix2d& a, const Function& f) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> pairs(a);
@@ -48,11 +48,11 @@ Symmetric function_of(const Eigen::Matrix2d& a, const Function& f) {
   return {result(0, 0), result(0, 1), result(1, 1)};
 }
 
-/// Returns the Cholesky factor L of the metric, g = L L^T, from the contravariant metric. L maps to an orthonormal frame that does not depend on the
-/// size of the element.
+/// Returns the Cholesky factor L of the metric g = L L^T, from the contravariant metric g^-1. L maps components to an orthonormal frame that does not
+/// depend on the size of the element.
 Eigen::Matrix2d frame(const Symmetric& raised) { return matrix(raised).inverse().llt().matrixL(); }
 
-/// Returns the values at s of the Lagrange polynomials on these nodes.
+/// Returns the values at s of all Lagrange polynomials on these nodes.
 Eigen::VectorXd lagrange(const Eigen::VectorXd& nodes, double s) {
   Eigen::VectorXd values = Eigen::VectorXd::Ones(nodes.size());
   for (Eigen::Index i = 0; i < nodes.size(); ++i)
@@ -83,7 +83,7 @@ std::vector<std::pair<int, double>> MaxwellElement::images(const surface::Image&
   return all;
 }
 
-/// Returns log(L^T C L) at each Gauss point of the state set last.
+/// Returns log(L^T C L) at each Gauss point for the state set last: the logarithm of the strain C in the orthonormal frame L of the surface.
 Eigen::MatrixX3d MaxwellElement::logarithms() const {
   Eigen::MatrixX3d all(unit_.rows(), 3);
   const Eigen::MatrixX3d raised = raised_metric(x_);
@@ -94,7 +94,7 @@ Eigen::MatrixX3d MaxwellElement::logarithms() const {
   return all;
 }
 
-/// Interpolates `logarithms`, given at the Gauss points, to a site.
+/// Interpolates the logarithms of the strain from the Gauss points to a site.
 Eigen::Vector3d MaxwellElement::interpolated(const Eigen::MatrixX3d& logarithms, const spline::Site& site) const {
   const auto element = static_cast<std::size_t>(site.element);
   const int n = order(element);

@@ -16,7 +16,8 @@
 
 namespace tanktread::membrane {
 
-/// Psi and its derivatives by I1 and I2. `Number` is double, a register (base/register.hpp) or a dual number.
+/// Energy Psi and its first and second derivatives with respect to the invariants I1 and I2. `Number` is double, a register (base/register.hpp) or a
+/// dual number.
 template <class Number>
 struct Response {
   Number psi1, psi2;           ///< dPsi/dI1, dPsi/dI2
@@ -108,7 +109,8 @@ struct EvansSkalak {
   friend bool operator==(const EvansSkalak&, const EvansSkalak&) = default;
 };
 
-/// Area part of Skalak's law, Psi = K/8 I2^2, or of Evans & Skalak's law, Psi = K/2 (J_s - 1)^2. It is not a law by itself: it does not resist shear.
+/// Area part of Skalak's law, Psi = K/8 I2^2, or of Evans & Skalak's law, Psi = K/2 (J_s - 1)^2, with the area modulus K. It is not a complete law,
+/// because it does not resist shear.
 struct AreaElasticity {
   double area = 1;      ///< K, force per length
   bool squared = true;  ///< true: Skalak's form, false: Evans & Skalak's form
@@ -199,8 +201,8 @@ struct SurfaceMetric {
   Number s, st, t;
 };
 
-/// Returns the squared principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the stretch
-/// tensor h in the orthonormal frame whose first axis is along X_,s. In this form equal stretches stay equal to round-off.
+/// Returns the squares of the principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the
+/// stretch tensor h in the orthonormal frame whose first axis is along X_,s. Computed this way, equal stretches are equal to round-off.
 template <class Number>
 std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
   const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
@@ -210,25 +212,25 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
   return {larger, (h11 * h22 - h12 * h12) / larger};
 }
 
-/// The law that the deck selects. It is visited once, outside the innermost loops.
+/// The law that the deck selects, as a variant. It is visited once per batch of elements, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law split into two laws, whose energies add up to the energy of the law: the law without its separable area elasticity, and the area elasticity.
+/// A law written as the sum of two: the area elasticity, which is integrated separately, and the rest.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;
 };
 
-/// Returns the split of Skalak's and of Evans & Skalak's law; empty for all other laws.
+/// Returns Skalak's or Evans & Skalak's law as a sum of two laws; empty for all other laws.
 std::optional<SplitLaw> split(const Law& law);
 
 /// Returns the modulus by which reported tensions are divided: G_s, or sigma of an interface. Force per length.
 double modulus(const Law& law);
 
-/// Returns K_s = dT/d(ln A) of an unstressed membrane, 0 for an interface. Force per length.
+/// Returns the area modulus K_s = dT/d(ln A) of an unstressed membrane (T: tension, A: area), 0 for an interface. Force per length.
 double area_modulus(const Law& law);
 
-/// Returns Psi at the principal stretches l1 and l2.
+/// Returns the strain energy Psi per unstressed area at the principal stretches l1 and l2.
 double energy(const Law& law, double stretch1, double stretch2);
 
 /// Returns the principal tensions (force per current length) at the principal stretches l1 and l2:
@@ -240,7 +242,7 @@ std::array<double, 2> principal_tensions(const Law& law, double stretch1, double
 /// every element side. The Gaussian curvature term is constant on a closed surface and is left out.
 struct Bending {
   double modulus = 0;               ///< E_b, force x length; 0: no bending
-  bool curved_when_relaxed = true;  ///< c0 is 2 chi of the unstressed surface at each material point
+  bool curved_when_relaxed = true;  ///< if true, c0 is twice the mean curvature chi of the unstressed surface at each material point
   double spontaneous_curvature = 0;  ///< c0 if curved_when_relaxed is false, 1/length
 
   friend bool operator==(const Bending&, const Bending&) = default;
@@ -263,7 +265,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points per direction for the area elasticity if `split` separates it; 0: the rule of the other terms
+  int area_order = 0;  ///< Gauss points per direction for an area elasticity that is integrated separately; 0: the rule of the other terms
 
   friend bool operator==(const Material&, const Material&) = default;
 };

@@ -24,7 +24,7 @@ struct ParticleSurface {
   double modulus;         ///< G_s, or sigma of an interface, force/length
 };
 
-/// A field written to snapshots, as control values of shape (N, 1) or (N, 3).
+/// A quantity on the surface that is written to snapshots, as control values of shape (N, 1) or (N, 3).
 struct SurfaceValues {
   std::string name;
   Eigen::MatrixXd values;
@@ -56,17 +56,17 @@ class Load {
   /// Returns the energy that the membrane stores at x; `sums` are complete. Force x length.
   virtual double energy(const Net& /*x*/, std::span<const Net> /*sums*/) const { return 0; }
 
-  /// Stores what the products below need at x. Implicit schemes call it once per tangent.
+  /// Stores at x the data that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
   virtual void linearise(const Net& /*x*/, std::span<const int> /*elements*/, std::span<const Net> /*sums*/) {}
-  /// Adds the contributions of the elements given to linearise() to (d2E/dx2) dx to `change`. A part that is not stiff may be left out.
+  /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). A part that is not stiff may be left out.
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
   /// Returns whether the load is symmetric under this image. If not, the scene is not reduced by this image.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns the dimensionless conditions under which the load moves with a particle in rigid motion U + W x r. A load that depends only on the shape
-  /// has none. A force of fixed direction f requires W x f = 0. The search for steady shapes uses them.
+  /// Returns the dimensionless conditions under which the load moves with a particle in the rigid motion U + W x r. The search for steady shapes uses
+  /// them. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.

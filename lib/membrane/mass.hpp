@@ -31,7 +31,7 @@ class MassMatrix {
   const spline::Space* space_;
   std::vector<Group> groups_;
   std::vector<std::vector<Pack>> values_;  // per group: N_A at the Gauss points, entry [A n_gauss + q] for each extraction matrix
-  std::vector<std::vector<int>> slots_;    // positions of entries (A, B <= A) and (B, A), per group; [(batch pairs + pair) pack_lanes() + lane]
+  std::vector<std::vector<int>> slots_;  // matrix positions of entries (A, B <= A) and (B, A), per group; [(batch pairs + pair) pack_lanes() + lane]
   Eigen::SparseMatrix<double> matrix_;
   Net updated_;  // x of the latest update
 };

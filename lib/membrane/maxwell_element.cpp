@@ -11,7 +11,7 @@ namespace {
 
 constexpr int most_points = max_order * max_order;
 
-/// Metric of a surface at a Gauss point: g^11, g^12, g^22, 1/|g|, and the area associated with the point.
+/// Metric of a surface at a Gauss point: g^11, g^12, g^22, 1/|g|, and the area that the point represents (weight times sqrt|g|).
 struct Metric {
   Eigen::Vector3d raised;
   double inverse_det, area;

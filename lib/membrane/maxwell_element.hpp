@@ -28,8 +28,8 @@ class MaxwellElement : public Field {
   /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
-  Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< C^11, C^12, C^22 of each Gauss point of each element
-  Eigen::VectorXd start(const Net& shape) const override;          ///< state of an element without stress
+  Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< number of coefficients: C^11, C^12, C^22 at each Gauss point of each element
+  Eigen::VectorXd start(const Net& shape) const override;          ///< coefficients of an element without stress on this shape
   void set_state(const Net& x, const Eigen::VectorXd& q) override;
   Net load() const override;
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
@@ -51,7 +51,7 @@ class MaxwellElement : public Field {
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
-  /// Metric, strain and tangents at a Gauss point, with their changes.
+  /// Metric, strain and tangents at a Gauss point, together with their changes for given changes of x and q.
   struct Point;
   int order(std::size_t element) const;
   Eigen::MatrixX3d raised_metric(const Net& x) const;
@@ -68,13 +68,13 @@ class MaxwellElement : public Field {
   MaxwellSpring spring_;
   double time_;
   std::vector<Group> groups_;
-  std::vector<Eigen::Index> first_;                     // first row of an element's Gauss points
-  Net unit_;                                            // g^11, sqrt(g^11 g^22), g^22 of `initial`, one row per Gauss point
+  std::vector<Eigen::Index> first_;                     // for each element, index of the first row with its Gauss points
+  Net unit_;  // g^11, sqrt(g^11 g^22), g^22 of the surface `initial`, one row per Gauss point: the scales of C
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
-  Eigen::VectorXd q_, known_q_;  // coefficients set last, and coefficients at the linearisation
+  Eigen::VectorXd q_, known_q_;  // coefficients set last, and coefficients stored by linearise()
   Net known_x_;
   std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq at each Gauss point
 };

@@ -18,7 +18,7 @@ using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
 Changing determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
 
-/// Returns the vector of three consecutive packs in a lane, with their changes.
+/// Returns the vector made of three consecutive packs, in one lane, together with its change.
 Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, int lane) {
   const int lanes = pack_lanes();
   const auto number = [&](int k) { return Changing{numbers(packs)[(first + k) * lanes + lane], numbers(changes)[(first + k) * lanes + lane]}; };
@@ -40,7 +40,7 @@ struct MaxwellElement::Point {
     gamma = sqrt(det), kappa = sqrt(determinant(c)), j = gamma * kappa, t = c[0] * g[0] + 2.0 * (c[1] * g[1]) + c[2] * g[2];
   }
 
-  /// Returns the stress S^ab of E (3.23) per parametric area, dE = S^ab x_,a.dx_,b; k = 0, 1, 2 for 11, 12, 22.
+  /// Returns the stress S^ab of the energy E (3.23) per parametric area, dE = S^ab x_,a.dx_,b. k = 0, 1, 2 selects the component 11, 12, 22.
   Changing stress(const MaxwellSpring& spring, std::size_t k) const {
     const Changing dilatation = (spring.dilatation_modulus / 2) * ((j - 1.0) * (3.0 * j - 1.0)), metric = gamma * up[k];
     return spring.shear_modulus * (c[k] / kappa - metric) + dilatation * metric;

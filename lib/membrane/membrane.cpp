@@ -13,8 +13,8 @@
 namespace tanktread::membrane {
 namespace {
 
-constexpr std::size_t parts_kept = 3;       // all elements, the rank-owned ones, and one more set
-constexpr double compressed_below = -1e-9;  // divided by the modulus; larger tensions may be round-off
+constexpr std::size_t parts_kept = 3;       // number of sets of elements kept in packed form: all elements, the rank-owned ones, and one more set
+constexpr double compressed_below = -1e-9;  // tensions below this multiple of the modulus count as compression; tensions closer to 0 may be round-off
 constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
@@ -22,8 +22,8 @@ constexpr int max_gauss = max_order * max_order;
 /// Elements assigned to one caller, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< materials of the groups: materials of the surface, then the separated area elasticities
-  std::vector<Law> whole;           ///< complete law from which tensions are computed, per material
+  std::vector<Material> materials;  ///< material of each group: the materials of the surface, then area elasticities in groups of their own
+  std::vector<Law> whole;           ///< per material: complete law, including separate area elasticity, for tensions
   std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of its group
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group; point q of batch k at n_gauss k + q
@@ -37,7 +37,7 @@ struct Part {
     const Group& group;
     const Batch& batch;
     const Material& material;
-    const Law& whole;  ///< complete law, before the separation of the area elasticity
+    const Law& whole;  ///< complete law, including an area elasticity that has a separate group
     const ReferencePoint* reference;
     const Pack* c0;
     std::size_t g, first;
@@ -86,7 +86,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
   }
 }
 
-/// Creates separate groups for the area elasticity of material m (3.13).
+/// Moves the area elasticity of material m to groups of its own, which have their own Gauss rule (3.13).
 void Part::split_material(const spline::Space& space, const Materials& of_surface, std::size_t m) {
   const Material& material = of_surface.all[m];
   const auto parts = split(material.law);
@@ -211,7 +211,7 @@ Eigen::MatrixX2d tensions(const Law& law, std::span<const surface::Jet> unstress
 struct Tangent::Points {
   std::shared_ptr<const Part> part;
   std::vector<std::vector<TangentPoint>> of_group;
-  std::vector<std::vector<Pack>> jets;  // jets of x in groups with bending
+  std::vector<std::vector<Pack>> jets;  // per group: derivatives of x up to the second order at the Gauss points; only with bending
 };
 
 Tangent::Tangent(const Membrane& membrane) : membrane_(&membrane), points_(std::make_unique<Points>()) {}

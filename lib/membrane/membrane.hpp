@@ -57,11 +57,12 @@ class Membrane {
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
-  /// Returns the strong form t = -div_s tau at a site, without bending, from second derivatives of both nets. Force per current area. P-3
+  /// Returns the strong form of the load, t = -div_s tau (P-3), at a site, from second derivatives of both nets and without bending. Force per
+  /// current area.
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
-  /// Evaluates the strong form at the collocation sites `targets` and averages over the incident elements. Only the rows `targets` of t are set. The
-  /// strong form fails in the cases shown in the paper and in `tests/stability`.
+  /// Evaluates the strong form of the load at the collocation sites `targets`, as the average over the elements that meet there. Sets only the rows
+  /// `targets` of t. The strong form fails in the cases shown in the paper and in `tests/stability`.
   void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
 
   const spline::Space& space() const { return *space_; }
@@ -93,7 +94,7 @@ class Tangent {
   ~Tangent();
   Tangent(Tangent&&) noexcept;
 
-  /// Linearises at x on the given elements.
+  /// Linearises the load at x on the given elements.
   void update(const Net& x, std::span<const int> elements);
 
   /// Computes Hu = H u, shape (N, 3), set to zero first, from the elements of the last update. Complete rows are as in Membrane::load.
@@ -105,7 +106,8 @@ class Tangent {
   std::unique_ptr<Points> points_;
 };
 
-/// Viscous load (3.10) of the membrane at a configuration: (C v)_A = int J tau^ab R_A,a g_b for the velocity v. C is symmetric; v.C v is dissipated.
+/// Viscous load (3.10) of the membrane in a given shape: (C v)_A = int J tau^ab R_A,a g_b for the velocity v. C is symmetric, and v.C v is the
+/// dissipated power.
 class ViscousLoad {
  public:
   explicit ViscousLoad(const Membrane& membrane);

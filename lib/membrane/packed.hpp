@@ -15,13 +15,13 @@ constexpr int max_degree = 8;      ///< largest degree of a Bezier element
 constexpr int max_order = 12;      ///< largest number of Gauss points per direction
 constexpr int max_functions = 64;  ///< largest number of functions on one element
 
-/// Up to pack_lanes() elements of one degree. Idle lanes repeat the last element with a reference weight of zero.
+/// A batch: up to pack_lanes() elements of one degree, one per register lane. Idle lanes repeat the last element with the weight 0.
 struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
   int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
-  std::size_t points = 0;             ///< start of the batch's control-point ids in Group::points, [A * pack_lanes() + lane]
-  std::size_t extraction = 0;         ///< start of the batch's extraction in Group::extraction, [A * (p + 1)^2 + b]; shared by equal batches
+  std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin, [A * pack_lanes() + lane]
+  std::size_t extraction = 0;         ///< index in Group::extraction at which the batch's matrices begin, [A * (p + 1)^2 + b]; equal batches share
 };
 
 /// All given elements of one degree and material, in ascending order, with the Gauss rule of the degree.
@@ -48,7 +48,8 @@ void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 /// Applies the transpose of `tangents`: adds sum_q (N_A,s p_q,1 + N_A,t p_q,2) to the rows A of `sum`, lane after lane.
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 
-/// Evaluates first and second derivatives: j[15 q + 3 k + c], k = 0 .. 4 for x_,s x_,t x_,ss x_,st x_,tt. add_jet_transpose applies the transpose.
+/// Evaluates first and second derivatives of a net at the Gauss points of a batch: j[15 q + 3 k + c] is component c of x_,s x_,t x_,ss x_,st x_,tt
+/// for k = 0 .. 4. add_jet_transpose applies the transpose.
 void jets(const Group& group, const Batch& batch, const Net& net, Pack* j);
 void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int max_bernstein = (max_degree + 1) * (max_degree + 1);
 
-// out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1
+// Small matrix product: out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1.
 template <int Width>
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int first, Register* out) {
   Register sum[Width][3] = {};
@@ -24,7 +24,7 @@ void extract(const Register* e, int across_r, int across_k, const Register* x, i
     for (int c = 0; c < 3; ++c) out[3 * (first + k) + c] = sum[k][c];
 }
 
-// Does the same for k = 0 .. n_k - 1, four at a time.
+// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = 0 .. n_k - 1, four values of k at a time.
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int n_k, Register* out) {
   int k = 0;
   for (; k + 4 <= n_k; k += 4) extract<4>(e, across_r, across_k, x, n_r, k, out);
@@ -51,10 +51,11 @@ void scatter(const Group& g, const Batch& batch, const Register* f, Net& sum) {
     }
 }
 
-// Order of each derivative in s and in t: x_,s x_,t x_,ss x_,st x_,tt.
+// Number of derivatives with respect to s and to t in each of x_,s x_,t x_,ss x_,st x_,tt.
 constexpr int times_s[] = {1, 0, 2, 1, 0}, times_t[] = {0, 1, 0, 1, 2};
 
-// The degree and the order are template arguments for the usual combinations, and 0 if they are known only at run time.
+// Tensor-product Gauss rule. The degree of the elements and the number of points are template arguments for the usual combinations, and 0 if they are
+// known only at run time.
 template <int Degree, int Order>
 struct Rule {
   static constexpr int max_p = Degree ? Degree : max_degree, max_q = Order ? Order : max_order;
@@ -63,11 +64,12 @@ struct Rule {
   explicit Rule(const Group& g)
       : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), bernstein{g.value.data(), g.slope.data(), g.bend.data()} {}
 
-  // Evaluates the first n derivatives at all nodes, a[3 (n node + derivative) + c], from Bezier points. Sums over s first, then over t.
+  // Evaluates the first n of the derivatives x_,s x_,t x_,ss x_,st x_,tt at all nodes, a[3 (n node + derivative) + c], from Bezier points. Sums over
+  // s first, then over t.
   template <int n>
   void evaluate(const Register* bezier, Register* a) const {
     constexpr int m = n == 2 ? 2 : 3;
-    Register along[max_p + 1][max_q][m][3];  // value and derivatives in s, in each row j
+    Register along[max_p + 1][max_q][m][3];  // value and derivatives with respect to s, in each row j of Bezier points
     for (int j = 0; j <= p; ++j)
       for (int k = 0; k < q; ++k) {
         Register sum[m][3] = {};

@@ -53,10 +53,12 @@ void PatchForces::check() const {
 
 namespace {
 
-/// Order of the patch quadrature, which divides elements into parts no longer than half the patch radius; largest number of parts per direction.
+/// order: Gauss points per direction of each part of an element. Elements are divided into parts no longer than half the patch radius, at most
+/// most_parts per direction.
 constexpr int order = 6, most_parts = 32;
 
-/// Returns the number of parts per direction of an element for the patch quadrature; 0 if the element is farther from the patch than its own length.
+/// Returns the number of parts per direction into which the patch quadrature divides an element; 0 if the element is farther from the patch than its
+/// own length, so that it cannot overlap the patch.
 int parts(const std::array<Vec3, 9>& places, const Vec3& ray, double radius) {
   double longest = 0, nearest = INFINITY;
   for (const Vec3& x : places) {
@@ -75,7 +77,7 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   Net work = Net::Zero(space.n_points, 3);
   for (const PatchForce& one : all) {
     const Vec3 ray = one.direction.normalized();
-    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0, w not normalised yet
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(space.n_points);  // int N_A w dGamma_0 per control point A, before the weight w is normalised
     for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
       const auto place = [&](double s, double t) { return surface::point(space, unstressed, {e, s, t}); };
       std::array<Vec3, 9> places;

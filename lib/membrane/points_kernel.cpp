@@ -32,7 +32,7 @@ void visit_points(const Law& law, int n, const ReferencePoint* points, const Pac
       law);
 }
 
-// With N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N:  2 chi = -M/J^3.
+// Mean curvature: with N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N, it is 2 chi = -M/J^3.
 template <class Number>
 struct Curved {
   Vector<Number> s, t, ss, st, tt, normal, turned;  // turned: the bracket of M
@@ -46,7 +46,8 @@ struct Curved {
     curvature = -(dot(turned, normal) / (square * j));
   }
 
-  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, as derivatives with respect to the five vectors of the jet
+  // Gradient of the bending energy density, d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, with respect to the five
+  // vectors of the jet.
   void gradient(double modulus, const Register& c0, Vector<Number>* p) const {
     const Number excess = curvature - c0, inverse = 1.0 / j;
     const Number by_m = -modulus * (excess * inverse * inverse);                                              // derivative by M
@@ -121,7 +122,8 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
   });
 }
 
-// dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22); S = 2 area (Psi_1 G + Psi_2 K).
+// Change of the invariants for a change e of the metric: dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The
+// stress is S = 2 area (Psi_1 G + Psi_2 K).
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* tangents, TangentPoint* points) {
   const Register* const a = registers(tangents);
   auto* const tangent = reinterpret_cast<TangentPointOf<Register>*>(points);
@@ -133,7 +135,7 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // due to the change of K
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // part of the tangent that is due to the change of K
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);
@@ -144,7 +146,8 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
   });
 }
 
-// With k = (g^11, g^12, g^22) and e = (d11, 2 d12, d22): S = J (2 eta_s g^ac g^bd d_cd + (kappa_s - eta_s) g^ab k.e).
+// Viscous stress, with k = (g^11, g^12, g^22) and the rate of strain e = (d11, 2 d12, d22): S = J (2 eta_s g^ac g^bd d_cd + (kappa_s - eta_s) g^ab
+// k.e).
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* points, const Pack* tangents, TangentPoint* moduli) {
   const auto* const reference = reinterpret_cast<const Reference*>(points);
   const Register* const a = registers(tangents);

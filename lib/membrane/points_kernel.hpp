@@ -17,7 +17,7 @@ struct ReferencePointOf {
 };
 using ReferencePoint = ReferencePointOf<Pack>;
 
-/// Returns the address of component `field` (0 .. 4) at point q of a batch. The lanes are contiguous.
+/// Returns the address of the numbers of component `field` (0 .. 4) at point q of a batch, one per lane, contiguous.
 inline const double* numbers(const ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 
@@ -46,8 +46,8 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
 
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
-/// Stores the moduli of the viscous stress (3.10) in place of the elastic ones, with zero stress. apply() then computes p_a = J tau^ab a_b from the
-/// velocity gradients.
+/// Stores the moduli of the viscous stress (3.10) in `moduli` in place of elastic ones, and zero stress. apply() then computes the viscous p_a = J
+/// tau^ab a_b from the velocity gradients.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
 /// Computes p = d^2E/da^2 u for displacement gradients u in the layout of a.

@@ -19,13 +19,13 @@ class ExpressionParser {
       : what_(what), text_(text), constants_(constants), energy_(energy) {}
 
   void parse() {
-    constexpr std::size_t longest = 2000;  // largest number of characters; a longer text might exceed the stack
+    constexpr std::size_t longest = 2000;  // largest number of characters, because deep recursion on a longer text might exceed the stack
     if (text_.size() > longest)
       throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
     if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is the same for every strain.");
-    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy, because the last result must be the energy
+    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy of the energy, which must be the last result
     for (const auto& [name, value] : constants_)
       if (std::ranges::find(used_, name) == used_.end()) throw UserError(what_ + " does not use the constant `" + name + "`.");
   }
@@ -170,7 +170,8 @@ StrainEnergy::StrainEnergy(const std::string& what, const std::string& text, con
   check(what);
 }
 
-/// Throws UserError if the text is not the energy of a membrane: finite at small strains, stress-free when unstretched, stable.
+/// Throws UserError if the expression is not a possible energy of a membrane, which must be finite at small strains, stress-free when unstretched,
+/// and stable.
 void StrainEnergy::check(const std::string& what) const {
   for (const double one : {1.0, 0.95, 1.05})
     for (const double other : {1.0, 0.95, 1.05}) {

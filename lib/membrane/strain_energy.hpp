@@ -29,7 +29,7 @@ struct Taylor {
             a.value * b.by12 + a.by1 * b.by2 + a.by2 * b.by1 + a.by12 * b.value,
             a.value * b.by22 + 2.0 * (a.by2 * b.by2) + a.by22 * b.value};
   }
-  /// Returns f(a), from f and its first two derivatives at a.
+  /// Returns the value and derivatives of the composition f(a), from f and its first two derivatives at a.
   static Taylor composed(const Number& f, const Number& slope, const Number& bend, const Taylor& a) {
     return {f,
             slope * a.by1,
@@ -46,7 +46,7 @@ class StrainEnergy {
  public:
   StrainEnergy(const std::string& what, const std::string& text, const std::map<std::string, double>& constants);
 
-  /// Returns Psi, shifted to 0 on an unstretched membrane, with its derivatives.
+  /// Returns Psi with its derivatives, shifted by a constant so that Psi is 0 on an unstretched membrane.
   template <class Number>
   Taylor<Number> at(const Number& i1, const Number& i2) const {
     std::array<Taylor<Number>, most_operations> results;
@@ -66,7 +66,8 @@ class StrainEnergy {
  private:
   friend class ExpressionParser;
   enum class Kind { sum, product, shifted, scaled, power, root, exponential, logarithm };
-  /// An operation on the earlier results `first` and `second` and a constant. Results 0 and 1 are I1 and I2.
+  /// An operation on the results with the indices `first` and `second` and on a constant. Results 0 and 1 are I1 and I2; later ones are those of
+  /// earlier operations.
   struct Operation {
     Kind kind;
     std::size_t first, second;

@@ -14,14 +14,14 @@ using Number = Dual<double>;
 using Tangents = std::array<Vector<Number>, 2>;
 Vector<Number> with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
 
-// Returns the row of sqrt(g) tau^{ab} g_b with a = `row`, from the tangents X_,s X_,t in `r` and x_,s x_,t in `a`.
+// Returns row `row` of the stress flux sqrt(g) tau^{ab} g_b, from the tangents X_,s X_,t in `r` and x_,s x_,t in `a`.
 template <class AnyLaw>
 Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int row) {
   const Number r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);
   const Number a11 = dot(a[0], a[0]), a12 = dot(a[0], a[1]), a22 = dot(a[1], a[1]);
   const Number i1 = (r22 * a11 - 2.0 * r12 * a12 + r11 * a22) * inverse - 2.0, i2 = (a11 * a22 - a12 * a12) * inverse - 1.0;
   const Response<Number> psi = law.response(i1, i2);
-  const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G| / |G|, with G^ab and |g| g^ab in cofactors
+  const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G| / |G|; the factor 1/|G| belongs to G^ab and |g| g^ab, which are written as cofactors
   const Number same = scale * (psi.psi1 * (row == 0 ? r22 : r11) + psi.psi2 * (row == 0 ? a22 : a11));
   const Number mixed = scale * (psi.psi1 * (-r12) + psi.psi2 * (-a12));
   Vector<Number> sum;

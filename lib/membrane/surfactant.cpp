@@ -43,7 +43,7 @@ Surfactant::Surfactant(const spline::Space& space, const Net& initial, const Sur
   share_ = mass * Eigen::VectorXd::Ones(initial.rows());
 }
 
-/// Returns contravariant components at Gauss point q from covariant ones.
+/// Returns the contravariant components at Gauss point q of a vector with these covariant components.
 std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, double along_t) const {
   const double *g11 = &metric[static_cast<std::size_t>(q)], *g12 = g11 + n, *g22 = g12 + n;
   return {*g11 * along_s + *g12 * along_t, *g12 * along_s + *g22 * along_t};
@@ -94,10 +94,10 @@ Net Surfactant::load() const {
 
 Eigen::VectorXd Surfactant::rate(const Net& slip) const { return transport(slip, diffusivity_); }
 
-/// Control points that slide with velocity u have the slip -u in a fluid at rest.
+/// In a fluid at rest, control points that slide with velocity u have the slip -u (fluid minus control-point velocity).
 Eigen::VectorXd Surfactant::relabelled(const Net& mesh_velocity) const { return transport(-mesh_velocity, 0); }
 
-/// Returns (3.17) with the given diffusivity, divided by the share of each control point.
+/// Returns the rates dm_A/dt of (3.17) with the given diffusivity, divided by int N_A dG on the initial surface, which gives dq_A/dt.
 Eigen::VectorXd Surfactant::transport(const Net& slip, double diffusivity) const {
   Eigen::VectorXd rate = Eigen::VectorXd::Zero(space_.n_points);
   for (std::size_t e = 0; e < elements_.size(); ++e) {

@@ -43,7 +43,7 @@ class Surfactant : public Field {
 
   Eigen::VectorXd rate(const Net& slip) const override;
 
-  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< int c dG, in units of area
+  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< total mass int c dG, in units of area because c is relative
   /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to the energy of the clean interface. f: free energy density.  (3.21)
   double energy() const override;
   surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
@@ -60,19 +60,20 @@ class Surfactant : public Field {
   surface::FieldsAt values_at() const override;  ///< c divided by its mean
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
 
-  /// Samples the concentration at the Gauss points and scales it to the same mass.
+  /// Computes the concentration at the Gauss points from the field `from`, and scales it so that the total mass does not change.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
-  /// Returns q for which the concentration on the surface x has the control values c.
+  /// Returns the coefficients q for which the concentration on the surface x has the control values c.
   Eigen::VectorXd contents(const Net& x, const Eigen::VectorXd& c) const;
 
  private:
-  /// The functions of an element at its n Gauss points, and the surface and the concentration there. Arrays have the layout of surfactant_kernel.hpp.
+  /// Basis functions of an element at its n Gauss points, with the surface and the concentration there. Arrays have the layout of
+  /// surfactant_kernel.hpp.
   struct ElementPoints {
     int n, functions;
     std::vector<double> value, by_s, by_t, weight;
-    std::vector<double> s, t;    // derivatives of x and c with respect to each parameter: four fields
-    std::vector<double> metric;  // contravariant metric, and weight times J
+    std::vector<double> s, t;    // derivatives of x and c with respect to the parameters s and t: four components each
+    std::vector<double> metric;  // contravariant metric, then the Gauss weight times J
     std::vector<double> c;
 
     const double* area() const { return &metric[3 * static_cast<std::size_t>(n)]; }
@@ -81,7 +82,7 @@ class Surfactant : public Field {
   struct Point;
   template <class Use>
   void each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const;
-  /// Adds the contributions of an element to the rows of its control points. Each point has as many values as `sums` has columns.
+  /// Adds the contributions of an element to the rows of its control points in `sums`. Each point has as many values as `sums` has columns.
   template <class Sums>
   void add_rows(std::size_t element, const double* rows, Sums& sums) const {
     constexpr int n = Sums::ColsAtCompileTime;
@@ -100,12 +101,12 @@ class Surfactant : public Field {
   mutable MassSolver solver_;
   Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface
   Eigen::VectorXd q_;                                     // coefficients set last
-  Net x_, known_x_;                                       // shapes set last and at the linearisation
+  Net x_, known_x_;                                       // shape set last, and shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation
   std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
   mutable MassMatrix known_mass_;                         // mass matrix at the linearisation
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
-  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // factors of M + s D K on the frozen shape
+  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // factors of mass + shift D stiffness, frozen shape
   mutable double factored_shift_ = 0;
 };
 

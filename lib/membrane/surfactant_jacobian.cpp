@@ -11,9 +11,9 @@ namespace tanktread::membrane {
 namespace {
 
 constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
-constexpr double shift_ratio = 1.25;                           // ratio of neighbouring shifts for which solve() computes factors
+constexpr double shift_ratio = 1.25;                           // ratio of neighbouring values of the shift for which solve() computes factors
 
-/// Returns the nearest value in a geometric sequence, so that the factors depend only on the present shift.
+/// Returns the nearest value in a geometric sequence. Factors for this value, which depends only on the current shift, serve all shifts close to it.
 double rounded(double shift) { return std::pow(shift_ratio, std::round(std::log(shift) / std::log(shift_ratio))); }
 
 using Changing = Dual<double>;
@@ -21,7 +21,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 }  // namespace
 
-/// Surface and concentration at a Gauss point with their derivatives in each parameter, weight times J, and contravariant metric, all with changes.
+/// Surface and concentration at a Gauss point with their derivatives with respect to s and t, the Gauss weight times J, and the contravariant metric,
+/// all as dual numbers with their changes.
 struct Surfactant::Point {
   Vector<Changing> s, t;
   Changing c, c_s, c_t, area, g11, g12, g22;
@@ -30,7 +31,8 @@ struct Surfactant::Point {
   Changing up_t(const Changing& along_s, const Changing& along_t) const { return g12 * along_s + g22 * along_t; }
 };
 
-/// Calls use(element, its points at the linearisation, point) for every element. point(q) returns the quantities at Gauss point q with their changes.
+/// Calls use(element, data of the element stored by linearise(), point) for every element. point(q) returns the quantities at Gauss point q with
+/// their changes.
 template <class Use>
 void Surfactant::each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const {
   double s[4 * most_gauss_points], t[4 * most_gauss_points], c[most_gauss_points];
@@ -70,7 +72,7 @@ void Surfactant::linearise(const Net& slip) {
   }
 }
 
-/// Solves M dc = dm - (dM) c.
+/// Solves M dc = dm - (dM) c for the change dc of the concentration, with the mass matrix M and the change dm of the contents m = M c.
 Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& dq) const {
   Eigen::VectorXd content = share_.cwiseProduct(dq);
   each_change(dx, Eigen::VectorXd::Zero(dq.size()), [&](std::size_t e, const ElementPoints& at, const auto& point) {
@@ -132,7 +134,7 @@ void Surfactant::freeze(const Net& x) {
   factors_.reset();
 }
 
-/// Returns the stiffness matrix int grad_s N_A.grad_s N_B dG of the shape set last.
+/// Returns the stiffness matrix K_AB = int grad_s N_A.grad_s N_B dG of the shape set last.
 Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
@@ -154,7 +156,8 @@ Eigen::SparseMatrix<double> Surfactant::stiffness() const {
   return matrix;
 }
 
-/// Solves (M + shift D K) c = r for the contents M c.
+/// Solves (M + shift D K) c = m for the concentration c, with mass M, diffusivity D, stiffness K, and contents m given by the coefficients r. Returns
+/// the coefficients of the contents M c.
 Eigen::VectorXd Surfactant::solve(double shift, const Eigen::VectorXd& r) const {
   if (diffusivity_ == 0 || frozen_mass_.rows() != r.size()) return r;
   if (const double close = rounded(shift); !factors_ || factored_shift_ != close) {

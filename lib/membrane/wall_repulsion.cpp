@@ -26,7 +26,8 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
 
 /// Returns the Gauss points whose repulsion energy is not negligible.
 std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
-  constexpr double far = 40, step = 1e-4;  // far: in ranges; step: for the slope of the wall, divided by its radius
+  // Repulsion at gaps larger than `far` ranges is neglected. The slope of the wall is a difference quotient over `step` of its radius.
+  constexpr double far = 40, step = 1e-4;
   std::vector<Place> found;
   for (const int e : elements) {
     const std::vector<int>& points = space_.elements[static_cast<std::size_t>(e)].points;

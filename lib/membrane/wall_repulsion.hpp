@@ -28,8 +28,9 @@ class WallRepulsion : public Load {
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;
-  bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }  // images that keep the axis; the caller checks the wall
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }      // none: in a tube, rigid motions are along the axis
+  // Returns true for images that keep the axis x1. The caller checks the symmetry of the wall.
+  bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no condition: free motions in a tube are along its axis
   bool depends_on_labels() const override { return false; }
 
  private:
@@ -43,8 +44,8 @@ class WallRepulsion : public Load {
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // function values, one row per Gauss point
-  std::vector<Eigen::VectorXd> area_;                                                          // unstressed area of each Gauss point
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // per element: values, one row per Gauss point
+  std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
   std::vector<Place> latest_;                                                                  // points at the linearisation
 };
 

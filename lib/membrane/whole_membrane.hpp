@@ -13,11 +13,11 @@
 
 namespace tanktread::membrane {
 
-/// Stiffnesses of the global elasticity; 0: none.
+/// Stiffnesses of the global elasticity; a stiffness of 0 means that the term is absent.
 struct WholeStiffness {
   double area = 0;                        ///< K of the total area (3.26), force/length
   double leaves = 0;                      ///< kbar of the area difference of the leaflets (3.27), force x length
-  std::optional<double> leaf_difference;  ///< Q0 divided by Q of a sphere of equal area; if not given, Q0 is Q of the unstressed shape X
+  std::optional<double> leaf_difference;  ///< Q0 divided by the Q of a sphere of equal area; if not given, Q0 is the Q of the unstressed shape X
 
   bool any() const { return area > 0 || leaves > 0; }
 };
@@ -47,11 +47,11 @@ class WholeMembrane : public Load {
 
  private:
   struct Measure {
-    int degree;                                      // m, degree of homogeneity of Q
+    int degree;                                      // m, degree of homogeneity of Q in x
     std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
-    double tension = 0;                              // k (Q - Q0) at the linearisation
+    double tension = 0;                              // k (Q - Q0) at the shape of linearise(), a tension if Q is the area
     Net q = {};                                      // q at the linearisation
 
     double operator()(const Net& x, const Net& gradient) const { return x.cwiseProduct(gradient).sum() / degree; }

@@ -101,7 +101,7 @@ double excess(const surface::Errors& errors, const AdaptationOptions& options) {
   return std::max({errors.surface / options.surface_tolerance, errors.fields * options.radius / options.surface_tolerance, load});
 }
 
-/// Returns the largest length of an element next to a film of this width.
+/// Returns the largest allowed length of an element next to a film of this width.
 double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
 /// Returns the marks or merges of n elements: an element is included if wanted(element, direction) holds along s or t.

@@ -22,10 +22,10 @@ struct AdaptationOptions {
   bool enabled = false;
   std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
   double surface_tolerance = 4e-4;                         ///< tolerance of the surface error e(x), length
-  std::optional<double> load_tolerance;                    ///< tolerance of the load error e(phi), force/length^2; empty: not in use
-  std::optional<double> reference_length;                  ///< L_ref; set for `variation`, as are the next five members if they are in use
-  std::optional<double> reference_curvature_variation;     ///< chi_ref, 1/length^2; empty: not in use
-  std::optional<double> reference_traction_variation;      ///< T_ref, for the traction per current area, per length
+  std::optional<double> load_tolerance;                    ///< tolerance of the load error e(phi), force/length^2; if empty, this error is not used
+  std::optional<double> reference_length;  ///< L_ref, length; this and the next five members are set only if the indicator is `variation`
+  std::optional<double> reference_curvature_variation;     ///< chi_ref, reference variation of the mean curvature, 1/length^2; empty: not in use
+  std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction per current area, traction per length
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
@@ -36,7 +36,7 @@ struct AdaptationOptions {
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
   double coarsening_margin = 0.7;                          ///< an element of twice the length must stay below this fraction of every limit
-  double coarsening_tolerance = 1e-4;                      ///< largest change of either surface by one coarsening, length
+  double coarsening_tolerance = 1e-4;  ///< largest displacement of the current or the unstressed surface by one coarsening, length
 
   void declare(deck::Section& section);
 
@@ -44,7 +44,7 @@ struct AdaptationOptions {
   /// of control points and this element length.
   void check(int first_points, double first_length) const;
 
-  /// Returns the options with every limit (tolerances, longest element, aspect ratio) multiplied by this factor.
+  /// Returns the options with every tolerance and every limit (longest element, aspect ratio) multiplied by this factor.
   AdaptationOptions coarser(double factor) const;
 };
 

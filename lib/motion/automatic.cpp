@@ -75,13 +75,13 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   } else {
     const bool first = choice.points == 0;
     measure(dynamics, state, choice);
-    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would already be limited by stability
+    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // stability would already limit the first step of BS3
       choice.scheme = tr_bdf2;
       choice.then = choice.stiffness;
     }
   }
 
-  // Pass only the part of the memory that belongs to the chosen scheme.
+  // The state that the chosen scheme receives has only the part of the memory that belongs to that scheme.
   State inner = state;
   const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t places = 3;  // number of earlier positions that a step needs in addition to x_n
 constexpr double growth = 1.5;     // largest ratio of a step to the previous one
-constexpr int patience = 3;        // attempts before the earlier positions are discarded
+constexpr int patience = 3;        // number of failed attempts at a step after which the scheme starts again with TR-BDF2 steps
 
-/// Coefficients of (4.9) at the end dt of the step: the shift, and a_0, a_1, a_2 for positions at times[0 … 2].
+/// Coefficients of the backward differentiation (4.9) for a step of size dt: the shift, and a_0, a_1, a_2 for the positions at times[0 … 2].
 struct Differentiation {
   double shift;
   std::array<double, places> a;
@@ -31,7 +31,7 @@ struct Differentiation {
 
 }  // namespace
 
-/// Advances by a step of TR-BDF2 and stores the position at its start.
+/// Makes a starting step by TR-BDF2, and stores the position before this step for later BDF3 steps.
 StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit) {
   Place before{state.time, state.x};
   const StepReport report = starter_.advance(dynamics, state, limit);

@@ -14,7 +14,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction smaller than this multiple of the tolerance may be limited by quadrature errors
+constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged: quadrature errors may prevent smaller ones
 }
 
 void ContinuationOptions::declare(deck::Section& section) {
@@ -65,10 +65,10 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
 
-/// Finds the intersection of the branch with the plane through `predicted` with this normal.
+/// Finds the intersection of the branch with the plane through the point `predicted` that has this normal.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
   constexpr int most_rounds = 8, most_iterations = 80;
-  constexpr double far = 4;  // largest distance from the prediction divided by the step
+  constexpr double far = 4;  // largest distance of the solution from the predicted point, divided by the step
   Solved solved{predicted, 0, 0, 0};
   for (int round = 0; round < most_rounds; ++round) {
     const Place from = solved.place;
@@ -105,7 +105,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // error bound of the linearisation of G in p
+    solved.rest = moved * turned;  // estimate of the error because G(x, p) was linearised in the parameter p: change of x times change of p
     if (solved.rest < steady_.tolerance) return solved;
   }
   return {};
@@ -198,7 +198,7 @@ void Branch::adapt() {
   }
 }
 
-/// Two points are held back, because a fold may lie between the last two points.
+/// Two points are held back before they are returned, because a fold may lie between the last two points.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;

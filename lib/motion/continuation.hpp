@@ -120,12 +120,12 @@ class Branch {
   Net x_;
   std::vector<Solved> last_;  // up to three points, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
-  std::vector<Fold> folds_;       // the two latest folds of the second parameter
-  double last_share_ = 1;         // distance between these folds, as a fraction of the interval between two values
-  std::size_t values_ = 0;        // number of its values reached
+  std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
+  double last_share_ = 1;         // distance between the two latest folds, as a fraction of the interval between two values
+  std::size_t values_ = 0;        // number of values of the second parameter that have been reached
   std::string failure_;
   double step_ = 0, missed_ = 1;  // `missed_`: distance of the latest point from its prediction, divided by the step
-  double heading_ = 0;  // change of q in the last step; points recomputed on another mesh may have another sign
+  double heading_ = 0;  // change of the scaled parameter q in the last step; its sign, kept on mesh changes, shows a fold
   int count_ = 0;
   bool ended_ = false;
 };

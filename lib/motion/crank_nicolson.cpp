@@ -10,7 +10,7 @@ namespace tanktread::motion {
 namespace {
 constexpr double shrink = 0.75, grow = 1.33;
 constexpr int most = 8, few = 4;      // sub-iterations
-constexpr int most_accelerated = 40;  // if a step needs more, halving it is cheaper
+constexpr int most_accelerated = 40;  // largest number of iterations of a step by NOX; beyond it, halving the step is cheaper than further iterations
 }  // namespace
 
 CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox)
@@ -46,7 +46,7 @@ CrankNicolson::Iteration CrankNicolson::iterate(coupling::Dynamics& dynamics, co
 StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
   Attempts attempts(options_, state, limit);
-  const bool known = by_error_ && state.history.size() > 1;  // State::memory: the last step, and its error divided by the tolerance
+  const bool known = by_error_ && state.history.size() > 1;  // if true, State::memory has the last step, and its error divided by the tolerance
 
   for (;;) {
     const double dt = attempts.next();

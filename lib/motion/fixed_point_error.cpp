@@ -8,7 +8,7 @@
 namespace tanktread::motion {
 
 Net FixedPointError::operator()(const Net& x, const Net& f) {
-  constexpr double independent = 1e-6;  // smallest linearly independent part of a column, relative to its length
+  constexpr double independent = 1e-6;  // columns of dF whose independent part is a smaller fraction of their length are ignored
   Eigen::MatrixXd dx(x.size(), static_cast<Eigen::Index>(before_.size())), df(x.size(), dx.cols());
   for (Eigen::Index j = 0; j < dx.cols(); ++j) {
     const auto& [other_x, other_f] = before_[static_cast<std::size_t>(j)];

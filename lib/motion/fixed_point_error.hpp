@@ -23,7 +23,7 @@ class FixedPointError {
   /// g.
   Net operator()(const Net& x, const Net& f);
 
-  bool known() const { return before_.size() > 1; }  ///< returns whether the latest estimate uses earlier iterates
+  bool known() const { return before_.size() > 1; }  ///< returns true if the latest estimate uses earlier iterates, not only the correction
 
  private:
   int most_;

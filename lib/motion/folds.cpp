@@ -11,7 +11,7 @@
 
 namespace tanktread::motion {
 
-/// Returns the fold near three points of the branch, or nothing if it is not found.
+/// Returns the fold near three consecutive points of the branch, or nothing if no fold is found.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {

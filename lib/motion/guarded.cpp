@@ -10,7 +10,7 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // the largest value of all ranks is the common outcome
+enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of one rank; the largest of all ranks is the common outcome
 
 Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 

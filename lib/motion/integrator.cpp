@@ -23,7 +23,7 @@ std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const 
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
 }
 
-/// Scheme whose steps end at kinks of the motion, and which restarts there.
+/// Wrapper of a scheme: its steps end at kinks of the motion (times of non-smooth change), after which the scheme starts again.
 class PiecewiseSmooth : public Integrator {
  public:
   explicit PiecewiseSmooth(std::unique_ptr<Integrator> scheme) : scheme_(std::move(scheme)) {}
@@ -78,7 +78,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double trial = 1e-3 / speed;
   dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
-  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // the trial velocity may not be available
+  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // the maximum ignores a NaN in `change`
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 

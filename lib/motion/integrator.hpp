@@ -67,13 +67,12 @@ class Integrator {
 std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox = nullptr);
 
 /// Returns a first step for a state with known slope, at the cost of one velocity evaluation. The error of a second-order scheme, estimated from the
-/// change of slope along a short Euler step (after Hairer, Norsett & Wanner, Solving ODEs I, II.4), is then about a tenth of the tolerance. The third
-/// derivative is approximated by the rate of the motion times the second derivative, or times its own square, so the step does not depend on the unit
-/// of time.
+/// change of slope along a short Euler step (after Hairer, Norsett & Wanner, Solving ODEs I, II.4), is then about a tenth of the tolerance. With the
+/// rate of the motion r = |dx/dt|, the third derivative is approximated by r max(|d2x/dt2|, r^2), so the step does not depend on the unit of time.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
-/// Returns the step to use towards `limit` when the controller proposes `step`: the whole remaining time if it fits, or half of it if two steps are
-/// needed, so that the last step is not tiny.
+/// Returns the step to use towards `limit` when the controller proposes `step`: all of the remaining time if it is not longer than `step`, or half of
+/// it if two steps are needed, so that the last step is not tiny.
 double step_towards(double time, double limit, double step);
 
 /// Continuous output within a step: the cubic Hermite interpolant of positions and slopes at both ends, of fourth order, without further evaluations.

@@ -35,7 +35,7 @@ void TimeOptions::declare(deck::Section& section) {
               "tolerance of the sub-iteration of the scheme `crank-nicolson` (4.1)");
   section.key("nonlinear solver", nonlinear_solver, deck::Choice{"plain", "anderson", "newton-krylov"},
               "solver of the nonlinear equations of a `crank-nicolson` step. `plain`: the paper's sub-iteration. `anderson`: sub-iteration "
-              "accelerated by NOX. `newton-krylov`: Newton's method by NOX without an assembled Jacobian");
+              "accelerated by NOX, the nonlinear solvers of Trilinos. `newton-krylov`: Newton's method by NOX without an assembled Jacobian");
   section.key("step control", step_control, deck::Choice{"iterations", "error"},
               "control of the step length of `crank-nicolson`. `iterations`: by the number of sub-iterations, the paper's rule (4.1); default for "
               "the nonlinear solver `plain`. `error`: by the error (4.10)");

@@ -28,7 +28,7 @@ struct TimeOptions {
   double newton_tolerance = 0.2;           ///< error of the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< largest number of iterations of a stage before the step is halved
   double linear_tolerance = 0.05;          ///< relative residual of the linear solves of a stage
-  double contraction_limit = 0.3;          ///< if the contraction rate is larger, the frozen layer operator is assembled again
+  double contraction_limit = 0.3;          ///< largest contraction rate of the iteration with which the frozen layer operator is used further
   double largest_operator = 32;             ///< largest frozen operator that `auto` uses, in GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2

@@ -32,7 +32,8 @@ void PeriodicOptions::declare(deck::Section& section) {
               "tolerance of the difference between the shape and its return after a period: root mean square displacement of the control points "
               "divided by R_C; about ten times Time/tolerance. If disturbances decay within a period, the error of the shape is less than a "
               "hundredth of the tolerance");
-  section.key("iterations", iterations, deck::between(1, 1000), "1", "largest number of NOX iterations, each of which integrates over one period");
+  section.key("iterations", iterations, deck::between(1, 1000), "1",
+              "largest number of iterations of NOX (a package of Trilinos), each of which integrates over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
               "largest displacement of the perturbed shapes whose returns after a period give the multipliers by finite differences, with Spectrum");
 }
@@ -126,7 +127,7 @@ std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& sta
   const auto product = [&](const Net& d) -> Net {
     const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
     const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
-    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));  // parts that break the symmetry would persist as a multiplier 1
+    return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));  // otherwise errors that break the symmetry would appear as a multiplier of 1
   };
   const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));
   std::vector<Net> basis{admitted(start / start.norm())};

@@ -9,7 +9,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double worth_assembling = 0.3;  // change of shape since the last assembly; if it is larger, a new assembly pays off
+constexpr double worth_assembling = 0.3;  // least change of shape since the last assembly for which a new assembly pays off
 }  // namespace
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {
@@ -19,7 +19,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
     if (!defect.allFinite()) return;
-    if (k == 1 && options.secants > 0) {  // later corrections are so small that quadrature errors dominate
+    if (k == 1 && options.secants > 0) {  // only the first correction gives a secant: in later, smaller ones quadrature errors dominate
       const Net missed = dynamics.missed_of(defect - before, delta, shift);
       if (!missed.allFinite()) return;
       secants.add(delta, missed, options.secants);
@@ -46,7 +46,8 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
 
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory) {
-  // A new operator helps only if the shape has changed. The remaining contraction rate is due to the terms neglected in (4.3).
+  // A newly assembled operator speeds up the iteration only if the shape has changed. Otherwise slow contraction is due to the terms neglected in
+  // (4.3).
   const double changed = dynamics.distance(state.frozen, state.x);
   if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : state.frozen != state.x) {
     dynamics.freeze(state.frozen = state.x);

@@ -15,9 +15,9 @@ struct Memory {
 
 /// A stage y - shift v(y) = rhs and its solution.
 struct Stage {
-  Net y;                ///< start of the iteration, then its result
+  Net y;                ///< start value of the iteration, and after `solve` the solution
   Net slope;            ///< slope (y - rhs)/shift of the result
-  double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier one; 0 if none was observed yet
+  double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier stage; 0 if none was observed yet
   double error = 0;     ///< bound of the distance of the result to the exact solution of the stage, in the norm of `Time/tolerance`
   int iterations = 0;   ///< evaluations of the defect
   bool solved = false;

@@ -8,7 +8,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double margin = 1.1;    // factor on rho, because power iteration gives a lower bound
+constexpr double margin = 1.1;    // safety factor on the stiffness rho, because power iteration gives a lower bound of it
 constexpr int lasting_steps = 25;  // number of steps for which a measured stiffness is used
 constexpr int most_stages = 200;
 
@@ -31,7 +31,7 @@ void measure(coupling::Dynamics& dynamics, State& state, StiffnessMemory& memory
   report.iterations += iterations;
 }
 
-/// Values and first two derivatives at w of the Chebyshev polynomials of degree 0 … s.
+/// Values T_j(w), T_j'(w) and T_j''(w) of the Chebyshev polynomials of degree j = 0 … s at the point w.
 struct Chebyshev {
   std::vector<double> t, d, dd;
   Chebyshev(int s, double w) : t{1, w}, d{0, 1}, dd{0, 0} {

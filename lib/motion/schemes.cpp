@@ -79,8 +79,8 @@ StepReport Bs3::advance(coupling::Dynamics& dynamics, State& state, double limit
 }
 
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations) {
-  if (direction.rows() != x.rows()) {  // random, so that it contains every mode
-    std::minstd_rand generator(1);     // gives equal numbers with every standard library
+  if (direction.rows() != x.rows()) {  // start from random numbers, so that the direction contains every mode
+    std::minstd_rand generator(1);     // a generator that gives equal numbers with every standard library
     direction = Net::NullaryExpr(x.rows(), 3, [&] { return static_cast<double>(generator()) / std::minstd_rand::max() - 0.5; });
   }
   direction /= dynamics.norm(direction);

@@ -100,11 +100,11 @@ class Rkc2 : public Scheme {
 /// Returns the number of stages that a step dt of RKC2 needs at the stiffness rho (4.8).
 int rkc2_stages(double dt, double rho);
 
-/// Returns the stiffness rho of the system at x, where the velocity is v. rho is the spectral radius of J, computed by power iteration (4.7). The
-/// result is a lower bound: eight iterations from a random direction, or two from the direction of an earlier call, give at least 0.9 rho. The
-/// iteration starts from `direction` and stores its last direction there, normalised to 1. If `direction` and x differ in size, the iteration starts
-/// from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one velocity evaluation if
-/// nothing is assembled.
+/// Returns the stiffness rho of the system at x, where the velocity is v. rho is the spectral radius of the Jacobian J = dv/dx, computed by power
+/// iteration (4.7). The result is a lower bound: eight iterations from a random direction, or two from the direction of an earlier call, give at
+/// least 0.9 rho. The iteration starts from `direction` and stores its last direction there, normalised to 1. If `direction` and x differ in size,
+/// the iteration starts from pseudo-random numbers that are the same in every run. An iteration costs one product with the frozen operator, or one
+/// velocity evaluation if nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
 /// The paper's Crank-Nicolson scheme (P-38), by default with its sub-iteration and its step rule (4.1):

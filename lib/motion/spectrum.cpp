@@ -25,8 +25,8 @@ void SpectrumOptions::declare(deck::Section& section) {
               "the leading eigenvalues by block Krylov-Schur on (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
               "preconditioned by the frozen Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
-              "shift of the method `krylov`, which finds modes in the order of |shift - rate|; if not given, the rate of the flow, or of the "
-              "membrane without flow");
+              "shift of the method `krylov`, which finds the modes with the growth rates closest to this value first. If not given, the rate of the "
+              "flow; without flow, the rate of the membrane, modulus / (viscosity x R_C)");
   section.key("block", block, deck::between(1, 50), "1",
               "block size of the method `krylov`: number of vectors multiplied together. At most this many modes of equal rate are found reliably");
   section.key("parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
@@ -101,8 +101,8 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Returns an orthonormal basis, in shape coordinates, of the fields that the symmetry admits. Fields that do not change the shape are left out: the
-/// rotations of a sphere, or of labels on the interface of a drop.
+/// Returns an orthonormal basis, in shape coordinates, of those of the given fields that the symmetry admits. Fields that do not change the shape are
+/// left out: rotations of a sphere, and relabellings of the interface of a drop.
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
@@ -117,7 +117,7 @@ Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std:
   return all.leftCols(rank);
 }
 
-/// Returns such a basis for the translations (first = 0) or rotations (first = 3) of x.
+/// Returns an orthonormal basis, in shape coordinates, of the translations (first = 0) or rotations (first = 3) of x.
 Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Net& x, int first) {
   const Net net = x.topRows(shapes.n_points());
   const Vec3 centre = net.colwise().mean().transpose();
@@ -126,7 +126,7 @@ Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Ne
   return orthonormal(shapes, fields);
 }
 
-/// Recognises the modes that do not change the shape.
+/// Detects modes that are translations, rotations or relabellings, and so do not change the shape.
 class Recognition {
  public:
   Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
@@ -134,7 +134,7 @@ class Recognition {
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// Returns the kind of a mode, if the mode is not due to the conservation of the volume or a mass.
+  /// Returns the kind of a mode by its translation, rotation and relabelling parts. Modes due to a conserved volume or mass are not detected here.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();
@@ -147,8 +147,8 @@ class Recognition {
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
-/// Returns the change of a conserved quantity with the gradient `kept` by a mode, relative to both norms. It is zero for all modes of nonzero rate,
-/// because rate x b.d = 0.
+/// Returns the change of a conserved quantity with the gradient b = `kept` by a mode d, b.d/(|b| |d|). It is zero for all modes of nonzero rate,
+/// because conservation implies rate x b.d = 0.
 double gain(const Net& kept, const Mode& mode) {
   const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
   return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
@@ -237,7 +237,8 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
-    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;  // near a fold its shape hardly distinguishes it
+    // Near a fold, the shape of this mode hardly differs from that of a true mode, so its kind follows from the conserved quantity.
+    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;
   }
   return modes;
 }

@@ -13,12 +13,13 @@ namespace tanktread::motion {
 
 void SteadyOptions::declare(deck::Section& section) {
   section.key("method", method, deck::Choice{"anderson", "newton-krylov"},
-              "method of NOX (parameters Solvers/NOX) for the steady shape. `anderson`: Anderson acceleration of the fixed-point iteration by "
-              "implicit steps. `newton-krylov`: Newton's method with the linear solver Solvers/steady");
+              "method of NOX (a package of Trilinos with parameters in Solvers/NOX) for the steady shape. `anderson`: Anderson acceleration of the "
+              "fixed-point iteration by implicit steps. `newton-krylov`: Newton's method with the linear solver Solvers/steady");
   section.key("tolerance", tolerance, deck::between(1e-13, 1e-2), "1",
               "tolerance of the estimated error of the steady shape (4.32), or of the last correction if Continuation follows a branch: root mean "
               "square displacement of the control points divided by R_C");
-  section.key("iterations", iterations, deck::between(1, 100000), "1", "largest number of NOX iterations in the search for the steady shape");
+  section.key("iterations", iterations, deck::between(1, 100000), "1",
+              "largest number of iterations of NOX (a package of Trilinos) in the search for the steady shape");
   section.key("step", step, deck::positive(), "time",
               "length of the implicit time step that preconditions the steady equations; if not given, 0.5 divided by the rate of the flow "
               "(without flow, of the membrane), but at most ten times viscosity x R_C/modulus of each membrane");
@@ -26,7 +27,8 @@ void SteadyOptions::declare(deck::Section& section) {
 
 namespace {
 
-/// Adds to orthonormal fields the component of a field that is orthogonal to them, if it is more than the fraction `least` of the field.
+/// Adds the component of `field` that is orthogonal to the orthonormal fields in `all`, normalised, if its norm is more than the fraction `least` of
+/// the field's norm.
 void join(std::vector<Net>& all, Net field, double least) {
   const double size = field.norm();
   for (const Net& other : all) field -= other.cwiseProduct(field).sum() * other;
@@ -39,7 +41,9 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  constexpr double rounding = 1e-6, between_meshes = 0.05;  // mesh error of an axisymmetric drop on a rotated mesh
+  // Least fraction of a field that must be independent of the others: above round-off, or above the mesh error of an axisymmetric drop on a rotated
+  // mesh.
+  constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
   for (const Net& field : dynamics_.relabellings(x)) join(all, field, between_meshes);
@@ -69,7 +73,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Takes shorter implicit steps until a step of full length changes x by little.
+/// Makes implicit steps, at first shorter than the step of the equations, until a step of full length changes x by little.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
@@ -110,7 +114,8 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  const coupling::FixedPoint::Norm left = [&](const Net&) {  // a first correction is not an error estimate, unless it is 0
+  // Norm of the error for NOX. The first correction alone is no error estimate, so it ends the iteration only if it is 0.
+  const coupling::FixedPoint::Norm left = [&](const Net&) {
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };
   const coupling::FixedPoint solver(options.method, solvers.nox, solvers.of(solvers.steady), depth);

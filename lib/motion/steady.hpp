@@ -45,7 +45,7 @@ class SteadyEquations {
   /// `step`: s. The motion must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
-  Net residual(const Net& x);                          ///< returns s G(x); not finite if the evaluation fails. Collective
+  Net residual(const Net& x);                          ///< returns s G(x) of (4.17); not finite if the evaluation fails. Collective
   Net precondition(const Net& x, const Net& r);  ///< returns (1 - s J)^{-1} r with the frozen Jacobian (4.3) linearised at x. Collective
   double unit_length() const;                          ///< Euclidean norm of a displacement that has norm 1 in the norm of the motion
   std::vector<Net> neutral(const Net& x);  ///< returns the orthonormal fields that Q projects onto. Collective

@@ -12,8 +12,8 @@ namespace tanktread::motion {
 namespace {
 const double d = 1 - 1 / std::sqrt(2.0);
 const double w = std::sqrt(2.0) / 4;
-constexpr double worth_an_order = 0.7;  // a higher order is chosen if it reduces the error of the prediction by this factor
-constexpr double accuracy = 4;  // lower bound of the ratio of two errors: of the second-order result and of the extrapolated result
+constexpr double worth_an_order = 0.7;  // a higher order of prediction is chosen only if its error is below this factor times the best error so far
+constexpr double accuracy = 4;  // lower bound of the error of the second-order result divided by the error of the extrapolated result
 
 /// Orders of extrapolation of the slopes that would have given the best predictions of the second and the third stage of a step.
 struct Orders {
@@ -40,7 +40,7 @@ class Prediction {
     return interpolated(times_, std::span(slopes_).first(n), time);
   }
 
-  /// Returns the order that would have given the best prediction of this slope.
+  /// Returns the order of extrapolation that would have given the best prediction of this slope.
   double best_order(const coupling::Dynamics& dynamics, double time, const Net& slope) const {
     double least = std::numeric_limits<double>::infinity(), best = 0;
     for (std::size_t order = 0; order < slopes_.size(); ++order)

@@ -10,13 +10,14 @@
 
 namespace tanktread::quadrature {
 
-/// Returns rho, the sum of the semi-axes of the ellipse with foci -1 and 1 through z = re + i im. The error of n Gauss points is about rho^(-2 n).
+/// Returns rho, the sum of the semi-axes of the ellipse with foci -1 and 1 through the point z = re + i im (Bernstein ellipse). The error of n Gauss
+/// points is about rho^(-2 n) if z is the nearest singularity.
 inline double ellipse(double re, double im) {
   const double square = im * im, half = (std::sqrt((re - 1) * (re - 1) + square) + std::sqrt((re + 1) * (re + 1) + square)) / 2;
   return half + std::sqrt(std::max(0., half * half - 1));
 }
 
-/// Returns the smallest n with rho^(-2 n) <= error, at least 1 and at most 1000.
+/// Returns the smallest number n of Gauss points with rho^(-2 n) <= error, at least 1 and at most 1000.
 inline int order_for(double error, double rho) {
   if (error >= 1) return 1;
   const double n = -std::log(error) / (2 * std::log(rho));
@@ -30,11 +31,12 @@ struct Patch {
   double area() const { return 4 * u.cross(v).norm(); }
 };
 
-/// Distance of a target from a patch, and rho of the integrand 1/r along u and along v through the point of the patch that is nearest to the target.
+/// Distance of a target from a patch, and the Bernstein parameter rho of 1/r along u and along v through the point of the patch nearest to the
+/// target.
 struct Sight {
   double distance = 0, rho_u = 1, rho_v = 1;
 };
-/// Computes the distance and rho_u, rho_v of a target.
+/// Computes the distance and the Bernstein parameters rho_u, rho_v of a patch for a target.
 Sight sight(const Patch& patch, const Vec3& target);
 
 }  // namespace tanktread::quadrature

@@ -22,7 +22,7 @@ Legendre legendre(int n, double x) {
   return {now, n * (x * now - before) / (x * x - 1)};
 }
 
-/// Returns the i-th largest root of P_n, i = 0 .. n-1.
+/// Returns the i-th largest root of the Legendre polynomial P_n, i = 0 .. n-1.
 double root(int n, int i) {
   double x = std::cos(std::numbers::pi * (i + 0.75) / (n + 0.5));
   for (int step = 0; step < 20; ++step) {

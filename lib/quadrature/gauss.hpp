@@ -13,11 +13,11 @@ struct GaussRule {
   int size() const { return static_cast<int>(nodes.size()); }
 };
 
-/// Returns the n-point rule, n >= 1, from the roots of the Legendre polynomial by Newton's method. The error is a few units of round-off.
-/// Each rule is computed once and stored; the reference stays valid for the whole run.
+/// Returns the n-point Gauss-Legendre rule on [0, 1], n >= 1. The error of nodes and weights is a few units of round-off. Each rule is computed once
+/// and stored; the reference stays valid for the whole run.
 const GaussRule& gauss(int n);
 
-/// Returns the number of points that integrates polynomials of this degree exactly.
+/// Returns the number of Gauss points that integrates polynomials of this degree exactly.
 constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
 
 /// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i.

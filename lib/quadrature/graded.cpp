@@ -36,7 +36,8 @@ struct Bezier {
     return value;
   }
 
-  /// Returns the planar approximation of a part, and the largest distance between a corner of the part and the same corner of the approximation.
+  /// Returns the planar approximation of a part of the element, and the largest distance between a corner of the part and the corresponding corner of
+  /// the approximation.
   std::pair<Patch, double> patch(const Part& p) const {
     const auto [x, xs, xt] = at(p.s + p.width / 2, p.t + p.height / 2);
     const Patch flat{x, xs * p.width / 2, xt * p.height / 2};
@@ -57,14 +58,16 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
       rule.add(p.s + p.width * gs.nodes[i], p.t + p.height * gt.nodes[j], p.width * p.height * gs.weights[i] * gt.weights[j]);
 }
 
-/// Smallest side of a part divided by the side of the element. Smaller parts are not bisected, because the target is practically on the element.
+/// Smallest side of a part of an element, divided by the side of the element. Smaller parts are not bisected, because a target that is this close is
+/// practically on the element.
 constexpr double smallest = 1e-8;
 
-/// A part is bisected in both directions if its squared side lengths differ by less than this factor. Otherwise, in a square part of a symmetric
-/// shape, rounding would choose the direction and so change the error of the rule.
+/// A part of an element is bisected in both directions if its squared side lengths differ by less than this factor. Otherwise rounding would choose
+/// the direction of bisection on square parts of symmetric shapes, and so change the error of the rule.
 constexpr double square = 1.01;
 
-/// Largest number of parts. A target on the element needs some hundreds, so an element that needs more is not usable.
+/// Largest number of parts of an element. A target on the element needs some hundreds of parts, so an element that needs more than this number is not
+/// usable.
 constexpr int most_parts = 100'000;
 
 }  // namespace
@@ -72,7 +75,7 @@ constexpr int most_parts = 100'000;
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
   const Bezier element{bezier, degree};
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
-  const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;  // largest bulge divided by distance; from tests/verify/layer_shapes.cpp
+  const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;  // largest bulge of a part divided by its distance; from tests/verify/layer_shapes.cpp
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};
   for (int looked_at = 0; !parts.empty(); ++looked_at) {

@@ -16,8 +16,8 @@ struct Demand {
   double allowed = 0, steep = 0, tolerance = 1e-5;
   int smooth_order = 4;
 
-  /// Returns the largest allowed rho^(-2 n) on an area at this distance from the target. The error of the steeper kernel is ten times as large at the
-  /// same n.
+  /// Returns the largest value of rho^(-2 n), the error of n Gauss points, that is allowed on a part with this area at this distance from the target.
+  /// The error of the steeper kernel is ten times as large at the same n.
   double error(double area, double distance) const {
     return allowed * distance / area * (steep > 0 ? 0.1 * std::min(1., distance / steep) : 1.);
   }

@@ -22,10 +22,11 @@ constexpr int max_order = 80;
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Rounds up to an even number, or above 16 to a multiple of four, so that few different rules are needed.
+/// Rounds a number of Gauss points up to an even number, or above 16 to a multiple of four, so that few different rules are needed.
 int rounded_up(int order) { return order > 16 ? (order + 3) / 4 * 4 : (order + 1) / 2 * 2; }
 
-/// Calls use(k, A, B) for every side k of the square that does not contain (s, t). A and B are the ends of the side relative to (s, t).
+/// Calls use(k, A, B) for every side k of the unit square that does not contain the point (s, t). A and B are the ends of the side relative to (s,
+/// t).
 template <class Use>
 void each_triangle(double s, double t, const Use& use) {
   const Vec2 apex(s, t);
@@ -36,15 +37,16 @@ void each_triangle(double s, double t, const Use& use) {
   }
 }
 
-/// Returns rho of 1 / |a + r b| for r in [0, 1]. Its singularities are at r = (-a.b +- i |a x b|) / b.b.
+/// Returns the parameter rho of the Bernstein ellipse of 1 / |a + r b| as a function of r in [0, 1]. The singularities are at r = (-a.b +- i |a x b|)
+/// / b.b.
 double rho_along_ray(const Vec3& a, const Vec3& b) {
   const double square = b.squaredNorm();
   if (!(square > 1e-12 * a.squaredNorm()) || !(a.squaredNorm() > 0)) return 1e6;
   return ellipse(-2 * a.dot(b) / square - 1, 2 * a.cross(b).norm() / square);
 }
 
-/// Side from A to B, opposite the apex, in the plane of the metric: its distance h from the apex, the positions tau_a and tau_b of its ends relative
-/// to the foot of the perpendicular, the coordinate mu_a of A, and the range of mu.
+/// Side from A to B of a triangle with its apex at the target, in the plane of the metric: the distance h of the side from the apex, the positions
+/// tau_a and tau_b of its ends relative to the foot of the perpendicular, and the coordinate mu (see polar) at A and its range.
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 
@@ -58,8 +60,8 @@ struct FarSide {
 
   int order(double tolerance, double rho) const { return 1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho); }
 
-  /// Returns rho of the integrand in the variable mu, if the side is the line a + q c with c = b - a in space.
-  /// r^2 = 0 at q = (-a.c +- i |a x c|) / c.c.
+  /// Returns the Bernstein parameter rho of the integrand as a function of mu, if the side is the line a + q c in space with c = b - a. The distance
+  /// from the target is 0 at q = (-a.c +- i |a x c|) / c.c.
   double rho(const Vec3& a, const Vec3& b) const {
     const Vec3 c = b - a;
     if (!(c.squaredNorm() > 1e-12 * a.squaredNorm())) return 1e6;
@@ -104,7 +106,7 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
     const FarSide side(shear, a, b);
     orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
   });
-  for (int k = 0; k < 4; ++k)  // on the ray to a corner, x = r affine + r^2 (corner - affine) has complex zeros other than r = 0
+  for (int k = 0; k < 4; ++k)  // the position x = r affine + r^2 (corner - affine) on the ray to a corner has complex zeros other than r = 0
     orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
   orders.radial = rounded_up(orders.radial);
   for (int& order : orders.angular) order = rounded_up(order);

@@ -8,8 +8,9 @@
 
 namespace tanktread::quadrature {
 
-/// Metric at the target up to a factor, rounded to bins, so that one rule serves many elements. The rounding costs one or two points and no accuracy.
-/// |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to 11.
+/// Shape of the metric at the target, rounded to few values (bins), so that one rule serves many elements. The rounding costs one or two points and
+/// no accuracy. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to
+/// 11.
 struct Shear {
   int doublings = 0, steps = 6;
 
@@ -30,8 +31,8 @@ struct PolarOrders {
 };
 
 /// Returns the orders for a target at (s, t) of an element that is nearly affine. In the angular coordinate mu of polar() the integrand has poles at
-/// +- i pi / 2, the directions in which r^2 = 0. Measurements on deformed surfaces (tests/verify/layers.cpp) show that the angular order must be the
-/// order for the error tolerance^1.25 exp(-range of mu / 2).
+/// +- i pi / 2, the directions in which r^2 = 0. Measurements on deformed surfaces (tests/verify/layers.cpp) show that the angular order must be
+/// chosen for the error tolerance^1.25 exp(-m/2), with m the length of the interval of mu.
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
 /// Returns orders that are larger if the element is so distorted that its actual corners cause closer poles than the corners of the affine element.

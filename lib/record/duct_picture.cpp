@@ -30,7 +30,7 @@ std::vector<double> line(double low, double high) {
   return out;
 }
 
-/// Returns v_1 at all grid points, by one call for all points inside; NaN outside.
+/// Returns the axial velocity v_1 at all grid points, NaN outside of the section. All points inside are evaluated by one call.
 std::vector<double> velocities(const stokes::DuctFlow& flow, const std::vector<double>& x2, const std::vector<double>& x3) {
   std::vector<double> out(x2.size() * x3.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<std::size_t> inside;
@@ -66,7 +66,7 @@ namespace {
 
 constexpr int places_along = 301, sections = 10;
 
-/// Returns the components of points, one row per point.
+/// Returns the components of points in one array, x1, x2, x3 of each point after the other.
 std::vector<double> flat(const std::vector<Vec3>& rows) {
   std::vector<double> out;
   for (const Vec3& row : rows) out.insert(out.end(), row.data(), row.data() + 3);
@@ -141,7 +141,7 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
                                   "the same over that of a straight tube of the inlet's section and as long",
                                   {flow.extra_pressure_drop()},
                                   {}}};
-  if (channel.repeats()) return all;  // the density on its wall is not the traction of the fluid inside
+  if (channel.repeats()) return all;  // in a periodic channel the density on the wall is not the traction of the fluid inside, so it is not plotted
   const WallLine wall = along_wall(flow);
   all.push_back({"wall_s", "length", "way along a line of the wall, where the outline begins", wall.s, {wall.s.size()}});
   all.push_back(

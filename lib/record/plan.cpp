@@ -72,7 +72,7 @@ std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
-  if (!scene.particles.empty()) return found;  // these quantities are defined for a single particle only
+  if (!scene.particles.empty()) return found;  // the numbers below are defined for a single particle only
   for (const Number& one : named_numbers)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;
@@ -95,7 +95,7 @@ std::string surface_line(const Body& body) {
                    body.space.description.c_str());
 }
 
-/// Returns how the unknowns of a tube's wall are solved for.
+/// Returns how the equations for the unknown tractions of a tube's wall are solved, for the plan.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
@@ -186,7 +186,7 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
-/// Adds the lines of a search or a spectrum, which replace the line `time`.
+/// Adds the lines about a search for steady shapes or a spectrum, which replace the line `time` of the plan.
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
     lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
@@ -212,7 +212,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
                                                  evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
-/// Returns the line of a rigid particle with prescribed or free motion: the unknowns of its motion.
+/// Returns the line of the plan about a rigid particle with prescribed or free motion: the unknowns of its motion.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
   if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
@@ -226,7 +226,7 @@ std::string forces_line(const Scene& scene) {
   return scene.reciprocal_forces() ? "corrected by the reciprocal theorem: six more solves" : "integrals of the traction";
 }
 
-/// Returns the systems that are solved iteratively, with their solvers.
+/// Returns the line of the plan that lists the linear systems that are solved iteratively, with their solvers.
 std::string solvers_line(const Scene& scene) {
   const coupling::SolverOptions& solvers = scene.solvers;
   std::string line;
@@ -279,8 +279,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
-/// Adds the lines of all particles. The lines of a single particle are added unchanged. Of several particles, each has one line, and particles with
-/// equal lines share it.
+/// Adds the lines of all particles. The lines of a single particle are added unchanged. If there are several, each particle has one line, and
+/// particles with equal lines share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   for (const Scene& one : alone) {

@@ -19,11 +19,11 @@ std::span<const Number> all_numbers();
 /// Returns the numbers that have a meaning for this scene.
 output::Entries<double> numbers(const Scene& scene, const Body& body);
 
-/// Returns these numbers as the text of one line of the plan.
+/// Returns the numbers of a scene as the text of one line of the plan.
 std::string numbers_text(const output::Entries<double>& numbers);
 
-/// Returns the plan: unknowns, kernels, memory, scheme, and the parts that the scene makes superfluous. `body`: stacked body of all particles.
-/// `ranks`: their number.
+/// Returns the plan: unknowns, kernels, memory, scheme, and the computations that the scene does not need. `body`: stacked body of all particles.
+/// `ranks`: number of ranks.
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);
 
 /// Returns the plan of a scene before a run. Throws UserError if the particles overlap, or do not fit into the scene, in their initial positions.

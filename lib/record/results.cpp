@@ -41,7 +41,8 @@ output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
   return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
 }
 
-/// Runs `action` on the ranks with `acts`. If one fails, every rank throws: UserError for a mistake of the user, otherwise RunFailure. Collective.
+/// Runs `action` on the ranks whose `acts` is true. If it fails on one rank, every rank throws: UserError for a mistake of the user, otherwise
+/// RunFailure. Collective.
 template <class Act>
 void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
   std::string error;
@@ -200,7 +201,7 @@ std::optional<Resumed> Results::resumed() {
   return resumed;
 }
 
-/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if they are not those with which the checkpoint was saved.
+/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if the rows differ from those at the time when the checkpoint was saved.
 void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
   if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
   run_ = checkpoint.texts.at("run");
@@ -294,7 +295,8 @@ int Results::close(const Account& account, const Phases& phases) {
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
-/// Writes the summary and warns about missed expectations that do not fail the run. Returns the missed expectations that do, in one line.
+/// Writes the summary. Warns about missed expectations that are not binding. Returns the missed binding expectations, which fail the run, in one
+/// line.
 std::string Results::finish(const Account& account, const Phases& phases) {
   output::Summary summary;
   summary.status = account.status;

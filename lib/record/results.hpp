@@ -32,7 +32,8 @@ struct RunRequest {
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// Names of copies of the files that a deck names. A run stores the copies in its directory, so that it can be resumed without the original files.
+/// Names under which a run stores copies of the files that a deck names in its results directory, so that it can be resumed without the original
+/// files.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
@@ -52,7 +53,7 @@ struct Account {
   output::Entries<std::string> modes;  ///< modes of a spectrum
 };
 
-/// Returns the seconds by phase, including earlier parts of the run.
+/// Returns the seconds by phase, to which the seconds `earlier` of earlier parts of a resumed run are added.
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier);
 
 /// Returns the newest undamaged checkpoint of a directory. The first rank finds it, and every other rank reads the same file. Throws UserError if
@@ -77,7 +78,7 @@ class Results {
   /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is no checkpoint.
   std::optional<Resumed> resumed();
 
-  /// Sets the body of the next snapshots, and its Bezier extraction.
+  /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
   /// Adds the row of a finished step to `run.h5`. The file is written at every snapshot and otherwise once a second, or less often: at intervals of
@@ -87,7 +88,8 @@ class Results {
   /// Prints a warning on standard error and adds it to the summary.
   void warn(const std::string& sentence);
 
-  /// Fields of a snapshot at the nodes of the current mesh, on the first rank. They can still be written after the mesh has changed.
+  /// Fields of a snapshot, sampled at the nodes of the current mesh, on the first rank. They can be written to a file even after the mesh has
+  /// changed.
   struct Sampled {
     double time = 0;
     output::LagrangeMesh mesh;

@@ -13,7 +13,7 @@ namespace tanktread {
 
 namespace {
 
-/// Field of the snapshots, or entry of the summary.
+/// Description of a field of the snapshots or of an entry of the summary.
 struct Entry {
   const char *name, *unit, *of, *description;
 };
@@ -57,7 +57,7 @@ constexpr Entry entries[] = {
     {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
 };
 
-/// Kind of runs or particles with the same columns. `extends`: only columns that the previous kind does not have are listed for this one.
+/// Kind of runs or particles that have the same columns. If `extends`, the manual lists only the columns that the previous kind does not have.
 struct Kind {
   const char* name;
   Columns columns;
@@ -89,7 +89,7 @@ std::vector<Kind> kinds() {
           {"several particles together", run_columns(several, true)}};
 }
 
-/// Returns the columns of all kinds, and for each name the kinds that have it.
+/// Returns the columns of all kinds of runs and particles, and for each column name the kinds that have it.
 std::pair<Columns, std::map<std::string, std::string>> all_columns() {
   std::map<std::string, std::string> owners;
   std::set<std::string> before, here;

@@ -26,13 +26,13 @@ struct FlowPlane {
   bool holds_flow = true;  ///< false if the flow is not planar; D is then measured in the plane of the longest and the shortest axis of inertia
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true for the plane x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components along a, b x a, b
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the directions a, b x a and b
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };
 
-/// Returns the plane with this normal. a is the projection onto the plane of x1, or of x2 if the normal is along x1. The largest component of b is
-/// positive.
+/// Returns the plane with this normal. The direction a is the projection of the x1 axis onto the plane, or of the x2 axis if the normal is along x1.
+/// The largest component of the direction b is positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
 /// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane that contains the velocity and its variation. If
@@ -45,8 +45,8 @@ struct Member;
 struct Body {
   spline::TMesh mesh;  ///< empty if the shape comes from a file
   spline::Space space;
-  /// Space with the same control points as `space` but with degenerate poles. It is set if `space` removes the degeneracy by the Bezier transform and
-  /// the mesh may adapt; otherwise it is null.
+  /// Space with the same control points as `space` but with degenerate poles. It is set only if the mesh may adapt and `space` removes the degeneracy
+  /// of its poles by the Bezier transform; otherwise it is null.
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run
@@ -65,24 +65,25 @@ struct Body {
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// Returns the space that is nested under refinement. Fields are transferred between meshes in it.
+  /// Returns the spline space that contains the coarser one after refinement. Fields are transferred between meshes in this space.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Builds the body of a scene with one particle. If `alike` is given, its mesh and resting shape are copied and moved to this particle's position.
+/// Builds the body of a scene with one particle. If `alike` is given, its mesh and resting shape are copied and moved to the position of this scene's
+/// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
 /// Returns true if the mesh and the resting shape of one scene's particle can be copied from the other's.
 bool alike(const Scene& one, const Scene& other);
 
-/// Gives the body a mesh and the spline space that the deck asks for on it.
+/// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.
 void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 
-/// Returns the symmetry shared by the scene and the current shape x, as far as the deck allows its use.
+/// Returns the symmetry shared by the scene and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// Makes the loads of a particle on its current mesh, in addition to elasticity and bending. A rigid particle only has the repulsion from the wall.
-/// `wall`: of its tube, or null.
+/// Makes the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
+/// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
 /// Returns whether the load is a density per reference or per current area. For a drop, which has no unstressed state, and for the strong form it is

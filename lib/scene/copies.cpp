@@ -24,7 +24,7 @@ double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) 
 namespace {
 
 constexpr int most_sweeps = 20000, thermal_sweeps = 200;
-constexpr double clear = 1.01;  // distance, divided by the least distance, to which overlapping pairs are pushed apart
+constexpr double clear = 1.01;  // overlapping spheres are pushed apart to this multiple of their least distance
 
 class Packing {
  public:
@@ -62,11 +62,11 @@ class Packing {
  private:
   struct Neighbour {
     std::size_t number;
-    Vec3 image;  // vector that is added to the neighbour's centre
+    Vec3 image;  // lattice vector that is added to the neighbour's centre to get its nearest image
   };
 
-  /// Finds, for each sphere, the spheres that may overlap it before any sphere has moved by the skin. Does nothing until a sphere has moved by half
-  /// the skin since the last search.
+  /// Lists, for each sphere, the spheres that it may overlap before any sphere has moved by the skin, an extra search distance. Does nothing until a
+  /// sphere has moved by half the skin since the last search.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());
@@ -101,7 +101,8 @@ class Packing {
     return false;
   }
 
-  /// Makes a random step of sphere i. Returns false if it was undone because of an overlap or a move by more than the skin.
+  /// Makes a random step of sphere i of at most `longest`. Undoes the step and returns false if the sphere then overlaps another one or has moved by
+  /// more than the skin since the last search.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;
@@ -206,7 +207,7 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   return std::max(1, static_cast<int>(std::lround(*how.volume_fraction * room / of_one)));
 }
 
-/// Draws random positions in the cell that may overlap. `pack` separates them afterwards.
+/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards.
 std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
                           std::vector<PackedSphere>& taken) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));

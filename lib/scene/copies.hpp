@@ -15,7 +15,7 @@
 
 namespace tanktread {
 
-/// Sphere of a packing: its size, the gap that it keeps to others divided by its radius, and whether it may move.
+/// Sphere of a packing: its radius, its least gap to other spheres divided by its radius, and whether it may move.
 struct PackedSphere {
   Vec3 centre;
   double radius = 1, least_gap = 0;
@@ -25,8 +25,8 @@ struct PackedSphere {
 /// Returns a uniform random number in [0, 1). The sequence is the same with every standard library.
 double uniform(std::mt19937_64& random);
 
-/// Returns the least distance of the centres of two spheres: the sum of their radii plus `gap` times the larger radius. By default, `gap` is the
-/// larger of their own gaps.
+/// Returns the least distance of the centres of two spheres: the sum of their radii plus `gap` times the larger radius. The default of `gap` is the
+/// larger of the least gaps of the two spheres.
 double least_distance(const PackedSphere& a, const PackedSphere& b, double gap);
 inline double least_distance(const PackedSphere& a, const PackedSphere& b) { return least_distance(a, b, std::max(a.least_gap, b.least_gap)); }
 
@@ -47,9 +47,9 @@ struct CopiesOptions {
   std::optional<int> number;          ///< number of copies placed at random
   std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
-  /// Radius of the ball that contains all copies; without box and ball they fill the cell of a lattice with three directions
+  /// Radius of the ball that contains all copies. Without box and ball, copies at random fill the periodic cell of a lattice with three directions.
   std::optional<double> ball;
-  double least_gap = 0.05;            ///< gap between circumscribed spheres, divided by the larger radius
+  double least_gap = 0.05;            ///< least gap between the circumscribed spheres of two copies, divided by the larger radius
   int seed = 1;
   bool present = false;               ///< true if the deck has this section
 

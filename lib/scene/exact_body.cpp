@@ -43,7 +43,7 @@ std::optional<ExactBody> exact_body(const Scene& scene) {
   if ((l + l.transpose()).norm() > 1e-14 * l.norm()) return {};
   const Mat3 axes = shape.rotation();
   const Vec3 semi_axes = shape.semi_axes ? *shape.semi_axes : Vec3::Constant(shape.equivalent_radius());
-  const Vec3 spin(l(2, 1), l(0, 2), l(1, 0));  // the angular velocity of an antisymmetric gradient
+  const Vec3 spin(l(2, 1), l(0, 2), l(1, 0));  // angular velocity of the flow, from the antisymmetric velocity gradient
   return ExactBody{stokes::Ellipsoid(semi_axes),
                    axes,
                    shape.center,
@@ -53,7 +53,7 @@ std::optional<ExactBody> exact_body(const Scene& scene) {
 }
 
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact) {
-  // the order is enough because the errors are as smooth as the spline functions on each element
+  // 8 x 8 Gauss points per element are enough, because the errors are as smooth as the spline functions on each element
   const quadrature::TensorRule& rule = quadrature::tensor_gauss(8);
   double area = 0, difference = 0, square = 0, norm = 0, normals = 0;
   for (int e = 0; e < static_cast<int>(space.elements.size()); ++e)

@@ -26,7 +26,7 @@ Net image(const Net& net, const Vec3& middle, const Mat3& map) {
 
 bool same_space(const spline::Space& one, const spline::Space& other) {
   const auto same = [](const spline::Element& a, const spline::Element& b) {
-    // 1e-6 allows for the digits written to a file
+    // The extraction matrices of a file are compared to 1e-6, because a file holds rounded numbers.
     return a.points == b.points && a.degree == b.degree && (*a.extraction - *b.extraction).cwiseAbs().maxCoeff() < 1e-6;
   };
   return one.n_points == other.n_points && std::ranges::equal(one.elements, other.elements, same);

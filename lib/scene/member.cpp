@@ -76,7 +76,7 @@ std::vector<Member> members(const Scene& scene) {
   }
   if (Body& only = *all.front().body; all.size() == 1 && only.duct && !only.wall) {
     only.wall = wall(all.front().scene, only);
-    only.symmetry = surface::Symmetry(only.space.n_points);  // no symmetry is determined in a tube
+    only.symmetry = surface::Symmetry(only.space.n_points);  // the particle in a tube is computed without symmetry
   }
   return all;
 }
@@ -95,7 +95,7 @@ void arrange(std::vector<Member>& members) {
     member.block = blocks[p];
     if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
     Body& body = *member.body;
-    body.symmetry = surface::Symmetry(body.space.n_points);  // the symmetry of one particle is not one of the whole scene
+    body.symmetry = surface::Symmetry(body.space.n_points);  // a symmetry of one particle need not be a symmetry of several particles
     share_or_make(members, p);
   }
 }
@@ -145,7 +145,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // one measure for all is cheaper; for rigid bodies all measures are equal
+  for (coupling::Particle& one : parameters.particles)  // the measure of the deforming ones: a common one is cheaper; rigid bodies admit any
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

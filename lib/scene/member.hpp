@@ -23,17 +23,17 @@ struct Member {
   Scene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; equal members share it and `membrane`
+  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
   std::shared_ptr<const membrane::Membrane> membrane;
   spline::Place place;    ///< material point whose phase is recorded, as a parametric point of the nested space
-  spline::Site followed;  ///< site of this material point on the current mesh
+  spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 
   Net own(const Net& of_all) const { return block.rows(of_all); }
-  /// Returns the name under which an item of this particle is stored or reported
+  /// Returns the name under which the item `what` of this particle is stored or reported, for example `red: mesh`.
   std::string label(const std::string& what) const { return name.empty() ? what : name + ": " + what; }
-  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the name of its section, for messages
-  /// Returns the name of a column in the results
+  std::string spoken() const { return name.empty() ? "Particle" : "Particles/" + name; }  ///< returns the deck section of this particle, for messages
+  /// Returns the name of the column `what` of this particle in the results.
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
@@ -43,13 +43,15 @@ coupling::Rigid rigid(const Scene& scene, const Body& body);
 /// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
-/// Computes `followed`, the site of the material point `place` on the current mesh, if the mesh may adapt. A resumed run finds the same site.
+/// Sets `followed`, the site of the material point `place` on the current mesh, if the mesh may adapt. The site is computed from `place` only, so a
+/// resumed run finds the same site.
 void follow(Member& member);
 
-/// Sets blocks, geometries and membranes of all members. Their bodies must exist.
+/// Sets the blocks (rows in the nets of all particles), the geometries and the membranes of all members. Their bodies must exist.
 void arrange(std::vector<Member>& members);
 
-/// Returns all members as one body, whose nets are stacked and whose measures refer to all of them together; null if there is only one member.
+/// Returns one body that stands for all members: its nets are the nets of the members one below the other, its radius is the largest R_C, and its
+/// volume is the total volume. Returns null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, in a tube if there is one, with only the operators that they need. `all`: their common space and nets.

@@ -10,7 +10,7 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the point of a surface that is nearest to the wall, or farthest behind it.
+/// Returns the point of a surface that is nearest to the wall, or if the surface crosses the wall, the point farthest behind it.
 Vec3 nearest(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x) {
   const Net own = (x.rowwise() - wall.point().transpose()) * wall.axes().transpose();
   const surface::BezierMap map(space);

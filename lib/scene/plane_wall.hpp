@@ -20,7 +20,7 @@ struct WallRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data for all particles at x, or for one body.
+/// Returns the data of the plane wall for the shapes x of all particles, or for the shape of one body.
 WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x);
 WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x);
 

@@ -20,12 +20,12 @@ struct RecordedParticle {
   Net x, velocity;  ///< control net, length; control values of the fluid velocity on the surface, length/time
 };
 
-/// Functions that return the values of a registered series' columns from the time and the particle, or all particles. Every rank calls them with the
-/// same arguments.
+/// Functions that return the values of the columns of a registered series, from the time and one particle (ParticleSeries) or all particles
+/// (RunSeries). Every rank calls them with the same arguments.
 using ParticleSeries = std::function<std::vector<double>(double time, const RecordedParticle&)>;
 using RunSeries = std::function<std::vector<double>(double time, std::span<const RecordedParticle>)>;
 
-/// Registered series, each computed per particle or once per run.
+/// The registered series. Each is computed per particle, or once for the whole run.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
 /// User-defined parts of the program, by name: loads, fields, flows and series. Each part declares its keys of the deck. `main` (app/program.hpp)

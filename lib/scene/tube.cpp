@@ -15,7 +15,7 @@ namespace tanktread {
 namespace {
 
 /// Throws UserError if the particle does not fit into the channel: if a sample point of its surface is in the wall or too close to an end, or if the
-/// gap is too small.
+/// gap to the wall is too small.
 void check_fits_channel(const Scene& scene, const Body& body, const surface::TubeWall& wall) {
   const surface::Channel& channel = *wall.channel;
   const surface::Patches particle(surface::BezierMap(body.space), body.initial), around(surface::BezierMap(wall.space), wall.net);
@@ -63,7 +63,7 @@ void check_fits(const Scene& scene, const Body& body) {
                   where.c_str(), nearest.gap, scene.tube.contact_gap, least));
 }
 
-/// Adds the flow rate, and the pressure drop of the empty channel if it is one.
+/// Adds the flow rate to the row, and in a channel also the pressure drops of the empty channel.
 TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
   now.flow_rate = tube.flow_rate(now.pressure_drop);
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
@@ -184,7 +184,7 @@ TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop)
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
   if (wall.channel || wall.period > 0 || scene.particles.empty()) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // the disturbance has not decayed within R_T of an end
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // the disturbance decays over about R_T, which must remain at each end
   if (wall.length() < needed)
     throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
                                "an end, Tube/length = %.4g is too short",

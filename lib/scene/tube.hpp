@@ -10,18 +10,18 @@
 
 namespace tanktread {
 
-/// Returns the duct flow. In another flow or a quiescent fluid, returns the duct flow of mean velocity 1, from which the pressure drop (2.7) is
-/// computed. Null if there is no tube.
+/// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, it has the mean velocity 1 and serves to compute the pressure drop
+/// (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
 /// Adds the choices that contradict a tube or channel, and those that require one.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
-/// Throws UserError, with the lengths, if the scene has a tube and the particle does not fit into it.
+/// Throws UserError, with the lengths that do not fit, if the scene has a tube and the particle does not fit into it.
 void check_fit(const Scene& scene, const Body& body);
 
-/// Returns the wall around the resting shapes of all particles, which `body` contains. Throws UserError, with the lengths, if the tube is too short
-/// or its period is too long.
+/// Returns the wall around the resting shapes of all particles in `body`. Throws UserError, with the lengths, if the tube is too short for the
+/// particles or its period is too long.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
 /// Returns the tube around `body`, which contains all particles of the scene; null if there is no tube.
@@ -44,12 +44,12 @@ TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop)
 /// Returns the smallest position of a particle's centroid in a row: x1, or in a channel the coordinate along the centre line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
-/// Returns a warning if the gap in a row is smaller than 0.6 of the element size of the wall, because the error of the wall traction then exceeds
-/// 1e-4. Returns an empty string otherwise.
+/// Returns a warning if the gap to the wall in a row is smaller than 0.6 of the element size of the wall, because the error of the wall traction then
+/// exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
-/// Throws RunFailure if the particles at x have moved so far apart that the wall is too short. Not for a channel, a periodic
-/// tube or a single particle.
+/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing in a
+/// channel, in a periodic tube, or for a single particle.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 }  // namespace tanktread

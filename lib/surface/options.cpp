@@ -27,8 +27,9 @@ void MeshOptions::declare(deck::Section& section) {
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
               "n: number of elements along each side of the cube mesh, which has 6n^2 elements");
   section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
-              "rule at points of the cube mesh where three elements meet. `g1`: the paper's constrained extraction with degree 4 around the point. "
-              "`catmull-clark`: bicubic pieces towards the point, unchanged by refinement");
+              "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
+              "continuous tangent planes, with elements of degree 4 around the point (the paper's constrained extraction). `catmull-clark`: limit "
+              "surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
   section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
               "m: number of elements around the pole axis of the polar mesh; 32 if not given");
   section.key("meridional elements", meridional_elements, deck::between(4, 200), "1",
@@ -85,7 +86,8 @@ void ParticleShape::declare(deck::Section& section) {
   const bool round = shape == "sphere" || shape == "red cell";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length",
-              "radius of the `sphere` or of the disc of the `red cell`, whose R_C is 0.7224 times this radius; 1 if not given");
+              "radius of the `sphere` or of the disc of the `red cell`; 1 if not given. R_C, which other keys refer to, is the radius of the sphere "
+              "of equal volume: for a red cell 0.7224 times the radius of the disc");
   section.key("semi-axes", semi_axes, deck::positive(), "length",
               "semi-axes of the `spheroid` (two of them equal) or `ellipsoid`, three numbers along the particle's body-fixed x1, x2, x3");
   section.key("center", center, deck::any(), "length", "position of the centroid of the resting shape");
@@ -211,8 +213,8 @@ void TubeOptions::declare(deck::Section& list) {
     channel->declare(list);
   } else {
     list.key("length", length, deck::positive(), "length",
-             "length of the modelled piece of the tube; if not given 2 pi R_T, R_T = sqrt(area of the section / pi), or the particle's length plus "
-             "4.6 R_T if that is more");
+             "length of the computed part of the tube; if not given, 2 pi R_T with R_T = sqrt(area of the section / pi), or the particle's length "
+             "plus 4.6 R_T if that is more");
     list.key("periodic length", periodic_length, deck::positive(), "length",
              "period L along x1 of tube and particles, an infinite train. Short form of a Domain that is periodic along x1");
     list.key("images", images, deck::between(1, 100), "1", "obsolete key without effect: a periodic tube has all its images");
@@ -223,11 +225,12 @@ void TubeOptions::declare(deck::Section& list) {
              "g: the density of wall elements along the tube varies as 1 + (g - 1)/(1 + (x1/R_T)^4) around the particles; 1: uniform");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
-           "smallest allowed gap between particle and wall. If the gap is smaller, the run stops with a checkpoint. Integrals keep their accuracy "
-           "down to a gap of 0.02");
+           "smallest allowed gap between a particle and the wall, divided by the R_C of the smallest particle. If a gap is smaller, the run ends "
+           "with a checkpoint. Integrals keep their accuracy down to a gap of 0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "p: strength of the repulsion of membranes by the wall of a straight `circle`. The force per unstressed area is p exp(-g/d) at the gap "
-           "g (3.22); none if not given. It keeps a film open that the fluid would drain without end");
+           "p: strength of the force by which the wall repels membranes, only if all cross-sections are circles and there is no bend. The force per "
+           "unstressed area is p exp(-g/d) at the gap g between membrane and wall, with the `repulsion range` d (3.22). No repulsion if not given. "
+           "It keeps the film of fluid between membrane and wall open, which would otherwise become ever thinner");
   list.key("repulsion range", repulsion_range, deck::positive(), "length",
            "d: decay length of the repulsion by the wall. It keeps a film of a few d open");
   list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
@@ -258,9 +261,11 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line at which the bend begins");
   list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "angle of the bend of the centre line, from x1 towards x2");
   list.key("start", start, deck::any(), "length",
-           "arc length s at which the modelled piece of the channel begins; if not given 4 R_T before the first change of the channel");
+           "arc length s of the centre line at which the computed part of the channel begins; if not given, 4 R_T before the first change of "
+           "cross-section or direction. R_T: radius of the circle with the area of the inlet");
   list.key("end", end, deck::any(), "length",
-           "arc length s at which the modelled piece of the channel ends; if not given 4 R_T after the last change of the channel");
+           "arc length s of the centre line at which the computed part of the channel ends; if not given, 4 R_T after the last change of "
+           "cross-section or direction. R_T: radius of the circle with the area of the inlet");
   list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
            "number of elements along the wall of the channel. Elements are shorter where the channel is narrow, bends or has an edge; if not "
            "given, elements are about as long as wide");

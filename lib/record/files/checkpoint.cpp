@@ -75,7 +75,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   }
   checkpoint.numbers = numbers(file);
   for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
-  const auto keys = hdf::attribute_names(file, "checkpoint");  // checkpoints of earlier versions have no checksum
+  const auto keys = hdf::attribute_names(file, "checkpoint");  // the checksum is not checked if there is none, as in checkpoints of earlier versions
   if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
     throw std::runtime_error(path.string() + ": the checkpoint is not as it was written");
   return checkpoint;
@@ -116,7 +116,7 @@ namespace {
 
 std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
 
-/// Store or read nets of one kind under numbered names.
+/// Store or read the nets of one kind, under the name of the kind with a number.
 void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
   for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
 }

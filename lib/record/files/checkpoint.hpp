@@ -40,13 +40,13 @@ struct Snapshot {
 /// Returns all snapshot files of a directory, sorted by step, readable or not.
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
-/// Data of a snapshot for the list of snapshots.
+/// Data of a snapshot that are needed for the list of all snapshots.
 struct Picture {
   double time = 0;  ///< time of the snapshot: the number "picture time" of the checkpoint, or "time" if there is none
   std::string run;  ///< text "run" of the checkpoint, the identifier of the run
 };
 
-/// Returns these data of a snapshot file; nothing if the file cannot be read.
+/// Returns time and run of a snapshot file; nothing if the file cannot be read.
 std::optional<Picture> pictured(const std::filesystem::path& path);
 
 struct Damaged {

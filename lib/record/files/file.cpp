@@ -38,7 +38,7 @@ std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
   return found;
 }
 
-/// Runs `act` on a directory. Turns errors of the file system into a UserError.
+/// Runs `act` on a directory and converts errors of the file system to a UserError.
 template <class Act>
 void in_directory(const fs::path& directory, const Act& act) try {
   act();

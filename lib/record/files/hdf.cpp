@@ -20,7 +20,8 @@ Id space_of(const Shape& shape) {
   return {rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.data(), nullptr), H5Sclose, "no data space"};
 }
 
-/// Returns the HDF5 type of a text: of fixed length, padded with null characters. HDF5 has no length of zero, so an empty text is one null character.
+/// Returns the HDF5 type of a text: of fixed length, padded with null characters. HDF5 does not allow the length zero, so an empty text is one null
+/// character.
 Id text_type(const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
   const hid_t type = H5Tcopy(H5T_C_S1);
@@ -46,7 +47,7 @@ void write_attribute(hid_t file, const std::string& name, const std::string& key
 
 Id dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name}; }
 
-/// Returns a text that HDF5 reads into a buffer, without the null characters that pad it.
+/// Returns a text that `read` makes HDF5 write into a buffer, without the null characters that pad it.
 template <class Read>
 std::string text_of(const Id& type, const std::string& name, const Read& read) {
   std::string text(H5Tget_size(type), '\0');
@@ -63,8 +64,8 @@ Id::Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), clo
 
 Id new_file() {
   silence();
-  static int files = 0;  // HDF5 distinguishes open files by their names, also in memory
-  if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // HDF5 reuses the cache of a closed file, half a megabyte
+  static int files = 0;  // number of files in memory so far: HDF5 distinguishes open files by their names, so each gets a name of its own
+  if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // keeps the caches of closed files, half a megabyte each, for reuse
   const std::string name = "memory " + std::to_string(++files);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
@@ -74,7 +75,7 @@ Id new_file() {
 std::string_view image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  void* handle = nullptr;  // for a file in memory: address of the pointer to its bytes
+  void* handle = nullptr;  // address of a pointer to the bytes of the file, which is in memory
   if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
   return {reinterpret_cast<const char*>(*static_cast<unsigned char**>(handle)), static_cast<std::size_t>(size)};
 }

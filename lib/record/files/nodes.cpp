@@ -16,8 +16,8 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each point, the index of the first point that coincides with it. The points are sorted along a direction that is unrelated to the
-/// symmetries of meshes, so that only few are close to each other in this order.
+/// Returns, for each point, the index of the first point that coincides with it. To find them, the points are sorted along a direction that is
+/// unrelated to the symmetries of meshes, so that few points have nearly equal positions in this order.
 std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
@@ -83,9 +83,10 @@ LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net) {
 
 namespace {
 
-constexpr int n_parts = 6;  // parts of a jet: the position and five derivatives
+constexpr int n_parts = 6;  // number of vectors in a jet: the position and five derivatives
 
-/// Returns the contributions of each Bezier point of an element to the jets at the nodes of its cell. Shape (n, 6, n): point, part of the jet, node.
+/// Returns the factors by which the Bezier points of an element contribute to the jets (position and derivatives) at the nodes of its cell. Shape (n,
+/// 6, n): Bezier point, part of the jet, node.
 std::vector<double> jet_table(int p) {
   constexpr std::array<std::array<int, 2>, n_parts> derivatives{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   const auto order = node_order(p);
@@ -103,8 +104,8 @@ std::vector<double> jet_table(int p) {
 
 /// Returns normals of an element, not normalised, from the jets at the nodes of its cell.
 std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surface::Jet> jets) {
-  constexpr double degenerate = 1e-6;  // threshold of |a1 x a2| divided by |a1|_max |a2|_max of the element
-  constexpr double inset = 1e-4;       // shift towards the middle of the element, as a fraction of the distance
+  constexpr double degenerate = 1e-6;  // nodes with a smaller |a1 x a2|, divided by |a1|_max |a2|_max of the element, are poles
+  constexpr double inset = 1e-4;       // distance by which the evaluation point at a pole moves towards the middle, as a fraction
   double longest_1 = 0, longest_2 = 0;
   std::vector<Vec3> normals;
   for (const surface::Jet& here : jets) {
@@ -144,7 +145,8 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
   return points;
 }
 
-/// Calls use(patch, nodes, jets) for every element, the last one first. A shared node thus gets the value of the first element that has it.
+/// Calls use(patch, nodes, jets) for every element, the last element first. A node shared by several elements thus ends with the value of the first
+/// of them.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;

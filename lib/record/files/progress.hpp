@@ -29,7 +29,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
 
   void show(const Moment& moment);
-  void close();  ///< shows the last step and ends the line; called by the destructor
+  void close();  ///< shows the last step and ends the line of the display; called by the destructor
 
  private:
   using Clock = std::chrono::steady_clock;

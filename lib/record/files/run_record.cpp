@@ -32,7 +32,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
 void RunRecord::declare(std::string name, std::string unit, std::string description, std::string si) {
   const auto old = std::ranges::find(series_, name, &Series::name);
   std::vector<double> values(rows(), std::numeric_limits<double>::quiet_NaN());
-  if (old != series_.end()) {  // rows are appended in the order of declaration, so a loaded series is moved behind those declared so far
+  if (old != series_.end()) {  // rows are appended in the order of declaration, so a loaded series moves behind those declared so far
     values = std::move(old->values);
     series_.erase(old);
   }

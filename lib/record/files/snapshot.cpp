@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint8_t lagrange_quadrilateral = 70;  // VTK_LAGRANGE_QUADRILATERAL
-constexpr const char* points = "Points";             // the only field that is stored outside the group of the other fields
+constexpr const char* points = "Points";             // this field is stored outside of the group of all other fields
 
 void write(hid_t file, const std::string& name, const Rows& rows, std::size_t dimensions = 2) {
   hdf::Shape shape{static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())};
@@ -24,7 +24,7 @@ void write(hid_t file, const std::string& name, const Rows& rows, std::size_t di
 void write(hid_t file, const Checkpoint& checkpoint) {
   hdf::write_group(file, "checkpoint");
   for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
-  std::string names;  // all in one dataset, because one per number would take longer to write than all fields of a small mesh
+  std::string names;  // names of all numbers, one per line: a dataset per number would take longer to write than all fields of a small mesh
   std::vector<double> numbers;
   for (const auto& [name, number] : checkpoint.numbers) names += name + "\n", numbers.push_back(number);
   hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});
@@ -55,7 +55,7 @@ void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const La
   const hdf::Id file = hdf::new_file();
   write(file, checkpoint);
   write(file, mesh);
-  for (const Field& field : fields)  // ParaView shows one-dimensional datasets as scalars
+  for (const Field& field : fields)  // a field with one component is one-dimensional, because ParaView then shows it as a scalar
     write(file, (field.name == points ? "VTKHDF/" : "VTKHDF/PointData/") + field.name, field.values, field.values.cols() > 1 ? 2 : 1);
   write_whole(path, hdf::image(file), durable);
 }

@@ -15,13 +15,13 @@ using Entries = std::vector<std::pair<std::string, Value>>;  ///< named values, 
 struct Summary {
   std::string status = "done";  ///< `done`, `steady`, `stopped: <by what>` or `failed: <reason>`
   Entries<double> final;  ///< last value of every series; steady problems add drag, drag_error, ...
-  Entries<std::string> final_in_si;  ///< the same with their SI units, for values with a dimension, if the deck sets its units
+  Entries<std::string> final_in_si;  ///< last values that have a dimension, in SI units; empty unless the deck sets its units
   Entries<std::vector<double>> final_vectors;  ///< last values of vectors, as lists: drag, torque
   std::vector<deck::Verdict> expect;
   Entries<long> counts;       ///< work: steps, evaluations, assemblies, ...
   Entries<double> seconds;    ///< wall time by phase
-  Entries<long> memory;       ///< peak memory in bytes: largest of a rank, and all ranks together
-  Entries<std::string> plan;  ///< choices of the run, one line each
+  Entries<long> memory;       ///< peak memory in bytes: the largest of any rank, and the sum of all ranks
+  Entries<std::string> plan;  ///< plan of the run: methods and sizes that it chose, one line each
   Entries<double> numbers;    ///< derived and dimensionless numbers of the scene
   Entries<std::string> modes;  ///< kind of each mode of a spectrum
   std::vector<std::string> warnings;  ///< warnings about limits of the method that the run came close to

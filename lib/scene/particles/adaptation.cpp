@@ -21,7 +21,7 @@ namespace tanktread {
 
 namespace {
 
-/// Particle whose mesh is adapted, and the state of all particles.
+/// Particle whose mesh is adapted, together with the state of all particles.
 struct Subject {
   const Scene& scene;
   const Body& body;
@@ -31,7 +31,8 @@ struct Subject {
   std::span<const double> films;
 };
 
-/// Returns `target` and the state, with every net transferred to the new space. `move` transfers one net of this particle.
+/// Returns the result with the body `target` and with the state, whose nets are all transferred to the new space. `move` transfers one net of this
+/// particle.
 template <class Move>
 Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};
@@ -56,7 +57,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// Adds the displacement `moved` of the surfaces to the result, divided by R_C.
+/// Records the displacement `moved` of the surfaces by the mesh change in the result, divided by R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
@@ -68,7 +69,7 @@ std::unique_ptr<Body> on_mesh(const Subject& of, spline::TMesh mesh) {
   return target;
 }
 
-/// Returns rules that keep the mesh of a symmetric particle symmetric: each mark also applies to the images of its element.
+/// Returns rules that keep the mesh of a symmetric particle symmetric: a refined element is refined together with its images under the symmetry.
 spline::RepairRules rules(const Body& body) {
   spline::RepairRules result;
   for (const surface::Image& image : body.symmetry.images())
@@ -85,13 +86,13 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Marks and merges that the indicator gives for the current mesh.
+/// Elements to refine (marks) and elements to merge, according to the indicator on the current mesh.
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;
 };
 
-/// Returns the marks or merges that `choose` returns on the first rank, on all ranks.
+/// Returns on all ranks the marks or merges that `choose` returns on the first rank.
 template <class Choose>
 auto decided(const Choose& choose) {
   using Item = typename decltype(choose())::value_type;
@@ -118,7 +119,7 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the film width at each element of the T-mesh: the smallest of the widths at its Bezier elements.
+/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest width at any of these.
 std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
   std::vector<double> widths;
   if (films.empty()) return widths;
@@ -158,8 +159,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
 
-/// Removes the marks of T-mesh elements with a side at a pole, if poles stay degenerate or `Adaptation/indicator` is not `error`. The paper's rule
-/// does not cut these elements. They are then cut only as neighbours of cut elements.
+/// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in the paper,
+/// such elements are then refined only if the refinement of a neighbour requires it.
 void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
   if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);
@@ -169,7 +170,8 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
   std::erase_if(marks, degenerate);
 }
 
-/// Refines all marked elements. If that exceeds the allowed number of points, tries limits that are two, four, ... times as large.
+/// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with tolerances and limits multiplied by 2, 4, …
+/// up to 64.
 Adapted refined(const Subject& of, const Findings& found) {
   const auto& [scene, body, block, state, x, films] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
@@ -193,7 +195,7 @@ Adapted refined(const Subject& of, const Findings& found) {
   return result;
 }
 
-/// Returns, per element of the T-mesh, true if the defect of one of its Bezier elements exceeds the tolerance.
+/// Returns, per element of the T-mesh, true if the displacement of the surface (`defect`) on one of its Bezier elements exceeds the tolerance.
 std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
   const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
   std::vector<bool> over(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, false);
@@ -202,7 +204,8 @@ std::vector<bool> elements_over(const Body& body, const std::vector<double>& def
   return over;
 }
 
-/// Coarsens. If the surfaces on some elements would change by more than the tolerance, leaves these elements out and tries the rest again.
+/// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and tries the
+/// others again.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
   const auto& [scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
@@ -250,7 +253,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    // moves x into the frame of a straight tube's wall
+    // In a straight tube, x1 of the wall is measured from the centroid of the particle, so the particle is moved accordingly.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = scene;

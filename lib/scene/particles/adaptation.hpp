@@ -18,10 +18,10 @@ namespace tanktread {
 struct Adapted {
   std::unique_ptr<Body> body;  ///< null if the mesh does not change
   motion::State state;
-  bool finer = true;    ///< true if refined, false if coarsened
-  double change = 0;    ///< largest displacement of the unstressed and the current surface, divided by R_C: the residual of the transfer
-  int refused = 0;      ///< number of cuts that exceed `Adaptation/levels`
-  bool full = false;    ///< true if cuts were left out because of `Adaptation/largest number of points`
+  bool finer = true;    ///< true if the mesh was refined, false if it was coarsened
+  double change = 0;    ///< largest displacement of the current and the unstressed surface by the transfer to the new mesh, divided by R_C
+  int refused = 0;      ///< number of bisections of elements left out because they exceed `Adaptation/levels`
+  bool full = false;    ///< true if bisections were left out because of `Adaptation/largest number of points`
 };
 
 /// Refines the elements that the indicator marks; if none is refined, merges elements that it allows to be longer. Transfers every field of the
@@ -31,8 +31,8 @@ struct Adapted {
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
-/// Returns the warnings about an adaptation at this time. There is a warning for each limit of the section Adaptation that prevented cuts, and a
-/// warning if the refinement moved the surface.
+/// Returns the warnings about an adaptation at this time: one for each limit of the section Adaptation that prevented a refinement, and one if the
+/// change of the mesh has moved the surface.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of an isolated rigid body in its initial position, as Adaptation requires for its shape, the film to a wall and the traction, and

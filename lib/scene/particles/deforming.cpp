@@ -90,7 +90,7 @@ class Deforming : public ParticleSystem {
 
   void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
 
-  /// Moves the centroid back if it is held. Then refines or coarsens meshes if a step of adaptation is due.
+  /// Moves the centroid back if the scene holds it in place. Then refines or coarsens the meshes for which an adaptation is due at this step.
   bool adapt(motion::State& state, RunTotals& totals) override {
     before_.clear();
     if (holds_centre_) {
@@ -146,7 +146,7 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if (body().wall && !accurate(state)) here->solve();  // the flow in the tube depends on the velocity
+    if (body().wall && !accurate(state)) here->solve();  // the flow in a tube depends on the velocity, so an inaccurate velocity is solved for again
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -221,7 +221,7 @@ class Deforming : public ParticleSystem {
     return powers;
   }
 
-  /// Applies the forces of the contacts from now on.
+  /// Sets the current contact forces as loads of the system for all later evaluations.
   void press() {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
@@ -237,7 +237,7 @@ class Deforming : public ParticleSystem {
     return force.dot(apart) / 3 * Mat3::Identity() - (force * apart.transpose() + apart * force.transpose()) / 2;
   }
 
-  /// Builds everything that belongs to the current meshes. The wall of a tube does not change.
+  /// Builds the coupled system and all other data for the current meshes. The wall of a tube is kept.
   void set_up() {
     const std::unique_ptr<Body> before = std::exchange(all_, nullptr);
     arrange(members_);
@@ -253,7 +253,7 @@ class Deforming : public ParticleSystem {
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
-  /// Returns true if the error of the slope does not exceed the tolerance.
+  /// Returns true if the error of the slope (the velocity of the control points) does not exceed the tolerance.
   bool accurate(const motion::State& state) const {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
@@ -283,7 +283,8 @@ class Deforming : public ParticleSystem {
     return std::make_unique<DeformingRow>(now);
   }
 
-  /// Sets velocity and tank-treading of the deforming particles, where the fluids move by v. Each particle is evaluated by one rank.
+  /// Sets velocity and tank-treading in the rows of the deforming particles, from the fluid velocity v on their surfaces. Each particle is evaluated
+  /// by one rank.
   void add_treading(const Net& x, const Net& v, const std::vector<std::unique_ptr<ParticleRow>>& rows) const {
     const auto found = ranks_.divided<Eigen::MatrixXd>(static_cast<int>(rows.size()), 5, [&](std::span<const int> mine, Eigen::MatrixXd& to) {
       for (const int k : mine) {
@@ -339,7 +340,7 @@ class Deforming : public ParticleSystem {
     (change.finer ? totals.refinements : totals.coarsenings) += 1;
   }
 
-  /// Finds the sites of the contacts of particle p on another mesh, at the same parametric points.
+  /// Sets the contact sites of particle p on its new mesh, at the same parametric points.
   void carry_contacts(std::size_t p, const spline::Space& to) {
     if (contacts_.all.empty()) return;
     const spline::Locator locator(to);
@@ -363,7 +364,7 @@ class Deforming : public ParticleSystem {
         ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
   }
 
-  /// Rebuilds the system for the members' current bodies, in the shape x.
+  /// Builds the system again for the current bodies of the members, in the shape x.
   void settle(const Net& x) {
     if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
     if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
@@ -376,15 +377,15 @@ class Deforming : public ParticleSystem {
   coupling::Ranks& ranks_;
   Phases& phases_;
   std::vector<Member> members_;
-  std::unique_ptr<Body> all_;  // stacked body of several particles, or null
+  std::unique_ptr<Body> all_;  // body that stands for all particles (stacked nets) if there are several, or null
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // state of the latest snapshot, to which its fields refer
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
-  coupling::Work work_;                     // work of systems on earlier meshes
+  coupling::Work work_;                     // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // kernel evaluations on earlier meshes
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
-  std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles before the mesh changes
+  std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles, stored before their meshes change
   std::vector<Warning> remarks_;
   coupling::Contacts contacts_;  // contacts that hold particles apart
   bool holds_centre_ = members_.size() == 1 && holds_centre(members_.front().scene);

@@ -43,12 +43,12 @@ std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optio
   if (!cell) return same ? std::vector<Vec3>() : std::vector<Vec3>{Vec3::Zero()};
   std::vector<Vec3> all = cell->around({2, 2, 2});
   const Vec3 apart = cell->shift((q.colwise().mean() - p.colwise().mean()).transpose());
-  if (same) all.resize(all.size() / 2);  // the second half is the first one with opposite signs
+  if (same) all.resize(all.size() / 2);  // the second half holds the negatives of the vectors of the first half
   for (Vec3& image : all) image -= apart;
   return all;
 }
 
-/// Pairs of particles that may be closer than `reach` and may have the smallest gap, sorted by the lower bound of their gap.
+/// Pairs of particles whose gap may be smaller than `reach` and may be the smallest gap of all, sorted by a lower bound of their gap.
 class Pairs {
  public:
   Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell,
@@ -118,7 +118,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   return own;
 }
 
-/// Reduces widths to the distance from the plane wall where that is smaller.
+/// Reduces each film width to the distance of the element from the plane wall, if that is smaller.
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {
@@ -127,7 +127,8 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns the net q and its lattice images whose bounding boxes are within `reach` of the box of the net p. p itself is left out.
+/// Returns the net q and its lattice images, as far as their bounding boxes are within `reach` of the bounding box of the net p. If q is p itself
+/// (`same`), p is not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;
   if (!cell) {
@@ -145,7 +146,7 @@ std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach,
   return found;
 }
 
-/// Returns true if a point that is not on the surface is inside. The solid angle of the surface is 4 pi there, and 0 outside.
+/// Returns true if a point that is not on the surface is inside it. The solid angle of the surface seen from the point is then 4 pi, and 0 outside.
 bool encloses(const surface::Patches& patches, const Vec3& point) {
   constexpr int n = 8;
   double angle = 0;
@@ -158,7 +159,7 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another. Their gap does not show that.
+/// Throws UserError if one particle is inside another one, which the gap between their surfaces does not show.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
@@ -225,7 +226,7 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell) {
-  constexpr int n = 7;  // numbers per pair: 1 if closer than `reach`, and the two sites
+  constexpr int n = 7;  // numbers sent per pair: 1 if the gap is smaller than `reach`, then the two sites
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
@@ -252,7 +253,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
-  double longest = 0;  // length of the longest element diagonal
+  double longest = 0;  // longest diagonal of an element of the surface, length
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;

@@ -25,26 +25,26 @@ struct Nearest {
 /// Throws UserError, which names the particles and the place, if two particles overlap in their initial shapes, or one is inside another.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Pair of particles close to each other: its contact, whose force is not set, and its gap.
+/// Pair of particles close to each other: their contact (the two nearest points and the normal), without a force, and their gap.
 struct Approach {
   coupling::Contact contact;
   double gap = 0;
 };
 
-/// Returns the contact at the local minimum of the distance next to the two sites of `contact`, with the normal and the gap there.
+/// Returns the contact at the local minimum of the distance that is nearest to the two sites of `contact`, with its normal and gap.
 Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact);
 
-/// Returns, for every pair of particles at x closer than `reach`, the minimum of their distance, 0 if they touch. On a lattice, each image within
-/// reach is a pair of its own. The result does not depend on the number of ranks, which share the pairs. Collective.
+/// Returns, for every pair of particles that are closer than `reach` at x, the points of smallest distance and this gap, 0 if they touch. On a
+/// lattice, each image within reach counts as a pair. The ranks share the pairs; the result does not depend on their number. Collective.
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell);
 
 /// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the width of the film at each element of particle p at x, on its nested space. Widths so large that the elements of the first mesh resolve
-/// them are not computed. `cell`: of the lattice, whose images bound films too. `wall`: of the tube around the particle, in whose frame x is, or
-/// null.
+/// Returns the width of the film at each element of particle p at x, on its nested space. Widths that are not computed, because the elements of the
+/// first mesh resolve such wide films, are infinite. `cell`: cell of the lattice, whose images bound films too. `wall`: wall of the tube around the
+/// particle, in whose coordinates x is given, or null.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

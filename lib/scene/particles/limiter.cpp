@@ -54,7 +54,8 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
   return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
-/// Updates the gaps of known contacts at x and adds contacts for other gaps below the limit. Returns false if a gap is below half of the limit.
+/// Updates the gaps of known contacts in the shape x, and adds a contact at every other gap that is below the limit. Returns false if a gap is below
+/// half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
@@ -70,7 +71,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// Returns the known contact of the pair that is less than half an element away; null if there is no such contact.
+/// Returns the known contact between the two particles of `contact` that is less than half an element away from it; null if there is none.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));
@@ -81,8 +82,8 @@ Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   return found == held_.end() ? nullptr : &*found;
 }
 
-/// Returns the required gap of a contact: the limit. If the pair has another contact and this gap is slightly below the limit, returns a value
-/// between the gap and the limit.
+/// Returns the gap that a contact must restore, which is the limit. If the pair already has another contact and the gap is slightly below the limit,
+/// returns a value between the gap and the limit, so that the gap opens gradually.
 double Limiter::target(const Approach& found) const {
   const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });
   if (first || found.gap > limit_) return limit_;

@@ -21,18 +21,18 @@ namespace tanktread {
 /// system; after an implicit step they include the stiffness of deforming particles.
 class Limiter {
  public:
-  /// `limit`: a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. Arguments passed by reference must
-  /// outlive this.
+  /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. Objects passed
+  /// by reference must outlive this object.
   Limiter(const std::vector<Member>& members, coupling::Capsule& capsule, const coupling::Ranks& ranks, double limit, double unit,
           double rate)
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate) {}
 
-  /// Moves the particles at the end of a step. Returns false if gaps are below half of the limit or cannot be held; then only cached data of the
-  /// system change, and the step must be repeated with a smaller size. Collective.
+  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or the forces
+  /// cannot restore it. The step must then be repeated with a smaller size; only cached data of the system have changed. Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
-  /// Contact, its force in multiples of `unit`, and the displacement that one unit causes in the step.
+  /// A contact, its force as a multiple of `unit`, and the displacement of all points in one step by a contact force of one `unit`.
   struct Held {
     coupling::Contact contact;
     double gap, target;  // gap, and its required value
@@ -55,7 +55,7 @@ class Limiter {
   double limit_, unit_, rate_;
   double step_ = 0;
   std::vector<Held> held_;
-  Net load_;                                  // load of the contacts of the previous step
+  Net load_;                                  // load of the contact forces that acted during the step, virtual work per control point
   std::shared_ptr<coupling::Evaluation> base_;  // evaluation with this load
 };
 

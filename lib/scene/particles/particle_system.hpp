@@ -27,7 +27,7 @@ struct Resumed {
   output::Checkpoint checkpoint;  ///< checkpoint with the state, the totals and the data that `store` wrote
 };
 
-/// Particles at one time, for a snapshot.
+/// Body, shape and fields of the particles at one time, for a snapshot.
 struct SurfacePicture {
   Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
@@ -47,25 +47,26 @@ class ParticleSystem {
   /// Discards the data of earlier solves that preconditioners `recycled` keep. Checkpoints do not hold these data; so a run discards them after each
   /// checkpoint.
   virtual void forget_recycled() {}
-  /// Moves particles that a step of this size left too close, if the deck asks for it. Returns false if that fails.
+  /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that
+  /// fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
   virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of these contacts, on the current mesh, from now on
-  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has another mesh now
-  virtual void undo_adapt(const Net&) {}                                         ///< returns to the previous mesh, in this shape, for a last snapshot
+  virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has changed its mesh
+  virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;     ///< returns a row; time and work of `progress` are set here
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results; it sets time and work in `progress`
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };
 
-/// Builds the kind of system that the scene needs.
+/// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// Build the two kinds of systems.
+/// Build a coupled system of particles, or the system of one free rigid body.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 

@@ -12,26 +12,26 @@ namespace tanktread {
 
 namespace {
 
-constexpr double grown = 5;         // growth of waves, in e-folds, at which they soon become visible
-constexpr int limited_steps = 10;   // consecutive steps at the limit; fewer can occur at the start
-constexpr double folding = 0.05;    // threshold of jacobian_ratio; even elements have 0.5 and more, elements at a plain pole 0.1
+constexpr double grown = 5;         // growth of waves on a compressed membrane at which the user is warned, in e-folds: they soon become visible
+constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; fewer can occur at the start
+constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is 0.5 and more on even elements, 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
-constexpr double stiff_area = 3e4;  // global area stiffness, relative to the other stiffnesses, from which on the number of steps becomes large
+constexpr double stiff_area = 3e4;  // warning threshold of global area stiffness divided by the other stiffnesses: steps become many above it
 
 
-/// Returns the wave number of the shortest wave that elements of size h represent.
+/// Returns the largest wave number that a mesh of element size h can represent.
 double wave_number(double h) { return std::numbers::pi / h; }
 
-/// Returns the mean of the viscosities on both sides.
+/// Returns the mean of the viscosities of the inner and the outer fluid.
 double mean_viscosity(const Scene& scene) { return scene.flow.viscosity * (1 + scene.particle.viscosity_ratio) / 2; }
 
-/// Returns the advice for elements that are too coarse.
+/// Returns the advice to the user for elements that are too coarse, as a part of a sentence.
 std::string finer_mesh(const Scene& scene) {
   return scene.adaptation.enabled ? "set a finer mesh, or smaller limits in Adaptation" : "set a finer mesh, or Adaptation/enabled";
 }
 
-/// Returns the worst quality over all ranks.
+/// Returns the worst mesh quality over all ranks, from the quality `mine` of this rank's elements.
 surface::Quality worst(const surface::Quality& mine, const coupling::Ranks& ranks) {
   const std::array<double, 7> own{mine.jacobian_ratio,  double(mine.folded_element), mine.folded_place[0], mine.folded_place[1],
                                   mine.folded_place[2], mine.aspect_ratio,           double(mine.stretched_element)};
@@ -104,7 +104,7 @@ std::string Warnings::compression(const StepFindings& signs) {
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);
   const double bending = scene_.bending_modulus();
   const double fastest = bending > 0 ? std::sqrt(tension / (3 * bending)) : mesh, k = std::min(fastest, mesh);
-  const bool resolved = fastest < mesh / 2;  // a wave that the mesh resolves is no failure of the method
+  const bool resolved = fastest < mesh / 2;  // the warning is about waves that the mesh does not resolve; resolved waves are physical
   const double growth = resolved ? 0 : 0.6 * (tension * k - bending * k * k * k) / (4 * mean_viscosity(scene_));
   memory_.waves = std::max(0.0, memory_.waves + (growth - scene_.rate()) * signs.step);
   if (memory_.waves < grown) return {};

@@ -48,7 +48,7 @@ class Warnings {
   /// Returns true if no warning of this kind was shown before, and records it as shown.
   bool fresh(const Warning& warning);
 
-  /// Returns the warnings that this step adds.
+  /// Returns the warnings to show after this step. Each kind is returned only once in a run.
   std::vector<std::string> sentences(const StepFindings& signs);
 
   const Memory& memory() const { return memory_; }
@@ -71,8 +71,8 @@ class Warnings {
 /// rate of the shortest bending waves.
 double stiffness(const Scene& scene, double h);
 
-/// Computes the quality of a shape. Throws RunFailure on all ranks if an element is folded or a control point is NaN. Ranks share the elements.
-/// Collective.
+/// Computes the quality of the mesh in the shape x. Throws RunFailure on all ranks if an element is folded or a control point is NaN. The ranks share
+/// the elements. Collective.
 surface::Quality soundness(const surface::BezierMap& map, const Net& x, const coupling::Ranks& ranks);
 
 }  // namespace tanktread

@@ -46,30 +46,30 @@ double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y)
 
 /// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // Keeps sites inside the element, because the iteration could not leave a pole.
+  // Keeps the parameters inside the element, because at a pole on its boundary the iteration would stop.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // true at a pole, where a derivative may be exactly zero
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // also ends the iteration at a pole, where a derivative may be exactly zero
     site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
     site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
   }
   return site;
 }
 
-/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. In a fluid at rest it is R_C per unit of time.
+/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. In a fluid at rest, it is R_C per unit of time.
 double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
 
-/// Returns an array with one number per rank. The number of this rank is `mine`; the numbers of other ranks are 0.
+/// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.
 std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
   std::vector<double> all(static_cast<size_t>(ranks.size()), 0);
   all[static_cast<size_t>(ranks.rank())] = mine;
   return all;
 }
 
-/// Returns the smallest of the numbers of the ranks that own blocks.
+/// Returns the smallest number of the ranks that own blocks of elements. Ranks without blocks have no value of their own.
 double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
   double result = std::numeric_limits<double>::infinity();
   for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);
@@ -78,7 +78,7 @@ double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n
 
 double sum(const std::vector<double>& all) { return std::accumulate(all.begin(), all.end(), 0.); }
 
-/// Returns the elements of this rank, as whole blocks.
+/// Returns the elements that this rank evaluates: whole blocks of elements.
 std::vector<int> own_elements(const surface::Geometry& geometry, const coupling::Ranks& ranks) {
   return surface::elements_of(ranks.share(geometry.n_blocks()), geometry.bezier().n_elements());
 }
@@ -159,7 +159,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // true for a single particle, whose columns have the same names
+  const bool only = scene.particles.empty();  // true if the run has one particle, whose own columns already have these names
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);
@@ -211,7 +211,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
       const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
       if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
     }
-    if (nearest < 0.5) continue;  // an element of a closed surface does not span such a wide angle
+    if (nearest < 0.5) continue;  // skips elements whose points are all more than about 60 degrees off the direction (0.5 is the cosine)
     for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
       if (const double here = of(site); here > most + 1e-12) best = site, most = here;
   }
@@ -273,7 +273,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
                            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
-  const std::vector<int>& sites = body.symmetry.fundamental();  // all other sites are images of these sites
+  const std::vector<int>& sites = body.symmetry.fundamental();  // all other collocation sites are images of these sites under the symmetry
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);

@@ -25,7 +25,7 @@ struct ParticleRow {
   double energy = 0, intrinsic_viscosity = 0, phase = 0;
 
   virtual ~ParticleRow() = default;
-  /// Adds the columns of this particle. `one`: its scene.
+  /// Adds the columns of this particle to a row. `one`: the scene of this particle.
   virtual void add_columns(const Scene& one, Columns& to) const = 0;
 
  protected:
@@ -42,7 +42,7 @@ struct DeformingRow : ParticleRow {
 struct RigidRow : ParticleRow {
   Vec3 angular_velocity = Vec3::Zero(), drag = Vec3::Zero(), torque = Vec3::Zero();
   Eigen::Vector4d quaternion = Eigen::Vector4d::Zero();  ///< quaternion of the rotation, the scalar part first
-  double shape_velocity = 0;                             ///< shape velocity, computed only if Time/steady tolerance is given
+  double shape_velocity = 0;                             ///< shape velocity (6.8), computed only if Time/steady tolerance is given
   void add_columns(const Scene& one, Columns& to) const override;
 };
 

@@ -13,18 +13,19 @@
 
 namespace tanktread {
 
-/// Phase of a material point: its angle, which is counted on past whole turns, and the mean angular velocity of the surface at the last step.
+/// Phase of a material point: its angle, which grows beyond 360 degrees after a whole turn, and the mean angular velocity of the surface at the last
+/// step.
 struct PhaseAngle {
   double degrees = 0, rate = 0;
 
-  /// Advances by a step at whose end the mean angular velocity of the surface is `now`. The phase becomes the angle of the point, `angle`, plus whole
-  /// turns. If no point is followed, it is integrated from the mean angular velocity.
+  /// Advances the phase by a step at whose end the mean angular velocity of the surface is `now`. If `angle`, the angle of the followed point, is
+  /// given, the phase becomes this angle plus whole turns. Otherwise it is integrated from the mean angular velocity.
   void advance(double step, double now, std::optional<double> angle);
 };
 
 /// Totals of a run since its beginning, including earlier parts of a resumed run.
 struct RunTotals {
-  int step = 0;  ///< steps so far; `run.h5` holds step + 1 rows
+  int step = 0;  ///< number of steps so far; `run.h5` has step + 1 rows, including the initial state
   double wall_seconds = 0;
   coupling::Work work;
   int refinements = 0, coarsenings = 0;
@@ -35,7 +36,7 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
 };
 
-/// Calls act(name, kinds of particles, description, count) for every count. Checkpoints and the summary use these names.
+/// Calls act(name, kinds of particles that have it, description, count) for every count of a run. Checkpoints and the summary use these names.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";
@@ -55,7 +56,7 @@ void each_count(Some& totals, const Act& act) {
   act("kernel_evaluations_self", all, "on the element of the target", totals.kernel.self);
 }
 
-/// Returns every count by its name, for the summary.
+/// Returns every count of the run with its name, for the summary.
 output::Entries<long> counts(const RunTotals& totals);
 
 /// Adds all of `totals` to the checkpoint.

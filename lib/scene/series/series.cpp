@@ -41,7 +41,7 @@ std::size_t rank(const std::string& name) {
   return at == ranks.end() ? ranks.size() : at->second;
 }
 
-/// Adds the columns of registered series of one kind with their values; without the arguments `of`, only their names.
+/// Adds the columns of the registered series of one kind with their values at the arguments `of`; without `of`, adds the columns without values.
 template <class Series, class... Of>
 void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
   for (const SeriesParts::Chosen& part : scene.series) {

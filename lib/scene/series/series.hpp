@@ -17,7 +17,7 @@ namespace tanktread {
 
 /// Data of the progress of a run for one row.
 struct ProgressRow {
-  motion::StepReport step = {};  ///< report of the step that ended here
+  motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
   std::optional<long> evaluations = {};  ///< velocity evaluations of all systems of a branch; if not given, the count in `work` is used
   double time = 0;
@@ -25,7 +25,7 @@ struct ProgressRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Data of a branch point, a periodic motion and a spectrum for one row.
+/// Data of a steady shape on a branch, of a periodic motion and of a spectrum for one row.
 struct SteadyRow {
   motion::BranchPoint point;
   double period = 0;
@@ -36,20 +36,20 @@ struct SteadyRow {
 /// Returns the columns of all rows of a run in their order, without values. The columns of one of several particles are named `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
-/// Returns the columns of the run as a whole; if `every`, all possible ones, for the manual (Columns).
+/// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).
 Columns run_columns(const Scene& scene, bool every = false);
 
-/// Returns the columns of one particle of a system, without its name.
+/// Returns the columns of one particle of a system; their names do not contain the name of the particle. `every`: as in run_columns.
 Columns particle_columns(const Scene& one, bool every = false);
 
 /// Add the columns of registered series: per particle, or of the run.
 void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to);
 void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
 
-/// Sorts the columns of the program in the order of the manual. Columns of added parts follow in the order in which they were added.
+/// Sorts the columns of the program in the order of the manual. The columns of user-defined parts follow in the order in which they were added.
 void put_in_order(Columns& columns);
 
-/// Sorts the columns of a row in this order and checks them. Throws RunFailure like Columns::check.
+/// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure like Columns::check.
 void finish(Columns& row);
 
 /// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the numbers of a scene, each with its unit.

@@ -63,7 +63,7 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
   return state;
 }
 
-/// Transfers one control net with its fields.
+/// Returns the control net y of a state, whose rows after the shape are coefficients of fields, transferred to the current meshes.
 Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
@@ -114,7 +114,7 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
 
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   const auto& loads = capsule_.particles()[p].loads;
-  const auto& parts = members_[p].scene.loads;  // registered parts; the last elements of `loads` are created from them
+  const auto& parts = members_[p].scene.loads;  // registered loads that the deck uses; they were added last to `loads`
   for (std::size_t k = 0; k < parts.size(); ++k)
     parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {
@@ -137,7 +137,7 @@ double SurfaceFields::power(const Net& v) const {
   return sum;
 }
 
-/// Adds the snapshot values of fields and loads. Values are 0 on particles without a quantity of this name.
+/// Adds the values that registered fields and loads write to snapshots. The values are 0 on particles that have no quantity of this name.
 void SurfaceFields::add_registered(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const {
   std::map<std::string, Eigen::MatrixXd> all;
   const auto add = [&](std::size_t p, const std::vector<membrane::SurfaceValues>& several) {

@@ -25,10 +25,11 @@ struct SurfactantRow {
   void add_columns(Columns& to) const;
 };
 
-/// Fields on the current meshes of all members. Without any field, states are control nets of the shapes and nothing is stored.
+/// Fields on the current meshes of all members. Without any field, states consist only of the control nets of the shapes, and this object stores
+/// nothing.
 class SurfaceFields {
  public:
-  /// Members and capsule must outlive this.
+  /// The objects `members` and `capsule` must outlive this object.
   SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule);
 
   bool empty() const { return all_.empty(); }
@@ -48,26 +49,27 @@ class SurfaceFields {
   /// same. Slopes and secants are left out if there are fields. `bodies`: previous body of each particle; null if its mesh is unchanged.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
-  /// Passes the state to the capsule and the fields. If the capsule was evaluated last within `distance` of this state, passes the state only to the
-  /// fields.
+  /// Passes the state y to the capsule and the fields. If the capsule was last evaluated at a state within `distance` of y, passes the state only to
+  /// the fields.
   void set_state(const Net& y, double distance = 0);
 
-  /// Returns a function that evaluates all fields of particle p in the state set last, scaled to order 1. It is empty if there are none.
+  /// Returns a function that evaluates all fields of particle p, scaled to order 1, in the state set last. The function is empty if there are no
+  /// fields.
   surface::FieldsAt values_at(std::size_t p) const;
 
   /// Adds the contributions of the fields of particle p to its row, and the columns of its fields and loads. `y` is the state set last.
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of the loads of all fields if the material moves by v.
   double power(const Net& v) const;
-  /// Adds the snapshot fields of fields and loads at the shape x, and corrects the tensions of interfaces with surfactant.
+  /// Adds the values that fields and loads write to snapshots at the shape x, and corrects the tensions of interfaces with surfactant.
   void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
 
  private:
   struct One {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
-    membrane::Surfactant* surfactant = nullptr;  // the field if it is a surfactant, otherwise null
-    const membrane::FieldParts::Chosen* part = nullptr;  // registered part that made it, or null
+    membrane::Surfactant* surfactant = nullptr;  // this field if it is a surfactant, otherwise null
+    const membrane::FieldParts::Chosen* part = nullptr;  // registered part that made this field, or null for a built-in field
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
@@ -85,7 +87,8 @@ class SurfaceFields {
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns, at each node, the lattice vector that moves its particle into the cell around the origin.
+/// Returns, at each node, the lattice vector by which its particle is moved so that the mean of its control points is in the cell around the
+/// origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 
 }  // namespace tanktread

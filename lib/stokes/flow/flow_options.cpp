@@ -34,7 +34,7 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "mean velocity of the `duct` flow: flow rate divided by the area of the cross-section, in a channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "quantity of the `duct` flow that particles do not change: `flow rate`, or `pressure drop` over the modelled piece. The prescribed "
+              "quantity of the `duct` flow that particles do not change: `flow rate`, or `pressure drop` over the computed part. The prescribed "
               "pressure drop is the one that gives the mean velocity in the empty tube or channel");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("profile", profile, deck::Choice{"round", "plane"},

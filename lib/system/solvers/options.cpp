@@ -23,8 +23,11 @@ void InterfaceOptions::declare(deck::Section& section) {
 
 void IterativeOptions::declare(deck::Section& section) {
   path = section.path();
-  section.key("iterative solver", solver, deck::Choice{}, "Belos' name of the iterative solver of this system, instead of Solvers/iterative solver");
-  section.foreign("Belos", belos, "parameters that are passed to the iterative solver of this system unchanged, instead of Solvers/Belos");
+  section.key("iterative solver", solver, deck::Choice{},
+              "name of the iterative solver of this system in Belos (a package of Trilinos), instead of Solvers/iterative solver");
+  section.foreign("Belos", belos,
+                  "parameters that are passed unchanged to the iterative solver of this system in Belos (a package of Trilinos), instead of "
+                  "Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
               "preconditioner of this linear system. `own`: preconditioner specific to the system (inverted isolated rigid bodies and films "
               "between them; the blocks of Solvers/tube), or none if it has none. `none`: no preconditioner. `neumann`: 2 - A for the scaled "
@@ -41,9 +44,10 @@ IterativeOptions SolverOptions::of(IterativeOptions system) const {
 
 void SolverOptions::declare(deck::Section& section) {
   section.key("iterative solver", krylov, deck::Choice{},
-              "Belos' name of the iterative solver of all linear systems that do not have a different one");
+              "name of the iterative solver in Belos, a package of Trilinos. It is used for all linear systems for which no other solver is set");
   section.foreign("Belos", belos,
-                  "parameters that are passed to the iterative solver unchanged. Verbosity, Output Style and Output Frequency cannot be set");
+                  "parameters that are passed unchanged to the iterative solver of Belos, a package of Trilinos. Verbosity, Output Style and Output "
+                  "Frequency cannot be set");
   section.section("velocity", velocity,
                   "linear system for the velocity: with a viscosity ratio other than 1, rigid bodies among other particles, or the blocks in a "
                   "tube");
@@ -52,8 +56,8 @@ void SolverOptions::declare(deck::Section& section) {
   section.section("spectrum", spectrum, "shift-inverted linear system of Spectrum/method `krylov`");
   section.section("steady", steady, "linear system of a Newton step of Steady/method `newton-krylov`");
   section.foreign("NOX", nox,
-                  "parameters that are passed to the nonlinear solver NOX unchanged: for Steady, and for Time/scheme `crank-nicolson` with a "
-                  "Time/nonlinear solver other than `plain`");
+                  "parameters that are passed unchanged to NOX, the nonlinear solvers of Trilinos: for Steady, and for Time/scheme `crank-nicolson` "
+                  "with a Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual of the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid particles)");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
