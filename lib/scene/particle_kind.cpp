@@ -117,7 +117,7 @@ void ParticleKind::declare_lists(deck::Section& section) {
   InterfaceList list{*this};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
-  if (!name.empty()) adaptation.film_resolution = 0.7;
+  if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : 0.7;
   section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 

@@ -20,7 +20,7 @@ void WallOptions::declare(deck::Section& section) {
   section.key("normal", normal, deck::any(), "1", "normal vector of the plane wall, pointing into the fluid; its length has no effect");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
-              "run stops with a checkpoint");
+              "run ends with a checkpoint");
 }
 
 void WallOptions::check(const stokes::FlowOptions& flow) const {

@@ -22,4 +22,24 @@ def a_capsule_that_treads_is_found_steady_where_its_deformation_is():
     check(series("out", "normal_velocity")[-1] > 5e-3, "the largest normal velocity would have told as well")
 
 
+def a_shape_that_is_not_found_from_rest_is_approached_through_weaker_flows():
+    """Near the fold of a capsule in extension, at Ca 0.52 on this mesh. The way says where steady shapes end."""
+    text = """
+Tanktread:
+  Flow: {type: uniaxial extension}
+  Membrane: {law: neo-Hookean, capillary number: 0.5, pre-inflation: 0.05}
+  Surface: {elements per side: 4}
+  Quadrature: {tolerance: 1.0e-5}
+  Steady: {tolerance: 1.0e-7}
+"""
+    found = run(deck(text), "--output", "near").stdout
+    check("steady shapes of the flow times" in found and "led to it" in found, found)
+    near = series("near", "taylor_surface")[-1]
+    run(deck(text), "--output", "start", "--quiet", "--set", "Membrane/capillary number=0.4")
+    run(deck(text.replace("  Steady:", "  Particle: {initial shape: {run: start}}\n  Steady:")), "--output", "from", "--quiet")
+    check(abs(near - series("from", "taylor_surface")[-1]) < 1e-5, near, series("from", "taylor_surface")[-1])
+    beyond = run(deck(text), "--output", "beyond", "--set", "Membrane/capillary number=0.7", code=3)
+    check("but none of the full flow" in beyond.stdout and "was not found" in beyond.stderr, beyond.stdout, beyond.stderr)
+
+
 main()
