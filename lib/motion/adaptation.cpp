@@ -37,7 +37,8 @@ void AdaptationOptions::declare(deck::Section& section) {
               "kappa: exponent with which a variation above its reference value shortens elements, for the indicator `variation`; 1 if not given");
   section.key("film resolution", film_resolution, deck::positive(), "1",
               "largest length of elements next to a film between particles, or between a particle and a wall or periodic image, divided by the "
-              "square root of film width times R_C; 0.7 if not given, 0.5 for rigid bodies of a list Particles. Only `levels` limits this refinement, `minimum length` does not");
+              "square root of film width times R_C; 0.7 if not given, 0.5 for rigid bodies of a list Particles. Only `levels` limits this "
+              "refinement, `minimum length` does not");
   section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: elements shorter than this are not refined; default 0.035 R_C");
   section.key("interval", interval, deck::at_least(1), "steps", "number of accepted time steps between two checks of the mesh");
   section.key("levels", levels, deck::between(0, 8), "1", "largest number of times that an element of the initial mesh is halved in a direction");
