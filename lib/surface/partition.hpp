@@ -20,8 +20,8 @@ struct Partition {
 /// UserError if there are more parts than elements.
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
 
-/// Returns a partition if only some points have work, for example the fundamental points of a symmetric surface. Only these points are balanced; the
-/// other points have no owner (-1).
+/// Returns a partition for the case that only some control points cause work, for example the fundamental points of a symmetric surface. Only these
+/// points are balanced; the other points have no owner (-1).
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points);
 
 /// Work of one rank: the points it owns, and all elements that touch them; both ascending.
