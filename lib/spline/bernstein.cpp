@@ -58,7 +58,7 @@ Eigen::MatrixXd elevation(int p, int q) {
 }
 
 Eigen::MatrixXd restriction(int p, double a, double b) {
-  // Row i is the blossom at (a, ..., a, b, ..., b) with i times b.
+  // Row i is the blossom (polar form) of the polynomials with i arguments equal to b and p - i equal to a.
   Eigen::MatrixXd out(p + 1, p + 1);
   for (int i = 0; i <= p; ++i) {
     Eigen::MatrixXd row = Eigen::MatrixXd::Identity(p + 1, p + 1);
@@ -75,8 +75,9 @@ std::array<double, 4> b_spline_on(const std::array<double, 5>& k, double a, doub
   const double K[11] = {k[0] - 3, k[0] - 2, k[0] - 1, k[0], k[1], k[2], k[3], k[4], k[4] + 1, k[4] + 2, k[4] + 3};
   int span = 3;
   while (span < 6 && K[span + 1] <= a) ++span;
-  // De Boor's triangle with a or b as the argument of each of its three steps. The results of a step depend only on the number of arguments b.
-  double d[4][4][4] = {};  // d[r][n]: results after r steps, n of them with b
+  // De Boor's algorithm for the blossom (polar form) of the cubic. Each of its three steps uses a or b as its argument. The result of a step
+  // depends only on how many of the arguments so far were b.
+  double d[4][4][4] = {};  // d[r][n]: coefficients after r steps, n of them with the argument b
   d[0][0][6 - span] = 1;
   for (int r = 1; r <= 3; ++r)
     for (int j = r; j < 4; ++j) {

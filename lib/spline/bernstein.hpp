@@ -23,7 +23,7 @@ Eigen::MatrixXd elevation(int p, int q);
 Eigen::MatrixXd restriction(int p, double a, double b);
 
 /// Returns the Bernstein coefficients on [a, b] of the cubic B-spline with knots k0 <= .. <= k4. [a, b] must be in [k0, k4], with no knot strictly
-/// inside. Coefficient i is the blossom f(a, .., a, b, .., b) with i times b.
+/// inside. Coefficient i is the blossom (polar form) f(a, .., a, b, .., b) of the spline with i arguments equal to b.
 std::array<double, 4> b_spline_on(const std::array<double, 5>& k, double a, double b);
 
 }  // namespace tanktread::spline

@@ -9,15 +9,16 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge lies in the rings around the point at `corner` with spacing h, 2 h, 4 h and so on.
+/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`: it is within 3 H of the point and
+/// on the lattice of spacing H, for H = h, 2 h, 4 h or a larger spacing.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
   return false;
 }
 
-/// Returns whether the edge must stay: it is on a line of the base mesh, or in the rings of an extraordinary point at its current or a larger
-/// spacing.
+/// Returns whether the edge must not be removed: it is on a line of the initial mesh, or it belongs to the uniform rings of elements around an
+/// extraordinary point at their current or a larger spacing.
 bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
   const Lattice& l = *mesh.lattice;
   if ((e.horizontal ? l.height(e.y) : e.x) % l.base == 0) return true;
@@ -35,8 +36,8 @@ struct Remover {
   const Lattice& lattice() const { return *mesh.lattice; }
   bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
 
-  /// Returns the bay that starts at a vertex with a perpendicular edge. It is empty if one of its edges must stay, or if an element at one of its
-  /// ends would no longer be a rectangle.
+  /// Returns the edges from the start, a vertex with perpendicular edges on both sides, to the next vertex with a perpendicular edge. The result is
+  /// empty if one of these edges must not be removed, or if an element at one of the ends would not be a rectangle without them.
   std::vector<Ray> removable_bay(Ray start) const {
     const Lattice& l = lattice();
     auto both_sides = [&](Ray r) { return (mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10)) == (r.slot & 1 ? 5 : 10); };
@@ -53,7 +54,8 @@ struct Remover {
     return path;
   }
 
-  /// Sets the edges in rows of zero height: those that continue lines which arrive at the end knot, and no others.
+  /// Sets the edges in the rows of zero height (which represent repeated end knots): a row has exactly those edges that continue a mesh line that
+  /// reaches the row.
   void restore_ends() {
     const Lattice& l = lattice();
     for (int c = 0; c < l.cells(); ++c) {
@@ -64,12 +66,13 @@ struct Remover {
     }
   }
 
-  /// Removes the bay that starts here and all its images, or none of them. Returns whether they were removed.
+  /// Removes the edges from this start to the next perpendicular edge, and their images under all symmetries, or removes nothing. Returns whether
+  /// they were removed.
   bool remove_images(Ray start) {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
     for (Ray s : starts) {
-      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed, because a bay can be its own image
+      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed: two symmetries can map to the same edges
       const auto bay = removable_bay(s);
       for (Ray e : bay) mesh.set(e, false);
       gone.insert(gone.end(), bay.begin(), bay.end());
@@ -81,7 +84,7 @@ struct Remover {
     return !gone.empty();
   }
 
-  /// Removes bays in one pass, shortest first. Returns whether any was removed.
+  /// Removes edges in one pass, in groups between two successive perpendicular edges, shortest group first. Returns whether any was removed.
   bool remove_bays() {
     const Lattice& l = lattice();
     std::vector<std::pair<std::size_t, Ray>> found;
@@ -97,7 +100,8 @@ struct Remover {
     return any;
   }
 
-  /// Returns the edges that are not on the 2 h lattice in the closed square of side 6 h at a point, in each of its three faces.
+  /// Returns the edges that must be removed to double the spacing h at an extraordinary point: those within the distance 6 h in each of its three
+  /// faces that are not on the lattice of spacing 2 h.
   std::vector<Ray> ring_edges(int point) const {
     const Lattice& l = lattice();
     const int P = l.extraordinary[point], h = mesh.spacing[point];
@@ -116,8 +120,8 @@ struct Remover {
     return out;
   }
 
-  /// Returns the points that must double h together with this point, including itself, because their rings share edges to be removed. Empty if an
-  /// edge must stay.
+  /// Returns the extraordinary points, including `first`, whose spacings h must double together because their rings of elements share edges to be
+  /// removed. Empty if one of these edges must stay.
   std::vector<int> doubling_group(int first) const {
     const Lattice& l = lattice();
     std::vector<int> group{first};
@@ -137,7 +141,8 @@ struct Remover {
     return group;
   }
 
-  /// Doubles h of every point whose rings may be removed. Returns whether any was doubled.
+  /// Doubles the spacing h of the elements around every extraordinary point where the edges to be removed may be removed. Returns whether any was
+  /// doubled.
   bool double_rings() {
     bool any = false;
     for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {
@@ -172,7 +177,8 @@ Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removabl
 Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
-  // Largest width and height that a tile may grow to, as powers of two. A line stays if it is on the grid of this spacing.
+  // Largest width and height that an element may grow to, as powers of two, in lattice cells. A mesh line is not removed if its coordinate is a
+  // multiple of the limit.
   std::vector<std::array<int, 2>> limit(tiling.tiles.size(), {1, 1});
   for (const Merge& m : merges) {
     const Rectangle& r = tiling.tiles[m.element];
@@ -186,16 +192,17 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     }
   std::vector<std::uint8_t> removable(l.vertices(), 0);
   for (int c = 0; c < l.cells(); ++c)
-    for (int k : {1, 2}) {  // right and upper edge of each cell, inside a face
+    for (int k : {1, 2}) {  // right and upper edge of each cell; edges between two macro faces are excluded below
       const bool vertical = k == 1;
       const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
-      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // lines of the base mesh include the sides of macro faces
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k))
+        continue;  // keeps the lines of the initial mesh, which include the sides of macro faces
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // otherwise its continuation in the row of zero height is removable, too
+      if (!vertical || !l.pad) continue;  // otherwise also marks the continuation of the edge in the row of zero height at an end knot
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

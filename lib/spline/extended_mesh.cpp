@@ -121,7 +121,7 @@ std::vector<TJunction> ExtendedMesh::around_missing() const {
   std::vector<TJunction> out;
   for (Ray start : {Ray{v, k}, l.reverse({v, k})}) {
     if (l.ends(start.vertex, start.slot)) continue;
-    Ray r = step(l, start);  // moves along the line beyond the edge to the first vertex that has an edge on the line
+    Ray r = step(l, start);  // moves along the line of the missing edge to the first vertex at which the mesh has an edge on this line
     while (!l.ends(r.vertex, r.slot) && l.valence(r.vertex) == 4 && !mesh_.edge(r.vertex, r.slot)) r = step(l, r);
     const auto t = traces_.find(r.vertex);
     if (t != traces_.end() && t->second.missing == ((r.slot + 2) & 3)) out.push_back({r.vertex, t->second.missing});
@@ -169,7 +169,7 @@ std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point) {
   std::vector<std::vector<Ray>> out;
   for (int s = 0; s < 3; ++s)
     for (int at : {h / 2, 3 * h / 2})
-      for (int turn : {1, 3}) {  // directions into the sectors on both sides of the spoke
+      for (int turn : {1, 3}) {  // turns to the left and right of the mesh line from the extraordinary point
         Ray r{P, s};
         for (int i = 0; i < at; ++i) r = step(l, r);
         r.slot = (r.slot + turn) & 3;

@@ -1,6 +1,6 @@
 #pragma once
-// A T-mesh with the extensions of its T-junctions, which are updated when edges are added or removed, and the uniform rings around its extraordinary
-// points.
+// A T-mesh with the extensions of its T-junctions, which are updated when edges are added or removed, and the uniform rings of elements around its
+// extraordinary points.
 
 #include <map>
 #include <set>
@@ -11,15 +11,16 @@
 namespace tanktread::spline {
 
 /// A T-mesh with the extensions of its T-junctions. Counts violations of the conditions for nested, linearly independent splines:
-///  - crossings: pairs of extensions of different axis that meet at a vertex (end points count; an extension that reaches an extraordinary point
-///    counts too). If there are none, the mesh is analysis-suitable (Scott et al. 2012).
-///  - missing: unit edges of an earlier extended mesh that are neither edges nor covered by an extension. If there are none, the extended meshes are
-///    nested.
+///  - crossings: pairs of extensions of different axis that meet at a vertex (end points of extensions count; an extension that reaches an
+///    extraordinary point counts as a crossing, too). If there are none, the mesh is analysis-suitable (Scott et al. 2012).
+///  - missing: unit edges of an earlier extended mesh (T-mesh plus extensions) that the current extended mesh does not contain. If there are none,
+///    the extended meshes are nested.
 ///  - overlaps: vertices that are not vertices of the T-mesh, on the face extensions of two T-junctions on one line that point at each other.
 ///    There the extended mesh contains a complete line, and so one smooth function more than the mesh has anchors.
 /// If there are none of the three, the spline spaces are nested.
 ///
-/// Adding or removing a path changes only the T-junctions whose extensions meet it. So both operations are cheap and exact inverses of each other.
+/// Adding or removing a path of edges changes only the T-junctions whose extensions meet the path. So both operations are cheap
+/// and exact inverses of each other.
 class ExtendedMesh {
  public:
   explicit ExtendedMesh(TMesh mesh);
@@ -38,19 +39,21 @@ class ExtendedMesh {
   int crossings() const { return crossings_; }
   int missing() const { return int(missing_.size()); }
 
-  /// Returns the two T-junctions of the crossing at the first vertex after `cursor`, cyclically. Sets `cursor` to this vertex.
+  /// Returns the two T-junctions whose extensions cross at the first such vertex with an index above `cursor` (cyclically). Sets `cursor` to this
+  /// vertex.
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
-  /// Returns the T-junctions on both sides of the first missing edge (one or two).
+  /// Returns the T-junctions (one or two) next to the first missing edge on its line, whose extensions could be lengthened to contain it.
   std::vector<TJunction> around_missing() const;
-  /// Returns the two T-junctions of every overlap, at most `most` pairs, in the order of vertices. Each overlap is listed twice, once from each side.
+  /// Returns pairs of T-junctions that point at each other and whose extensions overlap, at most `most` pairs, in the order of vertices. Each
+  /// overlap is listed twice, once from each side.
   std::vector<std::pair<TJunction, TJunction>> facing_pairs(std::size_t most) const;
   int overlaps() const { return int(facing_pairs(passing_.size()).size()) / 2; }
 
  private:
   struct Trace {  // extensions of one T-junction
     int missing = 0;
-    std::vector<Ray> vertices;  // vertices on the extensions, with the slot in the direction of the extension
-    std::vector<bool> face;     // true for the elements of `vertices` on the face extension
+    std::vector<Ray> vertices;  // vertices on the extensions, each with the direction (slot) of the extension there
+    std::vector<bool> face;     // for each entry of `vertices`: true on the face extension, false on the edge extension
     std::vector<Ray> edges;
   };
   struct Passing {  // extension that passes a vertex
@@ -69,26 +72,28 @@ class ExtendedMesh {
   Ray canonical(Ray edge) const;
 
   TMesh mesh_;
-  std::map<int, Trace> traces_;                       // extensions, by the vertex of the T-junction
+  std::map<int, Trace> traces_;                       // extensions of each T-junction, by the lattice vertex of the T-junction
   std::vector<std::vector<Passing>> passing_;         // extensions that pass each lattice vertex
-  std::vector<std::array<std::uint8_t, 4>> covered_;  // number of extensions over each edge, stored at its canonical end
-  std::vector<std::uint8_t> required_;                // edges that must stay covered, bits as in TMesh::edges; empty if there are none
+  std::vector<std::array<std::uint8_t, 4>> covered_;  // number of extensions that contain each unit edge, stored at one of its two ends
+  // unit edges that the extended mesh must contain; bit k of entry v: edge k at vertex v; empty before keep_extensions()
+  std::vector<std::uint8_t> required_;
   std::set<std::pair<int, int>> missing_;
   std::set<int> crossed_;  // vertices with crossings
   int crossings_ = 0;
 };
 
-/// Returns the indices of the extraordinary points whose zone a path breaks. The zone of a point is the area within `rings` h of it, where the
-/// distance is the larger coordinate in the faces at the point. In this zone the mesh must be the uniform h lattice. A path breaks the zone if it has
-/// a unit edge there that is not on this lattice. Nested spaces need three rings.
+/// Returns the indices of the extraordinary points whose zone a path of new edges breaks. The zone of an extraordinary point with spacing h is the
+/// area within `rings` h of it, where the distance is the larger coordinate in the faces at the point. In this zone the mesh must be the uniform
+/// lattice of spacing h. A path breaks the zone if it has an edge there that is not on the lattice of spacing h. Spline spaces are nested under
+/// refinement only with three rings.
 std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings);
 
-/// Returns the middle lines of the twelve elements in the two inner rings at an extraordinary point. If they are added, the zone is uniform with
-/// spacing h / 2.
+/// Returns the lines that bisect the twelve elements in the two innermost rings around an extraordinary point. If these lines are added, the rings
+/// are uniform with half the spacing h.
 std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point);
 
-/// Halves h of every point whose zone one of the paths breaks. Continues with the lines that this adds, until no zone is broken. Returns the number
-/// of halvings.
+/// Halves the spacing h of every extraordinary point whose zone (see broken_zones) one of the paths breaks, by adding lines. Repeats this for the
+/// added lines until no zone is broken. Returns how many times a spacing was halved.
 int restore_zones(ExtendedMesh& extended, std::vector<std::vector<Ray>> paths, int rings);
 
 }  // namespace tanktread::spline

@@ -14,8 +14,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns the 19 control points around an irregular element in the order of OneRing. Spoke 0 is the first side of the element seen from the
-/// extraordinary point.
+/// Returns the 19 control points around an element at an extraordinary point, in the order of OneRing. Spoke 0 (a mesh line from the extraordinary
+/// point) is the first side of the element, counter-clockwise.
 std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f, const std::vector<int>& point, int tile) {
   const Rectangle& r = f.tiling.tiles[tile];
   const int h = r.width, P = sides(l, r)[f.irregular[tile]].vertex;
@@ -43,8 +43,8 @@ std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f,
   return out;
 }
 
-/// Converts a table for a face with the extraordinary point at corner 0, with row (p + 1) v + u, to an extraction matrix for a face with the point at
-/// corner k. The result has shape (functions, Bernstein coefficients).
+/// Converts a table of Bernstein coefficients for a face with the extraordinary point at corner 0, with row (p + 1) v + u, to an extraction matrix
+/// for a face with the point at corner k. The result has shape (functions, Bernstein coefficients).
 Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   Eigen::MatrixXd out(table.cols(), table.rows());
   for (int v = 0; v <= p; ++v)
@@ -55,7 +55,8 @@ Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   return out;
 }
 
-/// Returns the elements of a tile at an extraordinary point, in the unit square of the tile: one bi-quartic element, or the Catmull-Clark pieces.
+/// Returns the Bezier elements that represent a mesh element at an extraordinary point, positioned in the unit square of the mesh element: one
+/// bi-quartic element, or the pieces of the Catmull-Clark surface.
 std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, int corner, ExtraordinaryRule rule, int depth) {
   std::vector<Element> out;
   if (rule == ExtraordinaryRule::g1) {
@@ -83,7 +84,7 @@ std::vector<Element> around_point(const std::array<int, OneRing::size>& ring, in
 
 int log2_of(int power) { return std::countr_zero(unsigned(power)); }
 
-/// Elements in the order of the tiles. The elements of tile t begin at first[t].
+/// Bezier elements in the order of the mesh elements (tiles) that they represent. The Bezier elements of tile t begin at first[t].
 struct TileElements {
   std::vector<Element> all;
   std::vector<int> first;
@@ -91,15 +92,16 @@ struct TileElements {
   bool one(int tile) const { return first[tile + 1] - first[tile] == 1; }
 };
 
-/// Returns the elements of all tiles. Elements at extraordinary points are complete; regular elements have only their positions.
+/// Returns the Bezier elements of all mesh elements. Those at extraordinary points are complete; regular ones have only their positions.
 TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
   const int tiles = int(b.tiling.tiles.size());
-  // Next to an extraordinary point, catmull_clark_pieces() represents a square by an averaged bicubic. The side of this square is 2^-max(levels, 4)
-  // of an element of the initial mesh. It does not depend on the refinement, so that spaces before and after a refinement are nested.
+  // The innermost square at an extraordinary point is represented by an averaged bicubic in catmull_clark_pieces(). The side of this square is
+  // 2^-max(levels, 4) of an element of the initial mesh. It does not depend on the refinement, so that spaces before and after a refinement are
+  // nested.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
-  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // elements by corner and spacing, with ring indices as control points
+  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing; control points are OneRing indices
   std::array<int, OneRing::size> numbers;
   std::iota(numbers.begin(), numbers.end(), 0);
   TileElements out;
@@ -129,7 +131,7 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   return out;
 }
 
-/// Converts sites on tiles to sites on all elements whose closure contains them.
+/// Converts sites on mesh elements (tiles) to sites on all Bezier elements whose closure contains them.
 std::vector<Site> on_elements(const Lattice& l, const Tiling& tiling, const TileElements& elements, const std::vector<Site>& on_tiles) {
   std::vector<Site> found;
   for (const Site& site : on_tiles) {

@@ -8,15 +8,16 @@ namespace tanktread::spline {
 
 /// Representation of the surface on the faces around an extraordinary point.
 enum class ExtraordinaryRule {
-  g1,             ///< bi-quartic, G1, as in the paper; the spaces are not nested under refinement at the point
-  catmull_clark,  ///< limit surface of Catmull-Clark subdivision in bicubic pieces, graded towards the point; nested
+  g1,             ///< one bi-quartic element per face, with continuous tangent planes (G1), as in the paper; not nested under refinement
+  catmull_clark,  ///< limit surface of Catmull-Clark subdivision in bicubic pieces, smaller towards the extraordinary point; nested
 };
 
-/// Returns the space of bicubic analysis-suitable T-splines of the mesh, with one function per anchor, in the order of anchors(mesh). The positions
-/// of elements are in units of the side of a macro face, so they agree between meshes of different resolution.
+/// Returns the space of bicubic analysis-suitable T-splines of the mesh, with one function per anchor (vertex with a control point), in the order
+/// of anchors(mesh). The positions of elements are in units of the side of a macro face (a face of the cube), so they do not depend on the
+/// resolution of the mesh.
 ///
-/// Regular elements have 16 functions, elements at an extraordinary point 19. Collocation point i is the generalised Greville point of anchor i: the
-/// mean of its three inner knots in each direction. If the anchor is an extraordinary point, it is this point.
+/// Regular elements have 16 functions, elements at an extraordinary point 19. Collocation point i is the generalised Greville point of anchor i:
+/// the mean of its three inner knots in each direction. If the anchor is an extraordinary point, the collocation point is the extraordinary point.
 Space space(const TMesh& mesh, ExtraordinaryRule rule);
 
 }  // namespace tanktread::spline

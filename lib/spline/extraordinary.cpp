@@ -17,7 +17,7 @@ constexpr int N = 3;
 
 Row unit(int point) { return Row::Unit(point); }
 
-/// Returns the row for face j from a row for face 0.
+/// Returns the coefficients of the 19 control points for face j from those for face 0, by rotation about the extraordinary point.
 Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
@@ -25,12 +25,13 @@ Row turned_row(const Row& r, int j) {
   return out;
 }
 
-/// Returns the inner Bezier point next to the corner `near` of a face, by averaging the four corners.
+/// Returns the Bezier point inside a face that is next to the corner `near`, as the weighted mean of the four corners of the face (weights of
+/// uniform cubic B-splines).
 Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last) {
   return (4 * near + 2 * next + opposite + 2 * last) / 9;
 }
 
-/// Returns control point (u, v) of the 4 x 4 net around face 0, u, v = 0 .. 3, where the face is between 1 and 2. Point (0, 0), across the
+/// Returns control point (u, v) of the 4 x 4 net around face 0, u, v = 0 .. 3; the corners of face 0 have u, v = 1, 2. Point (0, 0), across the
 /// extraordinary point, does not exist.
 Row net(int u, int v) {
   using R = Ring;
@@ -44,7 +45,7 @@ Row net(int u, int v) {
 }  // namespace
 
 Eigen::MatrixXd averaged_bicubic() {
-  // Returns the inner Bezier point of the face [u, u+1] x [v, v+1] of the net, next to its corner (cu, cv).
+  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the net that is next to its corner (cu, cv).
   auto near_corner = [](int u, int v, int cu, int cv) {
     return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
   };
@@ -55,7 +56,8 @@ Eigen::MatrixXd averaged_bicubic() {
       if (u == 0 && v == 0) {
         for (int j = 0; j < N; ++j) sum += turned_row(near_corner(1, 1, 0, 0), j) / N;
       } else {
-        // A Bezier point on a side is the mean of the two inner points next to it, and one at a corner the mean of the four inner points around it.
+        // A Bezier point on a side of a face is the mean of the two nearest Bezier points inside the adjacent faces. A Bezier point at a corner is
+        // the mean of the four nearest ones.
         struct Inner {
           int face, corner;
         };
@@ -77,12 +79,13 @@ namespace {
 
 constexpr double w0 = -1;  // 2 cos(2 pi / 3)
 
-// Unknowns: the changes of c1 of each spoke, and of the inner points (v, u) = 11, 12, 21, 22 of each face.
+// Unknowns: the changes of Bezier point c1 of each spoke (mesh line from the extraordinary point), and of the inner points (v, u) = 11, 12, 21, 22
+// of each face.
 enum { c1, b11, b12, b21, b22, kinds };
 constexpr int unknowns = kinds * N;
 int unknown(int kind, int j) { return kinds * ((j + N) % N) + kind; }
 
-/// Returns the Bezier points of the same surface in degree 4, row 5 v + u.
+/// Returns the Bezier points of the same surface after degree elevation from 3 to 4, row 5 v + u.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   Eigen::MatrixXd biquartic(25, Ring::size);
   const Eigen::MatrixXd up = elevation(3, 4);
@@ -96,7 +99,8 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   return biquartic;
 }
 
-/// G1 conditions of the spokes for the changes x: G x = g, with three conditions per spoke.
+/// Conditions G x = g for continuous tangent planes (G1) across the three mesh lines from the extraordinary point (spokes), with x the
+/// changes of the Bezier points; three conditions per spoke.
 struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };
@@ -131,7 +135,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// Returns the change of point (v, u) on the 5 x 5 grid of face j, as a row of coefficients of the unknowns.
+/// Returns the change of Bezier point (v, u) of the 5 x 5 points of face j, as a row of coefficients of the unknowns.
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;
@@ -140,7 +144,8 @@ Eigen::RowVectorXd change(int v, int u, int j) {
   return d;
 }
 
-/// Returns the matrix L of differences between the changes of neighbouring points on all grids. The Dirichlet energy is |L x|^2.
+/// Returns the matrix L of differences between the changes of neighbouring Bezier points on all faces. The discrete Dirichlet energy of the changes
+/// x is |L x|^2.
 Eigen::MatrixXd differences() {
   Eigen::MatrixXd L(N * 40, unknowns);
   int row = 0;
@@ -153,7 +158,7 @@ Eigen::MatrixXd differences() {
   return L;
 }
 
-/// Returns the x that minimises |L x| subject to G x = g, as a particular solution plus an element of the kernel of G.
+/// Returns the x that minimises |L x| subject to G x = g (`on`), as a particular solution plus an element of the kernel of G.
 Eigen::MatrixXd least(const Eigen::MatrixXd& L, const Conditions& on) {
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(on.G);
   const Eigen::MatrixXd kernel = lu.kernel(), particular = lu.solve(on.g);
@@ -174,7 +179,8 @@ Eigen::MatrixXd constrained_biquartic() {
 
 namespace {
 
-/// Returns the ring index of the lattice point (u, v) of sector j, with u, v = 0 .. 2. A negative coordinate refers to the neighbouring sector.
+/// Returns the index in OneRing of the control point (u, v), u, v = 0 .. 2, of sector j (the face between spokes j and j + 1). A negative
+/// coordinate refers to the neighbouring sector.
 int ring_point(int j, int u, int v) {
   if (v < 0) return ring_point(j + 2, -v, u);
   if (u < 0) return ring_point(j + 1, v, -u);
@@ -189,13 +195,13 @@ int ring_point(int j, int u, int v) {
 
 Row coarse(int j, int u, int v) { return Row::Unit(ring_point(j, u, v)); }
 
-/// Returns the point (a, b) of the subdivided net in sector j, with a, b in half units of the original net.
+/// Returns control point (a, b) of sector j after one subdivision. The unit of a and b is half the spacing of the original control net.
 Row fine(int j, int a, int b) {
   if (b < 0) return fine(j + 2, -b, a);
   if (a < 0) return fine(j + 1, b, -a);
   const int u = a >> 1, v = b >> 1;
-  auto face = [&](int x, int y) -> Row {  // mean of the face with lower left corner (x, y)
-    // x or y may be -1. Then the face is in the neighbouring sector, which ring_point finds.
+  auto face = [&](int x, int y) -> Row {  // mean of the four control points of the face whose lower left corner is (x, y)
+    // x or y may be -1. In this case the face is in the neighbouring sector, whose control points ring_point() finds.
     return (coarse(j, x, y) + coarse(j, x + 1, y) + coarse(j, x + 1, y + 1) + coarse(j, x, y + 1)) / 4;
   };
   if ((a & 1) && (b & 1)) return face(u, v);
@@ -215,7 +221,8 @@ Row fine(int j, int a, int b) {
   return (Q + 2 * R + P) / 4;
 }
 
-/// Returns the Bezier points, shape (16, 19), of the element [a, a + 1] x [b, b + 1] (half units) of sector 0, which is a uniform bicubic.
+/// Returns the Bezier points, shape (16, 19), of the element [a, a + 1] x [b, b + 1] of sector 0, in units of half the original spacing. The
+/// subdivided control net is regular around this element.
 Eigen::MatrixXd quarter(int a, int b) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(16, Ring::size);
   const std::array<double, 5> uniform{-2, -1, 0, 1, 2};

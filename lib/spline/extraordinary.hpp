@@ -1,6 +1,6 @@
 #pragma once
-// The surface around an extraordinary point of valence 3: either bi-quartic one-ring elements that are G1 across the spokes, by constrained Bezier
-// extraction, or the limit surface of Catmull-Clark subdivision in bicubic pieces.
+// The surface around an extraordinary point of valence 3: either bi-quartic elements with continuous tangent planes (G1) across the mesh lines from
+// the point, by constrained Bezier extraction, or the limit surface of Catmull-Clark subdivision in bicubic pieces.
 
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace tanktread::spline {
 
-/// Indices of the 19 control points around an extraordinary point P. Each group has j = 0, 1, 2: the ends E_j of the spokes, the opposite corners F_j
-/// of the faces between spokes j and j + 1, and outside them A_j (beyond E_j), B_j (beyond F_j along spoke j), C_j (diagonal) and D_j (beyond F_j
-/// along spoke j + 1).
+/// Indices of the 19 control points around an extraordinary point P. Each group has j = 0, 1, 2: the ends E_j of the three spokes (mesh lines from
+/// P), the opposite corners F_j of the faces between spokes j and j + 1, and outside them A_j (beyond E_j), B_j (beyond F_j along spoke j), C_j
+/// (diagonal) and D_j (beyond F_j along spoke j + 1).
 struct OneRing {
   static constexpr int size = 19;
   static constexpr int P = 0, E = 1, F = 4, A = 7, B = 10, C = 13, D = 16;
@@ -22,14 +22,15 @@ Eigen::MatrixXd averaged_bicubic();
 
 /// Returns the bi-quartic Bezier points of face 0, row 5 v + u. Shape (25, 19). Rows sum to 1.
 ///
-/// c0 .. c3 are the control points of the cubic along a spoke. c0, c2, c3 and all points that the outer neighbours need for C1 keep their values.
-/// c1 and the four inner points of each face change such that across the spoke t -> c(t)
+/// c0 .. c3 are the control points of the cubic c(t) along a spoke (mesh line from the extraordinary point). c0, c2, c3 and all points that determine
+/// the tangent planes on the outer sides of the faces keep their values, so the surface stays C1 there. c1 and the four inner points of each face
+/// change such that across the spoke
 ///
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///
-/// and such that the Dirichlet energy of the change over the 5 x 5 grids of all faces is smallest.
-/// This is the full least-squares form of the extraction in reference [70] of the paper. The published data omit the inner point (2, 2) for the outer
-/// points of the ring and so violate the partition of unity.
+/// and such that the Dirichlet energy of the change over the 5 x 5 grids of all faces is smallest. This is the full least-squares form of the
+/// extraction in reference [70] of the paper. The published data omit the inner point (2, 2) for the outer points of the ring and so violate the
+/// partition of unity.
 Eigen::MatrixXd constrained_biquartic();
 
 /// One bicubic piece of face 0 of a one-ring. The face is the unit square, with the extraordinary point at u = v = 0.

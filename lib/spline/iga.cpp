@@ -23,7 +23,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Degrees and numbers of functions that the quadrature and the membrane support.
+/// Degrees of elements and largest number of functions per element that the quadrature and the membrane code support.
 constexpr int least_degree = 2, largest_degree = 6, most_functions = 64;
 
 /// Reads the file word by word and keeps the line number for messages.
@@ -124,10 +124,10 @@ Site on_edge(int element, int edge, double x) {
 
 double extent(const Net& net) { return (net.colwise().maxCoeff() - net.colwise().minCoeff()).norm(); }
 
-/// Returns candidate point p. Every element has nine: its corners, mid-sides and centre, s fastest.
+/// Returns candidate collocation point p. Every element has nine candidates: its corners, mid-sides and centre, numbered with s fastest.
 Site place_of_element(std::size_t p) { return {int(p / 9), p % 3 / 2.0, p % 9 / 3 / 2.0}; }
 
-/// Returns for each candidate point the index of the representative of all candidates at the same position in space.
+/// Returns for each candidate point the index of the first candidate at the same position in space.
 std::vector<int> numbered_places(const Space& space, const Net& net) {
   std::vector<Vec3> all;
   for (std::size_t p = 0; p < 9 * space.elements.size(); ++p) all.push_back(frame(space, net, place_of_element(p)).x);
@@ -142,21 +142,23 @@ constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// Returns the fault of a surface that is not closed or not oriented outwards, as the end of a sentence; empty if there is none.
+/// Returns a description of the fault if a surface is not closed or not oriented outwards, to be used as the end of an error message; empty if
+/// there is no fault.
 ///
-/// Sides of elements are matched by their end points and midpoints. Sides without a partner (at T-junctions or holes) must cancel as curves: their
-/// line integrals of a few smooth fields must sum to 0. If there is a hole, or an element is missing or inverted, they do not. The volume must be
-/// positive.
+/// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
+/// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
+/// not 0. The volume must be positive.
 std::string fault_of_closed_surface(const Space& space, const Net& net) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
   const std::vector<int> places = numbered_places(space, net);
-  // Sides without a partner, by their ends and middle. The partner runs in the opposite direction.
+  // Sides of elements without a matching side so far, by the indices of their end points and midpoint. The matching side runs in the opposite
+  // direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
   int once = -1, twice = -1;
   for (int k = 0; k < int(space.elements.size()); ++k)
     for (int e = 0; e < 4; ++e) {
       const int a = places[9 * k + along_edge[e][0]], m = places[9 * k + along_edge[e][1]], b = places[9 * k + along_edge[e][2]];
-      if (a == m && m == b) continue;  // side that is collapsed to a pole
+      if (a == m && m == b) continue;  // side that is collapsed to a pole, a single point
       if (open.erase({b, m, a})) continue;
       const auto [side, is_new] = open.try_emplace({a, m, b}, k, e);
       if (!is_new && twice < 0) once = side->second.first, twice = k;
@@ -165,7 +167,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
     return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
            ", so one of them is inverted.";
 
-  // Integrals of cos(k_i . x) dx and sin(k_i . x) dx over all sides without a partner.
+  // Integrals of cos(k_i . x) dx and sin(k_i . x) dx, with fixed wave vectors k_i, over all sides without a matching side.
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
   double length = 0;
   const double size = extent(net);
@@ -207,7 +209,7 @@ std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net
   for (std::size_t p = 0; p < places.size(); ++p) {
     const Site site = place_of_element(p);
     std::vector<Site>& sites = at_place[places[p]];
-    if (!sites.empty() && sites.back().element == site.element) continue;  // second candidate on a side that is collapsed to a pole
+    if (!sites.empty() && sites.back().element == site.element) continue;  // second site on a side that is collapsed to a pole
     sites.push_back(site);
     if (sites.size() > 1) continue;
     const Element& e = space.elements[site.element];

@@ -14,16 +14,17 @@ struct SplineSurface {
   Net net;
 };
 
-/// Reads a surface. The format: `#` begins a comment; `type surface`; `nodeN n`, `elemN m`; n lines `node x y z w`; m blocks of `belem nfun ps pt`, a
-/// line of nfun control points counted from 0, and nfun lines of (ps + 1)(pt + 1) Bernstein coefficients, s fastest. Later lines (`set`, `domain`)
-/// are skipped.
+/// Reads a surface. The format: `#` begins a comment; `type surface`; `nodeN n`, `elemN m`; n lines `node x y z w`; m blocks of `belem nfun ps pt`,
+/// a line of nfun control points counted from 0, and nfun lines of (ps + 1)(pt + 1) Bernstein coefficients, s fastest. Later lines (`set`,
+/// `domain`) are skipped.
 ///
-/// Throws UserError, which names the file and the line or element, if the text does not have this format, a weight is not 1, ps and pt differ or are
-/// not 2 to 6, an element has more than 64 functions, the functions of an element do not sum to 1 within 1e-6, a control point has no function, the
-/// surface is not closed, or one or all of its elements are inside out. Files have few digits, so the functions are divided by their sum.
+/// Throws UserError, which names the file and the line or element, if the text does not have this format, a weight is not 1, ps and pt differ or
+/// are not 2 to 6, an element has more than 64 functions, the functions of an element do not sum to 1 within 1e-6, a control point has no function,
+/// the surface is not closed, or one or all of its elements are inside out. Files have few digits, so the functions are divided by their sum.
 ///
-/// Every element is its own macro face. Candidates for collocation points are the corners, mid-sides and centres of the elements. Each function gets
-/// the candidate where it is largest. Each candidate is assigned to one function only, in descending order of the values.
+/// Every element is a macro face of its own (positions in the element are positions in the face). Candidates for collocation points are the
+/// corners, mid-sides and centres of the elements. Each function gets the candidate where it is largest. Each candidate is assigned to one function
+/// only, in descending order of the values.
 SplineSurface read_iga(const std::filesystem::path& file);
 
 /// Writes a surface with 17 digits, so that reading it returns the same numbers. Throws UserError if the file cannot be written.

@@ -10,8 +10,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Computes the slots, cells and backward slots of every vertex from the corners of the cells. The cell between slots 0 and 1 of a
-/// vertex is its cell of lowest index.
+/// Computes, for every vertex, its neighbours and cells by direction (slot), and the slots of the neighbours that point back, from the corners of
+/// the cells. The cell between slots 0 and 1 of a vertex is its cell of lowest index.
 void connect(Lattice& l) {
   const int n = int(l.position.size());
   l.neighbour.assign(n, {-1, -1, -1, -1});
@@ -72,7 +72,7 @@ int room(const Lattice& l, int cell, int turn) {
   return cells[turn];
 }
 
-/// Moves n cells in direction w.turn + offset.
+/// Returns the walker (cell and direction) after n cells in the direction w.turn + offset.
 Walker move(const Lattice& l, Walker w, int n, int offset) {
   const int stride[4] = {1, l.units, -1, -l.units};
   while (n > 0) {
@@ -95,7 +95,7 @@ Walker left(const Lattice& l, Walker w, int n) { return move(l, w, n, 1); }
 
 PlacedEdge placed(const Lattice& l, Ray e) {
   const int c = l.cell[e.vertex][e.slot], k = l.corner[e.vertex][e.slot];
-  if (c < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // the edge is on the border of an open face
+  if (c < 0) return {0, e.vertex % l.units, e.vertex / l.units, true};  // the edge is on the border of the polar lattice
   return {l.face_of(c), l.x_of(c) + (k == 1), l.y_of(c) + (k == 2), k % 2 == 0};
 }
 

@@ -10,29 +10,30 @@
 
 namespace tanktread::spline {
 
-/// A vertex and a direction (slot) at this vertex.
+/// A vertex and a direction at this vertex. The direction is an index (slot), 0 .. 3 counter-clockwise.
 struct Ray {
   int vertex, slot;
 };
 
-/// Unit quadrilaterals (cells) on a few square macro faces, which are joined along their sides to one closed surface. The lattice does not change; a
-/// T-mesh is a subset of its edges. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary point).
-/// The parity of a slot is its axis. Slots define straight on, left and right, so rotations between faces need no special treatment.
+/// Unit quadrilaterals (cells) on a few square macro faces, which are joined along their sides to one closed surface. The lattice does not change;
+/// a T-mesh is a subset of its edges. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary
+/// point). The parity of a slot is its axis. Straight on, left and right follow from the slots, so differently oriented face coordinates need no
+/// special treatment.
 struct Lattice {
   int faces = 0;
   int units = 0;               ///< number of cells along x of a macro face; on the cube also along y
   int rows = 0;                ///< number of cells along y, including `pad` rows at each end
-  int pad = 0;                 ///< number of rows of zero height (repeated knots) at each end of an open face
-  int base = 0;                ///< number of cells along a side of one base element (a power of two)
+  int pad = 0;                 ///< number of rows of zero height (repeated end knots) at each pole; 0 on the cube
+  int base = 0;                ///< number of cells along a side of one element of the initial mesh (a power of two)
   std::vector<Vec3> position;  ///< position of each vertex on the cube [-1, 1]^3, or on the unit sphere for polar_lattice
 
-  std::vector<std::array<int, 4>> neighbour;        ///< vertex at the other end of slot k of each vertex; -1 if there is none
-  std::vector<std::array<std::uint8_t, 4>> back;    ///< slot of this neighbour that points back
-  std::vector<std::array<int, 4>> cell;             ///< cell between slots k and k + 1 of each vertex; -1 if there is none
-  std::vector<std::array<std::uint8_t, 4>> corner;  ///< index of the vertex among the corners of this cell
+  std::vector<std::array<int, 4>> neighbour;        ///< neighbour of each vertex in direction (slot) k, or -1
+  std::vector<std::array<std::uint8_t, 4>> back;    ///< direction at neighbour k that points back to the vertex
+  std::vector<std::array<int, 4>> cell;             ///< cell between directions k and k + 1 at each vertex, or -1
+  std::vector<std::array<std::uint8_t, 4>> corner;  ///< corner number 0 .. 3 of each vertex in its cell k
 
   std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, outward orientation
-  std::vector<std::array<std::uint8_t, 4>> slot;  ///< slot at corner k of each cell that points to corner k + 1
+  std::vector<std::array<std::uint8_t, 4>> slot;  ///< direction at corner k of each cell towards corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3
   std::vector<std::uint8_t> is_extraordinary;  ///< for each vertex, nonzero if it is extraordinary
@@ -47,29 +48,32 @@ struct Lattice {
   int x_of(int c) const { return c % units; }
   int y_of(int c) const { return c / units % rows; }
 
-  /// Returns the parametric y of the horizontal line under row y, in units.
+  /// Returns the parametric y, in lattice units, of the lower border of cell row y. Rows of zero height do not count.
   int height(int y) const { return std::clamp(y - pad, 0, rows - 2 * pad); }
   bool is_flat(int c) const { return y_of(c) < pad || y_of(c) >= rows - pad; }
-  bool ends(int v, int k) const { return neighbour[v][k] < 0; }  ///< returns whether slot k leads over the border of an open face
-  /// Returns the parametric length of a number of unit steps straight on.
+  bool ends(int v, int k) const { return neighbour[v][k] < 0; }  ///< whether the polar lattice ends at v in direction (slot) k
+  /// Returns the parametric length of `steps` unit edges straight on from vertex v in direction (slot) k. Edges in rows of zero height have length
+  /// 0.
   int length(int v, int k, int steps) const;
 
-  /// Returns the ray of the same edge from its other end.
+  /// Returns the same edge as a ray from its other end.
   Ray reverse(Ray r) const { return {neighbour[r.vertex][r.slot], back[r.vertex][r.slot]}; }
 
-  /// Returns the side of a cell from corner k to the next corner.
+  /// Returns the side of cell c from corner k to corner k + 1, as a ray.
   Ray side(int c, int k) const { return {corners[c][k], slot[c][k]}; }
 
-  /// Sets or clears an edge at both of its ends. `edges` has one entry per vertex, with bit k for slot k.
+  /// Sets or clears an edge at both of its ends. `edges` has one entry per vertex; its bit k is the edge in direction (slot) k.
   void set(std::vector<std::uint8_t>& edges, Ray edge, bool present) const;
 };
-/// Returns the ray one unit further, straight on. If it arrives at an extraordinary point, straight on is not defined, and `slot` points back.
+/// Returns the next ray on the same line, one unit edge further. If that vertex is an extraordinary point, where straight on is not defined, the
+/// slot of the result points back.
 inline Ray step(const Lattice& l, Ray r) {
   const auto [v, back] = l.reverse(r);
   return {v, l.is_extraordinary[v] ? back : (back + 2) & 3};
 }
 
-/// A unit edge in the coordinates of a macro face: from (x, y) one step along x if `horizontal`, otherwise along y. `line` is the index of its line.
+/// A unit edge in the coordinates of a macro face: from (x, y) one step along x if `horizontal`, otherwise along y. `line` is y if the edge is
+/// horizontal, otherwise x.
 struct PlacedEdge {
   int face, x, y;
   bool horizontal;
@@ -80,8 +84,8 @@ PlacedEdge placed(const Lattice& l, Ray edge);
 /// Returns the distances of the nearer and the farther end of an edge from a corner of its face. The distance is the larger coordinate difference.
 std::array<int, 2> distances(const Lattice& l, const PlacedEdge& e, int corner);
 
-/// Converts coordinates (a, b) in a square of side n, with the origin at corner `turn` and the first axis along the side that begins there, to
-/// coordinates with the origin at corner 0.
+/// Converts coordinates (a, b) in a square of side n, with the origin at corner `turn` and the first axis along the side from there to the next
+/// corner, to coordinates with the origin at corner 0.
 template <class Number>
 std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
   const std::array<Number, 2> places[4] = {{a, b}, {n - b, a}, {n - a, n - b}, {b, n - a}};
@@ -101,9 +105,9 @@ Walker left(const Lattice& l, Walker w, int n);
 /// points.
 Lattice cube_lattice(int elements_per_side, int levels);
 
-/// Returns a lattice of one face, periodic in x (azimuth) and open in y (from the south pole at y = 0 to the north pole), with a row of zero height
-/// at each end for the repeated end knots. It has m 2^levels by r 2^levels + 2 cells. The index of a vertex is x + y m 2^levels. Positions are on the
-/// unit sphere, with the poles on the x3 axis.
+/// Returns a lattice of one face, periodic in x (azimuth) and not periodic in y (from the south pole at y = 0 to the north pole), with a row of
+/// cells of zero height at each pole for the repeated end knots. It has m 2^levels by r 2^levels + 2 cells. The index of a vertex is x + y m
+/// 2^levels. Positions are on the unit sphere, with the poles on the x3 axis.
 Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int levels);
 
 }  // namespace tanktread::spline

@@ -18,7 +18,7 @@ std::vector<Ray> image(const Lattice& l, const LatticeMap& map, const std::vecto
 
 TileImage image(const Lattice& l, const LatticeMap& map, const Tiling& tiling, int tile) {
   const Rectangle& r = tiling.tiles[tile];
-  const Ray side = image(l, map, sides(l, r)[0]);  // the image of the tile is on the left of this ray, or on the right if mirrored
+  const Ray side = image(l, map, sides(l, r)[0]);  // the image of the element is on the left of this ray, or on its right if mirrored
   const int slot = map.mirrored ? (side.slot + l.valence(side.vertex) - 1) % l.valence(side.vertex) : side.slot;
   return {tiling.tile_of_cell[l.cell[side.vertex][slot]], (l.corner[side.vertex][slot] % 2 == 1) != map.mirrored};
 }

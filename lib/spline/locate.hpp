@@ -6,7 +6,8 @@
 
 namespace tanktread::spline {
 
-/// A point of the parametric domain: macro face, and coordinates in [0, 1] along its sides. It is the same in all meshes on the same faces.
+/// A point of the parametric domain: a macro face (face of the cube, or the whole polar domain) and coordinates in [0, 1] along its sides. These do
+/// not depend on the mesh.
 struct Place {
   int face = 0;
   double x = 0, y = 0;
@@ -16,10 +17,12 @@ struct Place {
 Place place(const Lattice& lattice, int vertex);
 Place place(const Space& space, const Site& site);
 
-/// Returns for every Bezier element the element of elements(mesh) that contains it. A mark of a Bezier element marks this element.
+/// Returns for every Bezier element the index of the element of the T-mesh, in elements(mesh), that contains it. To mark a Bezier element for
+/// refinement is to mark this T-mesh element.
 std::vector<int> mesh_elements(const TMesh& mesh, const Space& space);
 
-/// Finds the element of lowest index whose closure contains a parametric point. It is built once per space; the space must outlive it.
+/// Finds the Bezier element of lowest index whose closure contains a parametric point. A locator is built once per space; the space must outlive
+/// it.
 class Locator {
  public:
   explicit Locator(const Space& space);
@@ -27,8 +30,8 @@ class Locator {
 
  private:
   const Space& space_;
-  int side_ = 1;                           // number of buckets along a side of a face
-  std::vector<std::vector<int>> buckets_;  // elements that overlap each bucket, ascending
+  int side_ = 1;                           // number of search buckets along a side of a face
+  std::vector<std::vector<int>> buckets_;  // indices of the elements that overlap each search bucket, ascending
 };
 
 }  // namespace tanktread::spline

@@ -18,7 +18,7 @@ class Places {
 
   const std::vector<Vec3>& all() const { return places_; }
 
-  /// Returns the index of the first point (in the order along a fixed direction) within the tolerance of x, or -1 if there is none.
+  /// Returns the index of the first point (in ascending order of the coordinate `along`) within the tolerance of x, or -1 if there is none.
   int at(const Vec3& x) const {
     const double from = along(x) - 2 * tolerance_;
     for (auto i = std::ranges::lower_bound(order_, std::pair(from, 0)); i != order_.end() && i->first <= from + 4 * tolerance_; ++i)
@@ -27,7 +27,7 @@ class Places {
   }
 
  private:
-  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // a direction in which no mesh is aligned
+  static double along(const Vec3& x) { return x.dot(Vec3(0.61, 0.53, 0.59)); }  // coordinate in a direction that no mesh is aligned with
 
   std::vector<Vec3> places_;
   double tolerance_;

@@ -14,8 +14,8 @@
 namespace tanktread::spline {
 namespace {
 
-/// Returns the blossom, at three knots (lattice units), of the periodic cubic spline whose coefficients are the cosines (or sines) of the azimuths of
-/// the base mesh.
+/// Returns the blossom (polar form), at three knots (lattice units), of the periodic cubic spline whose coefficients are the cosines (or sines) of
+/// the azimuths of the initial mesh.
 double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
   const int m = l.units / l.base, span = int(std::floor(knots[1] / l.base));
   double d[4];
@@ -31,15 +31,15 @@ double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, b
   return d[3];
 }
 
-/// A control point of the tensor net near a pole: its anchor and its position in the tangent plane at the pole. The unit of length is the height of
-/// the first element of the base mesh.
+/// A control point of the tensor-product net near a pole: its anchor (lattice vertex) and its position in the tangent plane at the pole. The unit
+/// of length is the height of the first element of the initial mesh.
 struct PolePoint {
   int anchor;
   bool is_pole;
   Eigen::Vector2d place;
 };
 
-/// Returns three of these points around the origin whose triangle is largest: no exchange of one point makes it larger.
+/// Returns three of the points p around the origin whose triangle has a large area: no exchange of one point makes it larger.
 std::array<int, 3> largest_triangle(const std::vector<Eigen::Vector2d>& p) {
   constexpr double clearly = 1e-9;
   std::array<int, 3> best{0, 0, 0};
@@ -74,7 +74,7 @@ std::array<Eigen::Vector2d, 3> around(const std::array<Eigen::Vector2d, 3>& midd
   return {sum - 2 * middle[0], sum - 2 * middle[1], sum - 2 * middle[2]};
 }
 
-/// Weight of the function of an anchor in the function of a control point.
+/// Weight of the function of an anchor (vertex of the tensor-product net) in the function of a control point.
 struct Share {
   int point;
   double weight;
@@ -127,7 +127,7 @@ class Shares {
     Eigen::Matrix3d corners;
     for (int k = 0; k < 3; ++k) {
       corners.col(k) << 1, corner[k];
-      const PolePoint& middle = at_pole[middles[(k + 1) % 3]];  // midpoint of a side that ends at the corner
+      const PolePoint& middle = at_pole[middles[(k + 1) % 3]];  // midpoint of a triangle side that ends at corner k
       sites[k] = middle.is_pole ? -1 : middle.anchor;
     }
     const Eigen::Matrix3d barycentric = corners.inverse();
@@ -143,8 +143,8 @@ class Shares {
 /// Returns knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
 
-/// Returns the order of the Bezier points of an element in which the transform expects them, with the pole at u = 1: Q_(v u) = element[order[4 v +
-/// u]].
+/// Returns the order in which the transform of degenerate elements expects the Bezier points of an element at a pole, with the pole at u = 1: Q_(v
+/// u) = element[order[4 v + u]]. `ahead`: pole at the end of the meridian.
 std::array<int, 16> seen_from_base(bool ahead) {
   std::array<int, 16> order;
   for (int v = 0; v < 4; ++v)
@@ -152,7 +152,7 @@ std::array<int, 16> seen_from_base(bool ahead) {
   return order;
 }
 
-/// Replaces the elements at the poles by pieces, and sites on these elements by sites on the pieces.
+/// Replaces the degenerate elements at the poles by non-degenerate pieces, and converts sites on these elements to sites on the pieces.
 class Transform {
  public:
   explicit Transform(int subdivisions) : pieces_(pole_pieces(subdivisions)) {}
@@ -184,7 +184,7 @@ class Transform {
   std::vector<PolePiece> pieces_;
 };
 
-/// Returns the sites of the pole: one on the side of every tile that is collapsed to the pole.
+/// Returns the sites of the pole: one on every element that has a side collapsed to the pole.
 std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
   std::vector<Site> out;
   for (int k = 0; k < int(tiling.tiles.size()); ++k) {
@@ -194,7 +194,7 @@ std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahe
   return out;
 }
 
-/// Returns the generalised Greville points of the control points as sites on the tiles.
+/// Returns the generalised Greville points of the control points as sites on the mesh elements (tiles).
 std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunctions& f, const Shares& shares) {
   const Lattice& l = *mesh.lattice;
   std::vector<std::vector<Site>> out(shares.n_points());
@@ -216,7 +216,7 @@ std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunct
   return out;
 }
 
-/// Returns the elements of the tiles with all their functions.
+/// Returns the Bezier elements of the mesh elements (tiles) with all their functions.
 std::vector<Element> tile_elements(const Lattice& l, const TileFunctions& f, const Shares& shares) {
   std::vector<Element> out(f.tiling.tiles.size());
   std::vector<std::map<int, Eigen::Matrix<double, 1, 16>>> functions(out.size());
@@ -281,7 +281,8 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
-    std::vector<int> place(out.elements.size());  // k for element k of `kept`; -1 - k if the first piece of the element is pieces[k]
+    // for old element k: its new index, or -1 - j if the element is replaced by pieces that begin at pieces[j]
+    std::vector<int> place(out.elements.size());
     std::vector<bool> at_end(out.elements.size());
     for (std::size_t t = 0; t < out.elements.size(); ++t) {
       const Rectangle& r = f.tiling.tiles[t];

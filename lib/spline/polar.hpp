@@ -1,6 +1,6 @@
 #pragma once
-// Structured closed surface: tensor product of a periodic cubic in azimuth and an open cubic along the meridian, with a pole at each end. The pole at
-// the beginning of the meridian is called "behind", the pole at its end "ahead".
+// Structured closed surface: tensor product of a periodic cubic in azimuth and an open cubic along the meridian, with a pole at each end. Below,
+// the pole at the beginning of the meridian is called "behind", the pole at its end "ahead".
 
 #include <array>
 #include <optional>
@@ -13,9 +13,9 @@ namespace tanktread::spline {
 
 /// Representation of the surface around a pole.
 enum class PoleRule {
-  plain,             ///< one C0 function per pole; elements have one side that is collapsed to the pole
-  bezier_transform,  ///< functions of `plain` on non-degenerate elements (pole_pieces), as in the paper
-  c1,                ///< three functions on a control triangle per pole, with continuous tangent planes; elements as in `plain`
+  plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
+  bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces, as in the paper
+  c1,                ///< three functions per pole, such that the tangent plane is continuous; elements as in `plain`
 };
 
 /// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
@@ -26,9 +26,9 @@ struct PolarMesh {
   int subdivisions = 2;  ///< elements at the poles are divided in azimuth into 2^subdivisions before the transform
 };
 
-/// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (pole behind) to r (pole ahead), azimuth v
-/// in elements, and distance from the axis divided by the distance of its row. With `c1`, the three control points of a pole replace row 1 of the
-/// tensor net, at other distances from the axis than row 1.
+/// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (first pole, "behind") to r (last pole,
+/// "ahead"), azimuth v in elements, and its distance from the axis divided by the distance of its row of control points. With `c1`, the three
+/// control points of a pole replace row 1 of the tensor net, at distances from the axis that differ from row 1.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
@@ -36,26 +36,26 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
 /// Returns the space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
 /// t along the meridian towards the pole ahead; the pieces of the transform come last. With `plain`, a pole is a whole side of m elements, and its
-/// sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size in
-/// azimuth.
+/// sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size
+/// in azimuth.
 ///
-/// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions,
-/// d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then
+/// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions, d_j =
+/// (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then
 ///
 ///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
 ///
-/// Three of the d_j are the midpoints of the sides of the triangle. They are chosen to make it as large as possible. Then it contains all d_j, and
-/// l_k >= 0. The functions are collocated at the generalised Greville points of these three, so condition numbers are those of tensor-product
-/// splines.
+/// The triangle has three of the d_j as the midpoints of its sides. They are chosen such that the triangle is as large as possible, so it contains
+/// all d_j, and all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of these three d_j, so the
+/// condition numbers of collocation are those of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
-/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the poles,
-/// in the order of the lattice vertices.
+/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the
+/// poles, in the order of the lattice vertices.
 ///
-/// With `c1`, knot insertion transfers the positions d_j of the base mesh to the finer functions of row 1. They are multiplied by the height of the
-/// first element divided by its height in the base mesh, so spaces of nested meshes are nested. The triangle is chosen again from these positions and
-/// the pole. `plain` spaces are nested, too. `bezier_transform` spaces are not, but they have the control points of the `plain` spaces, between which
-/// fields can be transferred.
+/// With `c1`, knot insertion transfers the positions d_j of the base mesh to the finer functions of row 1. These positions are multiplied by the
+/// ratio of the height of the first element to its height in the base mesh, so spaces of nested meshes are nested. The triangle is chosen again
+/// from these positions and the pole. `plain` spaces are nested, too. `bezier_transform` spaces are not, but they have the control points of the
+/// `plain` spaces, between which fields can be transferred.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
@@ -76,13 +76,14 @@ using Corners = std::array<Eigen::Vector3d, 4>;
 /// bilinear map is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
-/// Returns the three quadrilaterals between the corners, the mid-sides and the barycentre: at T_003, at the pole, at T_030.
+/// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle: at the corner T_003, at the pole, at
+/// the corner T_030.
 const std::array<Corners, 3>& thirds_of_triangle();
 
-/// One non-degenerate piece of a degenerate element.
+/// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of v of the triangle that contains the piece
-  Corners corners;             ///< corners of the piece in this triangle
+  double from = 0, to = 1;     ///< range of the coordinate v, of the degenerate element, over the triangle that contains the piece
+  Corners corners;             ///< corners of the piece in barycentric coordinates of this triangle
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
   /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.

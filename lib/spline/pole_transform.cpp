@@ -51,7 +51,7 @@ Eigen::MatrixXd triangle_of_degenerate() {
 }
 
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
-  // Computes the values at 4 x 4 points and converts them to Bezier points.
+  // Evaluates the polynomial at 4 x 4 points and computes the Bezier points of its interpolant.
   constexpr double factorial[4] = {1, 1, 2, 6};
   Eigen::MatrixXd values(16, 10), bernstein_values(16, 16);
   double U[4], V[4];
@@ -85,7 +85,7 @@ std::optional<std::array<double, 2>> PolePiece::local(double u, double v) const 
   if (within < -margin || within > 1 + margin) return {};
   const Eigen::Vector2d wanted(u, (1 - u) * within);
   Eigen::Vector2d at(0.5, 0.5);
-  for (int k = 0; k < 20; ++k) {  // Newton's method on the bilinear map
+  for (int k = 0; k < 20; ++k) {  // Newton's method for the inverse of the bilinear map
     const Eigen::Vector3d dU = (1 - at[1]) * (corners[1] - corners[0]) + at[1] * (corners[2] - corners[3]);
     const Eigen::Vector3d dV = (1 - at[0]) * (corners[3] - corners[0]) + at[0] * (corners[2] - corners[1]);
     Eigen::Matrix2d slope;
@@ -93,7 +93,7 @@ std::optional<std::array<double, 2>> PolePiece::local(double u, double v) const 
     at += slope.inverse() * (wanted - place(corners, at[0], at[1]).head<2>());
     at = at.cwiseMax(-0.5).cwiseMin(1.5);
   }
-  // If the point is outside the piece, the iteration may end at a fold of the map, or as NaN.
+  // If the point is outside the piece, the iteration may not converge to a solution (singular Jacobian, NaN).
   if (!((place(corners, at[0], at[1]).head<2>() - wanted).norm() <= margin)) return {};
   if (!(at.minCoeff() >= -margin && at.maxCoeff() <= 1 + margin)) return {};
   for (double& x : at) x = std::abs(x) < margin ? 0 : std::abs(x - 1) < margin ? 1 : x;

@@ -10,7 +10,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Continues a path that arrives at the end knot through the row of zero height to the border.
+/// Extends a path that arrives at an end of the polar lattice through the row of zero height there, to the border of the lattice.
 void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   while (!l.ends(ray.vertex, ray.slot) && l.length(ray.vertex, ray.slot, 1) == 0) {
     path.push_back(ray);
@@ -18,7 +18,7 @@ void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   }
 }
 
-/// Returns the unit edges of the line that bisects a tile: across s from bottom to top, or across t from left to right.
+/// Returns the unit edges of the line that bisects a mesh element: from bottom to top if `across_s`, otherwise from left to right.
 std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   const int cell = across_s ? l.cell_at(r.face, r.x + r.width / 2, r.y) : l.cell_at(r.face, r.x, r.y + r.height / 2);
   Ray ray = l.side(cell, 0);
@@ -30,7 +30,7 @@ std::vector<Ray> mid_line(const Lattice& l, const Rectangle& r, bool across_s) {
   return path;
 }
 
-/// Returns the first bay of the face extension of a T-junction.
+/// Returns the first part of the face extension of a T-junction, up to the first perpendicular edge.
 std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   std::vector<Ray> path;
   Ray r{t.vertex, t.missing};
@@ -42,7 +42,8 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   return path;
 }
 
-/// Returns crossings + missing / 2 after a trial insertion, plus a penalty if the bay enters the rings of an extraordinary point.
+/// Returns the number of rule violations, crossings + missing / 2, after a trial insertion of the edges, plus a penalty if they enter the uniform
+/// rings of an extraordinary point.
 double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
   extended.insert(bay);
@@ -51,7 +52,8 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   return score;
 }
 
-/// Returns the bay of the candidate with the smallest harm. Among bays of equal harm, returns the shortest, then the one with the lowest vertex.
+/// Returns, of the first parts (bays) of the candidates' face extensions, the one whose insertion leaves the fewest rule violations. If several do,
+/// returns the shortest, then the one with the lowest vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;
@@ -68,7 +70,7 @@ std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> can
   return best;
 }
 
-/// Inserts a path and its images, and appends all of them to `paths`.
+/// Inserts a path of edges and its images under the symmetries, and appends all of them to `paths`.
 void insert(ExtendedMesh& extended, std::vector<Ray> path, const RepairRules& rules, std::vector<std::vector<Ray>>& paths) {
   for (const LatticeMap& map : rules.images) {
     paths.push_back(image(*extended.mesh().lattice, map, path));
@@ -78,14 +80,15 @@ void insert(ExtendedMesh& extended, std::vector<Ray> path, const RepairRules& ru
   paths.push_back(std::move(path));
 }
 
-/// A tile that is to be bisected across s or t.
+/// Request to bisect an element of the T-mesh by a line of constant s (`across_s`) or of constant t.
 struct Cut {
   int tile;
   bool across_s;
   auto operator<=>(const Cut&) const = default;
 };
 
-/// Returns the smallest of the images of a cut, including the cut itself. The choice matters if a tile has no middle line on the lattice.
+/// Returns the smallest (element, then direction) of the images of a cut under the symmetries, including the cut itself. Equivalent cuts thus have
+/// one representative, and if the lattice is too coarse for the bisection, it is counted as refused only once.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

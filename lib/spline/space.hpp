@@ -21,7 +21,7 @@ struct Element {
   std::vector<int> points;     ///< indices of the m control points (16 on a regular element)
   /// Extraction matrix, shape (m, (p + 1)^2). Every column sums to 1. Equal elements, for example in copies of a space, may share one matrix.
   std::shared_ptr<const Eigen::MatrixXd> extraction;
-  int face = 0;                                    ///< macro face of the T-mesh that contains the element
+  int face = 0;                                    ///< index of the macro face (face of the cube) that contains the element
   std::array<double, 2> origin{0, 0}, size{1, 1};  ///< lower left corner and size in units of the side of the macro face
 };
 
@@ -38,22 +38,22 @@ struct Space {
   std::vector<Element> elements;
   /// For each collocation point, the sites on all elements whose closure contains it. The first one is used for evaluation.
   std::vector<std::vector<Site>> collocation;
-  std::string description;  ///< one line for the plan: mesh, degree, extraordinary points or poles
+  std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };
 
-/// Index ranges of one of several spaces in the stacked space: control points (and collocation points) first_point .. first_point + n_points - 1,
-/// elements first_element .. first_element + n_elements - 1.
+/// Index ranges of one of several spaces in the stacked space, which numbers the spaces' control points and elements consecutively: control points
+/// (and collocation points) first_point .. first_point + n_points - 1, elements first_element .. first_element + n_elements - 1.
 struct Block {
   int first_point = 0, n_points = 0;
   int first_element = 0, n_elements = 0;
 
-  /// Returns the rows of the block in a net of the stacked space.
+  /// Returns the rows of a net of the stacked space that belong to this space.
   auto rows(Net& net) const { return net.middleRows(first_point, n_points); }
   auto rows(const Net& net) const { return net.middleRows(first_point, n_points); }
   bool holds(int point) const { return point >= first_point && point < first_point + n_points; }
 };
 
-/// Returns the blocks of spaces that are stacked in the given order.
+/// Returns the index ranges of spaces that are stacked in the given order.
 std::vector<Block> blocks(std::span<const Space* const> spaces);
 
 /// Returns the stacked space: the spaces on the surface Gamma = Gamma_1 + Gamma_2 + …, with unchanged functions and only their indices shifted.
@@ -62,7 +62,7 @@ Space stacked(std::span<const Space* const> spaces);
 /// Makes elements with bitwise equal extraction matrices share one matrix, within each of the spaces and between them.
 void share_extraction(std::span<Space* const> spaces);
 
-/// Returns the block that contains all of a space.
+/// Returns the index range that contains a whole space.
 Block whole(const Space& space);
 
 }  // namespace tanktread::spline

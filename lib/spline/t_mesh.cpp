@@ -9,7 +9,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns the mesh with all lines of the base mesh.
+/// Returns the initial mesh on a lattice, in which all elements have the same size.
 TMesh uniform(Lattice lattice) {
   TMesh mesh;
   mesh.lattice = std::make_shared<Lattice>(std::move(lattice));
@@ -91,7 +91,7 @@ Tiling elements(const TMesh& mesh) {
 
 namespace {
 
-/// Returns the unit edges from a ray through `count` bays.
+/// Returns the unit edges from a ray straight on until they have met perpendicular edges `count` times.
 std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
   std::vector<Ray> path;
   while (count > 0 && !mesh.lattice->ends(ray.vertex, ray.slot)) {

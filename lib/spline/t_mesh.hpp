@@ -10,8 +10,9 @@ namespace tanktread::spline {
 /// A checkpoint stores `edges` and `spacing`. To restore the mesh, assign them to the mesh that cube() or polar() returns for the same arguments.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
-  std::vector<std::uint8_t> edges;  ///< bits at each lattice vertex: bit k is set if the unit edge in slot k exists; stored at both ends
-  std::vector<int> spacing;         ///< spacing h at each extraordinary point: within 3 h of it the mesh is the uniform h lattice
+  /// bit k of entry v is set if the unit edge in direction (slot) k at lattice vertex v exists; stored at both ends
+  std::vector<std::uint8_t> edges;
+  std::vector<int> spacing;  ///< spacing h at each extraordinary point: within 3 h of it the mesh is a uniform lattice of spacing h
 
   bool edge(int v, int k) const { return edges[v] >> k & 1; }
   bool edge_of_cell(int c, int k) const { return edge(lattice->corners[c][k], lattice->slot[c][k]); }
@@ -19,14 +20,16 @@ struct TMesh {
 };
 
 /// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n >= 3. The lattice permits `levels` bisections of each element.
-/// Spaces are in extraction.hpp. Throws UserError if n < 3 (rings of extraordinary points would meet) or the lattice would not fit into memory.
+/// Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary points would overlap) or
+/// the lattice would not fit into memory.
 TMesh cube(int elements_per_side, int levels = 0);
 
 /// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
-/// each element. Spaces are in polar.hpp. Throws UserError if m < 4 or r < 4, or the lattice would not fit into memory.
+/// each element. Spline spaces are in polar.hpp. Throws UserError if m < 4 or r < 4, or the lattice would not fit into memory.
 TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
-/// Returns whether the vertex is an anchor, which has a control point: it has edges on both axes. T-junctions and extraordinary points are anchors.
+/// Returns whether the vertex is an anchor, which means that it has a control point: mesh edges of both directions meet there. T-junctions and
+/// extraordinary points are anchors.
 bool is_anchor(const TMesh& mesh, int vertex);
 
 /// Returns the lattice vertices of the control points in ascending order; 6 n^2 + 2 on the uniform cube. Control point i of space(mesh, ...) is at
@@ -36,7 +39,7 @@ std::vector<int> anchors(const TMesh& mesh);
 /// Returns the inverse of anchors(mesh): the control point at each lattice vertex, or -1.
 std::vector<int> control_points(const TMesh& mesh);
 
-/// Element of a mesh: cells x .. x + width - 1, y .. y + height - 1 of a macro face.
+/// Element of a mesh: the lattice cells x .. x + width - 1, y .. y + height - 1 of a macro face (face of the cube).
 struct Rectangle {
   int face, x, y, width, height;
 };
@@ -46,26 +49,27 @@ std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 /// Returns whether a side of the rectangle is collapsed to a pole.
 bool is_degenerate(const Lattice& lattice, const Rectangle& r);
 
-/// Rectangles (tiles) into which the edges divide the faces, and the tile that contains each cell.
+/// Rectangular elements (tiles) into which the mesh edges divide the faces, and for each lattice cell the element that contains it.
 struct Tiling {
   std::vector<Rectangle> tiles;
   std::vector<int> tile_of_cell;
 };
 
-/// T-junction: a vertex with exactly three of its four edges. `missing` is the slot of the fourth.
+/// T-junction: a vertex with exactly three of its four edges. `missing` is the direction (slot) of the fourth.
 struct TJunction {
   int vertex, missing;
 };
 std::vector<TJunction> t_junctions(const TMesh& mesh);
 
-/// Returns the missing slot if the vertex is a T-junction, otherwise -1.
+/// Returns the direction (slot) of the missing edge if the vertex is a T-junction, otherwise -1.
 int missing_slot(const TMesh& mesh, int vertex);
 
 /// Returns whether a line in the direction of the ray meets a perpendicular edge (a touch) at the vertex. An edge on one side is enough.
 inline bool touches(const TMesh& mesh, Ray r) { return mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10); }
 
-/// Returns the unit edges (vertex, slot) of an extension of a T-junction. A bay is the part of a line between two successive touches. The face
-/// extension has two bays in the missing direction, up to the second touch. The edge extension has one bay in the opposite direction.
+/// Returns the unit edges (vertex, slot) of an extension of a T-junction. A touch is a vertex with a perpendicular edge, and a bay is the part of a
+/// line between two successive touches. The face extension has two bays in the missing direction, up to the second touch. The edge extension has
+/// one bay in the opposite direction.
 std::vector<Ray> face_extension(const TMesh& mesh, const TJunction& t);
 std::vector<Ray> edge_extension(const TMesh& mesh, const TJunction& t);
 

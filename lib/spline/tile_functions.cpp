@@ -29,14 +29,16 @@ void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
 
 int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
 
-/// Returns the number of cells between `cell` and the side of its tile that is behind it, looking in direction `turn`.
+/// Returns the number of lattice cells between `cell` and the side of its mesh element that is behind it for a viewer who looks in direction
+/// `turn`.
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   const int x = l.x_of(cell) - r.x, y = l.y_of(cell) - r.y;
   const int cells[4] = {x, y, r.width - 1 - x, r.height - 1 - y};
   return cells[turn & 3];
 }
 
-/// Returns the outer product of the coefficients in the directions forward and left, in the local coordinates s, t of the element.
+/// Returns the outer product of the coefficients in the directions forward and left of a walker, reordered to the local coordinates s, t of the
+/// element. `turn` is the direction of the walker.
 std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::array<double, 4>& aside, int turn) {
   std::array<double, 16> row;
   for (int b = 0; b < 4; ++b)
@@ -52,13 +54,13 @@ struct Builder {
   const Lattice& l;
   TileFunctions& out;
 
-  /// Returns the tile of a cell. A cell of zero height is its own tile.
+  /// Returns the mesh element that contains a cell. A cell of zero height is an element of its own.
   Rectangle tile(int cell, int& number) const {
     number = out.tiling.tile_of_cell[cell];
     return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
   }
 
-  /// Adds the coefficients of function A on the regular tiles of the quadrant between slots q and q + 1 of its anchor.
+  /// Adds the Bezier coefficients of function A on the regular mesh elements in the quadrant between slots q and q + 1 (directions) of its anchor.
   void quadrant(int A, int q) {
     const int v = out.anchor[A], next = (q + 1) % l.valence(v);
     if (l.cell[v][q] < 0) return;
@@ -129,7 +131,8 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
     const auto [x, y] = turned(0, 0, 3, l.corner[v][0]);
     return {l.cell[v][0], x, y};
   }
-  // Offsets along slots 0 and 1, in thirds of a unit.
+  // Distance of the Greville point from the anchor along directions 0 and 1, in thirds of a lattice unit: the sum of the outer two of the three
+  // inner knots relative to the anchor.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
   const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
   if (l.pad > 0) {  // one face without turns
@@ -160,7 +163,7 @@ std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const Ce
   } else {
     add(p.cell, {p.x, p.y});
     if (on_vertical || on_horizontal) {
-      // Adds the cell on the other side of this edge, in which the edge has the opposite direction.
+      // Adds the cell on the other side of the edge on which the point lies. In this cell the edge has the opposite direction.
       const int edge = on_vertical ? (p.x == 0 ? 3 : 1) : (p.y == 0 ? 0 : 2), along = turned(p.x, p.y, 3, 4 - edge)[0];
       const int u = l.corners[p.cell][edge], s = (l.slot[p.cell][edge] + l.valence(u) - 1) % l.valence(u);
       add(l.cell[u][s], turned(3 - along, 0, 3, (l.corner[u][s] + 3) & 3));

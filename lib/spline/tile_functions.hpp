@@ -9,37 +9,38 @@
 
 namespace tanktread::spline {
 
-/// Distances (lattice units) from an anchor to the first and second touch (see `touches`) in each slot. If the ray first meets an extraordinary
-/// point, at distance d, they are d and 2 d, as by reflection, because the rings at the point are uniform. For the slots of an extraordinary point
-/// they are also d and 2 d. At the border of an open face the end knot is repeated. Lattice::length converts them to parametric distances.
+/// Distances (lattice units) from an anchor to the first and second vertex with a perpendicular edge (see `touches`) in each direction (slot). If
+/// the ray first meets an extraordinary point, at distance d, the distances are d and 2 d, as if the mesh were reflected there, because the
+/// elements around the point have equal sizes. If the anchor is an extraordinary point, the distances are also d and 2 d. At a pole the end knot is
+/// repeated. Lattice::length converts them to parametric distances.
 struct Knots {
   int reach[4][2];
 };
 Knots knots(const TMesh& mesh, int anchor);
 
-/// Bezier coefficients of one function on one tile.
+/// Bezier coefficients of one spline function on one element of the Bezier mesh.
 struct Contribution {
   int tile, anchor;
-  std::array<double, 16> row;  ///< coefficients in the order 4 j + i
+  std::array<double, 16> row;  ///< entry 4 j + i is the coefficient of B_i(s) B_j(t)
 };
 
 struct TileFunctions {
   Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
-  std::vector<int> irregular;         ///< corner of each tile that is at an extraordinary point, or -1
-  std::vector<Contribution> entries;  ///< on regular tiles, by ascending anchor; functions on irregular tiles are no tensor products
+  std::vector<int> irregular;         ///< for each element: index of its corner that is an extraordinary point, or -1
+  std::vector<Contribution> entries;  ///< coefficients by ascending anchor; none on elements at extraordinary points
   std::vector<Knots> knots;           ///< knots of each anchor
 };
 TileFunctions tile_functions(const TMesh& mesh);
 
-/// A point of a cell in thirds of a unit, 0 <= x, y <= 3. All generalised Greville points have this form.
+/// A point of a lattice cell with coordinates in thirds of the cell, 0 <= x, y <= 3. All generalised Greville points have this form.
 struct CellPoint {
   int cell, x, y;
 };
 /// Returns the generalised Greville point of an anchor: the mean of its three inner knots in each direction.
 CellPoint greville(const TMesh& mesh, int anchor, const Knots& knots);
 
-/// Returns the sites of a point on all tiles whose closure contains it, by ascending tile.
+/// Returns the sites of a point on all mesh elements (tiles) whose closure contains it, in ascending order of the elements.
 std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const CellPoint& point);
 
 }  // namespace tanktread::spline

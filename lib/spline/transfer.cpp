@@ -17,7 +17,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Largest residual of nested spaces, for a field of order 1. It is far above round-off and far below the residual of spaces that are not nested.
+/// Largest residual of the least-squares fit for which spaces count as nested, for a field of order 1. It is far above round-off and far below the
+/// residual of spaces that are not nested.
 constexpr double nested = 1e-10;
 
 std::vector<int> first_integers(std::size_t n) {
@@ -33,8 +34,8 @@ struct Sample {
   Eigen::VectorXd old_basis, new_basis;
 };
 
-/// Computes samples at the 4 x 4 Gauss points of some elements of one space, and finds the points in the other space. The weights include the
-/// parametric area of the element, or are equal for all elements.
+/// Computes the values of the functions at the 4 x 4 Gauss points of some elements of one space, and finds these points in the other space. The
+/// weights include the parametric area of the element, or are equal for all elements.
 class Sampling {
  public:
   Sampling(const Space& from, const Space& to) : from_(from), to_(to), in_from_(from), in_to_(to) {}
@@ -65,8 +66,8 @@ Eigen::RowVector3d value(const Eigen::VectorXd& basis, const Element& e, const N
   return sum;
 }
 
-/// Computes some control points of `to` by least squares at samples; the other control points are given. Uses one sparse Cholesky factorisation for
-/// all fields.
+/// Computes some control points of the space `to` by a least-squares fit to a field at sample points; the other control points are given. Uses one
+/// sparse Cholesky factorisation for all fields.
 class Fit {
  public:
   Fit(const Space& from, const Space& to, std::vector<Sample> samples, std::vector<int> unknown)

@@ -12,9 +12,9 @@ namespace tanktread::spline {
 /// Represents a field in a space that contains the old space. Every element of `to` must be inside one element of `from`, as after refinement;
 /// `straddling` counts the elements that are not.
 ///
-/// If both spaces have an element and its functions in common, control values are copied bitwise. The other values are computed by least squares at
-/// the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. Otherwise all values are computed
-/// again by least squares. Both spaces must outlive it.
+/// On elements that both spaces have in common, with the same functions, control values are copied bitwise. The other values are computed by least
+/// squares at the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. Otherwise all values are
+/// computed again by least squares. Both spaces must outlive this object.
 class Transfer {
  public:
   Transfer(const Space& from, const Space& to);
@@ -23,7 +23,7 @@ class Transfer {
 
   struct Result {
     Net net;
-    double residual;  ///< largest |new - old| at these points; 1e-13 is round-off if the field is of order 1
+    double residual;  ///< largest |new - old| at the Gauss points of the changed elements; about 1e-13 (round-off) if nested and of order 1
   };
   Result operator()(const Net& field) const;
 
@@ -44,7 +44,7 @@ class Projection {
 
   struct Result {
     Net net;
-    std::vector<double> defect;  ///< largest |old - new| at the points in each element of `from`
+    std::vector<double> defect;  ///< largest |old field - new field| at the Gauss points in each element of `from`
   };
   Result operator()(const Net& field) const;
 

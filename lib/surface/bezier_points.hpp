@@ -1,5 +1,5 @@
 #pragma once
-// Maps between control nets and the Bezier points of the elements, and the order in which sums over elements are taken.
+// Maps between control nets and the Bezier points of the elements, and the fixed order in which sums over elements are computed.
 
 #include <algorithm>
 #include <span>
@@ -10,7 +10,8 @@
 
 namespace tanktread::surface {
 
-/// Number of consecutive elements in a block. Sums are taken within each block, then over the blocks in order. A rank owns whole blocks.
+/// Number of consecutive elements in a block. Sums are taken within each block, then over the blocks in order. Every block belongs to one rank as a
+/// whole, so that sums do not depend on the number of ranks.
 constexpr int block_size = 64;
 
 inline int n_blocks(int n_elements) { return (n_elements + block_size - 1) / block_size; }
@@ -23,14 +24,14 @@ inline std::vector<int> elements_of(std::span<const int> blocks, int n_elements)
   return elements;
 }
 
-/// Returns the sum of each block from one value per element.
+/// Returns the sum of the values in each block of elements, given one value per element.
 inline std::vector<double> block_sums(std::span<const double> of_elements) {
   std::vector<double> sums(n_blocks(static_cast<int>(of_elements.size())), 0.);
   for (std::size_t e = 0; e < of_elements.size(); ++e) sums[e / block_size] += of_elements[e];
   return sums;
 }
 
-/// All elements of one degree, ascending.
+/// Indices of all elements of one degree, ascending.
 struct Block {
   int degree = 3;
   std::vector<int> elements;
@@ -60,14 +61,15 @@ class BezierMap {
 
  private:
   struct Element {
-    int degree, functions, first;  ///< degree, number of functions, start of their indices in `points_`
+    int degree, functions, first;  ///< degree p; number of functions; index in `points_` of the element's first control point
     std::size_t operation;         ///< start in `by_bezier_` and `by_function_`
   };
   int n_points_;
   std::vector<Block> blocks_;
   std::vector<Element> elements_;
   std::vector<int> points_;
-  std::vector<double> by_bezier_, by_function_;  // extraction matrices, with the function index running fastest; their transposes
+  // extraction matrices of shape (functions, Bezier points) with the function index running fastest; the transposed matrices
+  std::vector<double> by_bezier_, by_function_;
 };
 
 }  // namespace tanktread::surface

@@ -15,7 +15,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr int n_samples = 4000;
-constexpr double straight_end = 1.7;  // least length of a straight end divided by R_T; neglected perturbations decay to 1e-5 over it
+// least length of a straight end divided by R_T; perturbations of the flow decay to 1e-5 over this length
+constexpr double straight_end = 1.7;
 
 }  // namespace
 
@@ -65,7 +66,7 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// Returns the difference between the length of the wall's contour and the length of the centre line, on each side of the middle of a step.
+/// Returns by how much the contour of the wall is longer than the centre line, on each side of the middle of the profile `step`.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
@@ -133,12 +134,12 @@ void Channel::check_period() {
                               jumps.cwiseAbs().maxCoeff()));
 }
 
-/// Returns s moved by periods into the modelled one.
+/// Returns the equivalent arc length in the modelled period: s plus a multiple of the period.
 double Channel::in_period_along(double s) const {
   return options_.period > 0 ? s - options_.period * std::floor((s - start_) / options_.period) : s;
 }
 
-/// Returns the place at u, which of a channel that repeats may be beyond its ends.
+/// Returns the point at u, where u may lie beyond the ends of the modelled period of a periodic channel.
 Channel::Place Channel::in_period(double u) const {
   if (options_.period == 0) return place(u);
   const double low = parameter(start_), whole = parameter(end_) - low, periods = std::floor((u - low) / whole);
@@ -147,7 +148,8 @@ Channel::Place Channel::in_period(double u) const {
   return at;
 }
 
-/// Returns the point at arc length u of a step's wall contour: straight, rounded edge, straight across, edge rounded the other way, straight.
+/// Returns the point at arc length u of the wall contour of the profile `step`: a straight part, a rounded edge, a straight part across the
+/// channel, an edge rounded in the opposite direction, a straight part.
 Channel::Place Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
@@ -246,7 +248,7 @@ TubeOptions Channel::tube(double s) const {
   return tube;
 }
 
-/// Returns evenly spaced values of u.
+/// Returns evenly spaced values of the longitudinal parameter u, from the start to the end of the channel.
 std::vector<double> Channel::lines() const {
   const double low = parameter(start_), high = parameter(end_);
   std::vector<double> u;
@@ -254,7 +256,7 @@ std::vector<double> Channel::lines() const {
   return u;
 }
 
-/// Returns the values of u at which the curvature of the wall or of the centre line jumps.
+/// Returns the values of the longitudinal parameter u at which the curvature of the wall or of the centre line jumps.
 std::vector<double> Channel::kinks() const {
   std::vector<double> u;
   if (factors_) u = {factors_->breaks.front(), factors_->breaks.back()};
@@ -270,9 +272,9 @@ std::vector<double> Channel::kinks() const {
   return u;
 }
 
-/// Returns the desired element length at each u: three quarters of the width of the elements there, shorter where the wall bends, a quarter of this
-/// length where the curvature jumps, and 2.5 times this length in the straight ends. The length grows by at most 0.3 per unit distance from shorter
-/// elements.
+/// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements there, shorter where the wall
+/// bends; a quarter of this value where the curvature jumps, and 2.5 times this value in the straight ends. Away from shorter elements, the length
+/// grows by at most 0.3 per unit distance.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
@@ -305,7 +307,7 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-/// Where the curvature of the wall or of the centre line jumps, the knot is triple, unless there are too few elements. The slope of the wall pressure
+/// If there are enough elements, the knot is triple where the curvature of the wall or of the centre line jumps. The slope of the wall pressure
 /// jumps there, and the shear stress behaves like d log d with the distance d. Splines that are smooth across the jump would oscillate.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
@@ -325,7 +327,8 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  if (own_.profile == "step")  // the sides of the transverse wall would be folded there; a smooth spline keeps its control points apart
+  // With triple knots at a step, the sides of the elements on its transverse wall would be folded. A smooth spline keeps its control points apart.
+  if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);
   for (const double joint : joints) {

@@ -7,7 +7,7 @@
 
 namespace tanktread::surface {
 
-/// Returns an outline scaled about the origin by factors along x2 and x3.
+/// Returns an outline scaled about the origin by the two factors along x2 and x3.
 Outline scaled(const Outline& outline, const Vec2& factor);
 
 /// Channel whose cross-section is the outline of a tube, scaled by factors f2 and f3 that depend on the arc length s of a centre line. The centre
@@ -15,11 +15,12 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 ///
 ///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the outline of factor 1, N = dC/ds turned towards x2 by a right angle
 ///
-/// A channel that repeats has no ends and no bend, and f(s + L) = f(s). Its start and end are the ends of one period, which is centred on the range
-/// of s in which the factors change.
+/// A periodic channel with period L has no ends and no bend, and its factors satisfy f(s + L) = f(s). Its start and end are the ends of the
+/// modelled period, which is centred on the range of s in which the factors change.
 class Channel {
  public:
-  /// Throws UserError, with numbers in the message, if the channel is folded, closed or has no straight ends.
+  /// Throws UserError, with numbers in the message, if the channel is folded (cross-sections intersect), closed (a width is not above 0.02 R_T) or
+  /// has no straight ends.
   explicit Channel(const TubeOptions& options);
 
   struct Section {
@@ -30,7 +31,7 @@ class Channel {
 
   const Outline& outline() const { return outline_; }
   Outline outline(double s) const;      ///< outline of the section at s
-  TubeOptions tube(double s) const;     ///< straight tube with the section at s
+  TubeOptions tube(double s) const;     ///< options of the straight tube with the cross-section at s
   double start() const { return start_; }
   double end() const { return end_; }
   bool repeats() const { return options_.period > 0; }
@@ -43,7 +44,7 @@ class Channel {
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
   /// this range. At a step of the profile, the factors f2 and f3 change with u while s is constant.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< number of elements whose length is about their width
+  int elements() const;  ///< number of elements along the wall with which their lengths are about their widths
   Section at(double u) const;
 
  private:
@@ -70,8 +71,9 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  double half_[2] = {1, 1}, height_ = 1;  // half widths of the outline; half width that scales a step
-  double first_ = 0, last_ = 0;           // smallest and largest s at which the channel changes
+  // half widths of the outline along x2 and x3; half width by which the depth of a `step` is multiplied
+  double half_[2] = {1, 1}, height_ = 1;
+  double first_ = 0, last_ = 0;           // smallest and largest s at which the cross-section or the direction of the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;
 };
 

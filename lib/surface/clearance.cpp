@@ -15,16 +15,18 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// Disc that bounds the distance of a piece of an element to the outline. No part of the outline that may be nearest to the piece lies inside the
-/// disc. A point of the piece at this squared distance from `centre` is therefore at least gap() away from the outline.
+/// Disc that gives a lower bound of the distance of a piece of the surface to the outline. The outline does not enter the disc, at least where it
+/// may be nearest to the piece. If a point of the piece is at the distance d from `centre`, its distance to the outline is therefore at least
+/// radius - d, which gap() returns for the argument d^2.
 struct Disc {
   Vec2 centre;
   double radius;
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// Returns a disc for pieces within the distance r of x. The disc touches the outline at `foot`, the point of the outline nearest to x. Its curvature
-/// is at least the curvature of the outline at `foot`. Each trial disc passes through the outline point that is farthest inside the previous disc.
+/// Returns a disc for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the outline nearest to
+/// x, and its curvature is at least the curvature of the outline there. While part of the outline lies inside the disc, the radius is reduced such
+/// that the circle passes through the point of the outline nearest to the centre.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -41,21 +43,23 @@ Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double
   return {foot.x, 0};
 }
 
-/// Part of an element, given by its Bezier points.
+/// Part (piece) of a surface element, given by its Bezier points.
 struct ElementPart {
   std::array<Eigen::MatrixXd, 3> points;  // one matrix per coordinate
   Disc disc{Vec2::Zero(), 0};
   double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece to the outline
-  Vec3 corner = Vec3::Zero();                               // corner farthest from the disc's centre
-  bool bends_across = false;                                // bends more along the column index than along the row index
+  Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the disc's centre
+  // true if the piece is more curved along the column index of its points than along their row index
+  bool bends_across = false;
 
-  /// Returns an upper bound of the distance of the piece from x.
+  /// Returns an upper bound of the distance from x to the points of the piece, in the plane x2 x3.
   double reach(const Vec2& x) const {
     return std::sqrt(((points[1].array() - x[0]).square() + (points[2].array() - x[1]).square()).maxCoeff());
   }
 };
 
-/// Returns the factors c(i, k) with B_i B_k = c(i, k) B_{i+k}, for Bernstein polynomials of degree p on the left and 2p on the right.
+/// Returns the factors c(i, k) with B_i B_k = c(i, k) B_{i+k}, where B_i and B_k are Bernstein polynomials of degree p and B_{i+k} is one of degree
+/// 2p.
 Eigen::MatrixXd products(Eigen::Index p) {
   const auto binomial = [](Eigen::Index n, Eigen::Index k) {
     double value = 1;
@@ -66,7 +70,8 @@ Eigen::MatrixXd products(Eigen::Index p) {
       p + 1, p + 1, [&](Eigen::Index i, Eigen::Index k) { return binomial(p, i) * binomial(p, k) / binomial(2 * p, i + k); });
 }
 
-/// Branch-and-bound search: divides the pieces with the smallest lower bound first, until none can be nearer than the best point found.
+/// Branch-and-bound search for the point of the surface nearest to the outline: bisects the piece of the surface with the smallest lower bound of
+/// the distance, until no piece can be nearer than the best point found.
 class OutlineSearch {
  public:
   OutlineSearch(const Patches& surface, const Outline& outline) : surface_(surface), outline_(outline) {}
@@ -88,7 +93,7 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// Collects the elements that a disc about the outline's centroid does not rule out.
+  /// Collects the elements that may contain the nearest point, as judged by a disc about the outline's centroid.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {
@@ -131,8 +136,8 @@ class OutlineSearch {
     return part;
   }
 
-  /// Updates the best point with the corner of the piece. If the corner is farther from the outline than the disc predicts, fits a new disc to the
-  /// piece.
+  /// Compares the best point found with a corner of the piece. If the corner is farther from the outline than the bound of the disc, fits a new
+  /// disc to the piece, because this bound can be improved.
   void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
@@ -144,7 +149,8 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Sets the bound, corner and bending direction of a piece from the Bezier coefficients of the squared distance to the centre of the disc.
+  /// Sets the lower bound of the distance, the farthest corner and the direction of largest curvature of a piece from the Bezier coefficients of
+  /// the squared distance to the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

@@ -11,7 +11,7 @@ namespace tanktread::surface {
 struct Clearance {
   Vec3 x = Vec3::Zero();
   double gap = 0;
-  int pieces = 0;  ///< number of pieces of the surface examined, a measure of the work
+  int pieces = 0;  ///< number of pieces (parts of elements) examined, a measure of the work
 };
 
 /// Returns the point of the surface nearest to the outline, or farthest outside it. No other point is nearer by more than 1e-8 of the outline's

@@ -29,12 +29,12 @@ Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
 
-/// Part of an element: its Bezier points, s fastest, and its two halves along its longer side, computed on demand.
+/// Part of an element: its Bezier points, s fastest, and the two halves into which its longer direction is divided, computed on demand.
 struct Part {
   int degree = 0;
   Points points;
   spline::Site low{};                       // site of its first point
-  std::array<double, 2> sides{1, 1};        // lengths along s and t, relative to the element
+  std::array<double, 2> sides{1, 1};        // lengths of the part along s and t, as fractions of the element
   mutable std::shared_ptr<const std::array<Part, 2>> halves_kept{};
 
   double size() const { return (corner(1, 1) - corner(0, 0)).cwiseAbs().maxCoeff() + (corner(1, 0) - corner(0, 1)).cwiseAbs().maxCoeff(); }
@@ -49,14 +49,15 @@ struct Part {
   }
 
  private:
-  /// Divides the part by de Casteljau's algorithm.
+  /// Divides the part into two halves by de Casteljau's algorithm.
   std::array<Part, 2> halved() const {
     const int p = degree, n = p + 1;
     const bool along_s = (corner(1, 0) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(0, 1)).squaredNorm() >
                          (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
     const int step = along_s ? 1 : n, across = along_s ? n : 1;
     std::array<Part, 2> result{Part{degree, points, low, sides}, Part{degree, points, low, sides}};
-    auto& [left, right] = result;  // `right` is computed in place: after k rounds its first p - k + 1 points of a row are those of the algorithm
+    // `right` is computed in place: after round k, the first p - k + 1 points of a row are those of round k of the algorithm
+    auto& [left, right] = result;
     left.sides[along_s ? 0 : 1] /= 2, right.sides = left.sides;
     (along_s ? right.low.s : right.low.t) += left.sides[along_s ? 0 : 1];
     for (int row = 0; row < n; ++row)
@@ -71,7 +72,8 @@ struct Part {
   }
 };
 
-/// Returns the separation of two point sets along a unit vector from the first to the second.
+/// Returns the distance between the projections of two point sets on a unit vector that points from the first to the second; negative if they
+/// overlap.
 double separation(const Points& a, const Points& b, const Vec3& direction) {
   return (direction.transpose() * b).minCoeff() - (direction.transpose() * a).maxCoeff();
 }
@@ -94,12 +96,12 @@ class PairSearch {
   }
 
  private:
-  /// A pair of boxes, or of parts of elements if each box holds one element.
+  /// A pair of bounding boxes, or of parts of elements if each box contains only one element.
   struct Pair {
     double bound;
     int box[2];
     const Part* part[2];
-    bool operator<(const Pair& other) const { return bound > other.bound; }  // the priority queue then returns the nearest pair first
+    bool operator<(const Pair& other) const { return bound > other.bound; }  // so the top of the priority queue is the nearest pair
   };
 
   void push(const Pair& pair) {
@@ -137,7 +139,7 @@ class PairSearch {
     }
   }
 
-  /// Updates the best pair with the corners, which are points of the surfaces.
+  /// Updates the closest pair of points found with the corners of the parts, which are points of the surfaces.
   void meet(const Part& a, const Part& b) {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
@@ -245,7 +247,7 @@ ClosestPoints nearest_points(const Patch& first, const Patch& second, const Clos
 
 namespace {
 
-/// n x n points of an element with normals, and a box around its Bezier points.
+/// n x n points of an element with normals, and a bounding box of its Bezier points.
 struct Sampled {
   std::vector<Vec3> place, normal;
   Eigen::AlignedBox3d box;
@@ -271,7 +273,8 @@ double distance(const Vec3& x, const Sampled& element) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
-  // If the foot point is beyond the element's edge, the plane of another element is nearer.
+  // The foot of the perpendicular on the tangent plane may be far beyond the element's edges. The tangent plane of another element is nearer in
+  // this case, so the distance to the sampled point is returned.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
 }

@@ -11,19 +11,19 @@
 
 namespace tanktread::surface {
 
-/// The closest points of two surfaces and their distance, which is 0 if the surfaces meet.
+/// The closest points of two surfaces and their distance, which is 0 if the surfaces touch or intersect.
 struct ClosestPoints {
   Vec3 first, second;
   double gap = 0;
-  std::array<spline::Site, 2> sites{};  ///< sites of these points, if points were found
+  std::array<spline::Site, 2> sites{};  ///< sites of the closest points on the two surfaces, if points were found
 };
 
-/// Binary tree of bounding boxes around the Bezier points of a surface's elements. If the surface moves, a new tree is built.
+/// Binary tree of bounding boxes around the Bezier points of a surface's elements. If the surface moves, a new tree must be built.
 class ElementBoxes {
  public:
   struct Box {
     Eigen::Array3d low, high;
-    int first, last;    ///< elements in the box: element(first) .. element(last - 1)
+    int first, last;    ///< the box contains element(first) .. element(last - 1)
     int child[2] = {};  ///< children of a box with several elements
   };
 
@@ -31,7 +31,7 @@ class ElementBoxes {
   explicit ElementBoxes(const Patches& surface);
 
   const Patches& surface() const { return surface_; }
-  const std::vector<Box>& boxes() const { return boxes_; }  ///< the first box contains all elements
+  const std::vector<Box>& boxes() const { return boxes_; }  ///< all boxes of the tree; the first one is the root and contains all elements
   int element(int k) const { return order_[static_cast<std::size_t>(k)]; }
 
  private:
@@ -39,16 +39,16 @@ class ElementBoxes {
 
   const Patches& surface_;
   std::vector<int> order_;
-  std::vector<Box> own_, boxes_;  // boxes of elements; boxes of the tree
+  std::vector<Box> own_, boxes_;  // bounding boxes of the single elements; bounding boxes of the tree
 };
 
 /// Returns a lower bound of the distance between the contents of two boxes.
 double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 
-/// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise a gap of `beyond`. Pairs of boxes, elements and parts of
-/// elements are divided in order of their lower bounds, until no pair can be closer than the best points by more than `tolerance`. The bounds of
-/// parts come from separating planes between their Bezier points. If surfaces lie side by side, the error of these bounds is much smaller than the
-/// parts.
+/// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise returns `beyond` as the distance. Pairs of boxes,
+/// elements and parts of elements are divided in order of their lower bounds, until no pair can be closer than the best points by more than
+/// `tolerance`. The bounds of parts come from separating planes between their Bezier points. If the surfaces are nearly parallel, the error of
+/// these bounds is much smaller than the size of the parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
 /// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the
@@ -57,8 +57,9 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
 /// Returns, for each element of a surface, the width of the film between it and the other surfaces. The width is the smallest distance from 3 x 3
-/// points of the element to the tangent planes of the other elements, taken at the nearest of 5 x 5 points of each. Its error is h^2 k/8, with k the
-/// curvature of the other surface and h a quarter of its element length. The width is infinite if no other surface is within `reach`.
+/// points of the element to the tangent planes of the other elements, where the tangent plane of an element is taken at the nearest of 5 x 5 sample
+/// points. Its error is h^2 k/8, with k the curvature of the other surface and h a quarter of its element length. The width is infinite if no other
+/// surface is within `reach`.
 std::vector<double> film_widths(const Patches& surface, std::span<const Patches* const> others, double reach);
 
 }  // namespace tanktread::surface

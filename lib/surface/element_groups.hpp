@@ -1,5 +1,5 @@
 #pragma once
-// Groups of elements of one degree, one element per register lane, for the integrals of `integrals_kernel.hpp`.
+// Groups of elements of equal degree for the vectorised integrals of `integrals_kernel.hpp`: each lane of a SIMD register holds one element.
 
 #include <algorithm>
 #include <iterator>
@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// Calls use(degree, group) for all elements, in groups of one degree with as many elements as a register has lanes.
+/// Calls use(degree, group) for all elements, in groups of equal degree with as many elements as a SIMD register has lanes.
 template <class Use>
 void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   const std::size_t lanes = pack_lanes();
@@ -24,7 +24,8 @@ void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   }
 }
 
-/// Returns the Bezier points of a group, one element per lane; a short group repeats its last element.
+/// Returns the Bezier points of a group, one element per lane of a SIMD register. If the group has fewer elements than lanes, its last element is
+/// repeated.
 inline kernel::Lanes points_of(const BezierMap& map, const Net& net, std::span<const int> group) {
   const std::size_t lanes = pack_lanes();
   kernel::Lanes points;

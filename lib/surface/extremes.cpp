@@ -17,7 +17,7 @@ using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Value, gradient and Hessian of sign * x_c on a patch.
+/// Value, gradient and Hessian of sign * x_c (x_c: coordinate c) on a patch.
 struct Height {
   double value;
   Vec2 gradient;
@@ -30,8 +30,8 @@ Height height(const Patch& patch, int c, double sign, const Vec2& at) {
   return result;
 }
 
-/// Returns a Newton step towards the maximum in the unit square. Coordinates pressed against a side stay there. If Newton's step would descend, it is
-/// a steepest ascent step.
+/// Returns a Newton step towards the maximum of h in the unit square. A coordinate on a side of the square is kept if the gradient points outwards
+/// there. If the Newton step would decrease h, returns a steepest-ascent step.
 Vec2 uphill(const Height& h, const Vec2& at) {
   const bool held[2] = {(at[0] <= 0 && h.gradient[0] <= 0) || (at[0] >= 1 && h.gradient[0] >= 0),
                         (at[1] <= 0 && h.gradient[1] <= 0) || (at[1] >= 1 && h.gradient[1] >= 0)};
@@ -47,7 +47,7 @@ Vec2 uphill(const Height& h, const Vec2& at) {
   return 0.25 * h.gradient / (h.gradient.norm() + std::numeric_limits<double>::min());
 }
 
-/// Returns the local maximum of sign * x_c reached from a point of the patch, and its parameters.
+/// Returns the local maximum of sign * x_c that an ascent from the given point of the patch reaches, and its parameters.
 std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) {
   Height here = height(patch, c, sign, at);
   for (int iteration = 0; iteration < 50; ++iteration) {
@@ -62,7 +62,7 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
       here = there;
       break;
     }
-    if (moved < 1e-9) break;  // the error of the height is the square of this
+    if (moved < 1e-9) break;  // the error of the maximum is of the order of the square of this step
   }
   return {here.value, at};
 }
@@ -76,7 +76,7 @@ Vec2 start(const Patch& patch, int c, double sign) {
   return {double(highest % (p + 1)) / p, double(highest / (p + 1)) / p};
 }
 
-/// Returns the maximum of sign * x_c. `reached`: lower bound of the maximum. bounds[e]: upper bound on element e.
+/// Returns the maximum of sign * x_c over the surface. `reached`: a known lower bound of the maximum. bounds[e]: an upper bound on element e.
 double largest_coordinate(const Patches& surface, int c, double sign, double reached, const std::vector<double>& bounds) {
   double best = reached;
   std::vector<int> candidates;  // few elements remain
@@ -90,7 +90,7 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   return best;
 }
 
-/// A point of the section curve in one element, found by sampling.
+/// A point, in one element, of the curve in which the plane x2 = centre_2 cuts the surface, found by sampling.
 struct Crossing {
   Vec2 at;
   double distance;
@@ -122,8 +122,11 @@ void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& re
   }
 }
 
-/// Returns the stationary distance on the section curve, by Newton's method for  grad(r^2/2) = lambda grad(y2),  y2 = 0; nothing if it leaves the
-/// element.
+/// Returns the stationary value of the distance from the centre on the section curve y2 = 0 (y = x - centre, r = |y|), by Newton's method for
+///
+///   grad(r^2/2) = lambda grad(y2),   y2 = 0;
+///
+/// nothing if the iteration leaves the element.
 std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre, Vec2 at) {
   double lambda = std::numeric_limits<double>::quiet_NaN();
   for (int iteration = 0; iteration < 15; ++iteration) {
@@ -148,14 +151,16 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
     if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
     if (length < 1e-9) break;
   }
-  constexpr double slack = 1e-7;  // beyond the common side, neighbours agree to the third power of this
+  // tolerance for points beyond the element's side; at distance d beyond it, neighbouring elements differ by O(d^3)
+  constexpr double slack = 1e-7;
   if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
   const Vec3 y = place(patch, at[0], at[1]) - centre;
   if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
   return std::hypot(y[0], y[2]);
 }
 
-/// Returns the distance at a sampled crossing, moved onto the curve along the gradient of y2. Used for elements without a stationary point.
+/// Returns the distance from the centre at a sampled point after moving it onto the section curve y2 = 0 along the gradient of y2. Used for
+/// elements without a stationary point.
 std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
   for (int iteration = 0; iteration < 10; ++iteration) {
     const Jet j = jet(patch, at[0], at[1]);
@@ -170,19 +175,20 @@ std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, 
   return std::hypot(y[0], y[2]);
 }
 
-/// An element that may contain the extremum, with its best crossing.
+/// An element that may contain the extremum of the distance, with its best sampled point on the section curve.
 struct Candidate {
   int element;
   Crossing crossing;
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// Adds the distances at those candidates that may contain the maximum of sign * distance.
+/// Extends the range found by the distances at those candidates that may contain the maximum of sign * distance.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
   for (const Candidate& c : candidates) {
-    if (sign * c.crossing.distance + c.spread < sampled) continue;  // the sampling error is smaller than the variation of the distance
+    // the element cannot contain the maximum, because sampling errors are smaller than `spread`
+    if (sign * c.crossing.distance + c.spread < sampled) continue;
     for (const auto& method : {stationary_distance, distance_on_curve})
       if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {
         found.smallest = std::min(found.smallest, *distance);
@@ -244,7 +250,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // contains both kinds of extremes, because on a nearly circular section samples do not distinguish minima from maxima
+  Range range;  // distances of minima and maxima: samples of a nearly circular section do not distinguish them
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

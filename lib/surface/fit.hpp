@@ -15,17 +15,18 @@ namespace tanktread::surface {
 ///
 ///   sum_e area_e int_e |sum_A N_A P_A - f|^2 ds dt = min,
 ///
-/// with p + 2 Gauss points per direction and element. The matrix depends only on the space. Its systems are solved iteratively to round-off.
+/// with p + 2 Gauss points per direction and element. The matrix depends only on the space. The normal equations are solved iteratively to
+/// round-off.
 class LeastSquaresFit {
  public:
   explicit LeastSquaresFit(const spline::Space& space);
 
-  /// Fits f(x) for the points x of a given surface: one step of fitting a surface to its own image. The functions of the space must be linearly
-  /// independent.
+  /// Fits f(x) for the points x of a given surface: for example one step of an iteration that fits a surface to its image under f. The functions of
+  /// the space must be linearly independent.
   Net fit_image(const Net& net, const std::function<Vec3(const Vec3& x)>& f) const;
 
  private:
-  /// Data shared by all elements of a degree.
+  /// Values that all elements of one degree share.
   struct Table {
     Eigen::MatrixXd value;     ///< Bernstein values at the Gauss points, shape (n_q, n_b)
     Eigen::MatrixXd weighted;  ///< value^T times the Gauss weights, shape (n_b, n_q)

@@ -14,7 +14,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Adds values dual to the Bezier points of a group to the control points.
+/// Applies the transpose of the map from control points to Bezier points: adds derivatives with respect to the Bezier points of a group of elements
+/// to derivatives with respect to the control points.
 void add_transposed(const BezierMap& map, std::span<const int> group, const kernel::Lanes& dual, Net& net) {
   const std::size_t lanes = pack_lanes();
   double one[3 * kernel::most_bezier];
@@ -24,7 +25,8 @@ void add_transposed(const BezierMap& map, std::span<const int> group, const kern
   }
 }
 
-/// Returns the net relative to its mean, because integrals by the divergence theorem lose digits if the origin is far away.
+/// Returns the control points relative to their mean, because integrals by the divergence theorem lose digits if the origin is far from the
+/// surface.
 Net about_mean(const Net& net, Vec3& mean) {
   mean = net.colwise().mean().transpose();
   return net.rowwise() - mean.transpose();
@@ -148,7 +150,7 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   const double longest = std::sqrt(mean + radius), shortest = std::sqrt(mean - radius);
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
-  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // upright: round-off must not choose which end points up
+  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // an axis along x3: round-off would choose between -90 and 90 degrees
   const double to_semi_axis = std::sqrt(5 / measures.volume);
   if (!distinct(to_semi_axis * longest, to_semi_axis * shortest, measures.volume)) result.inclination = std::numeric_limits<double>::quiet_NaN();
 
@@ -168,7 +170,7 @@ PrincipalAxes principal_axes(const Measures& measures) {
     axes.lengths[k] = std::sqrt(5 * moments.eigenvalues()[2 - k] / measures.volume);
     Vec3 direction = moments.eigenvectors().col(2 - k);
     for (double& component : direction)
-      if (std::abs(component) < 1e-9) component = 0;  // round-off must not choose the orientation
+      if (std::abs(component) < 1e-9) component = 0;  // treated as zero, so that round-off does not choose the sign of the axis
     for (int c = 2; c >= 0; --c)
       if (direction[c] != 0) axes.directions.col(k) = std::copysign(1.0, direction[c]) * direction;
   }

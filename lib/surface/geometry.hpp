@@ -14,7 +14,8 @@
 
 namespace tanktread::surface {
 
-/// A point of the surface: position, tangents x_,s and x_,t (per element-local unit), outward unit normal, J = |a1 x a2|.
+/// A point of the surface: position, tangents a1 = x_,s and a2 = x_,t with respect to local coordinates, outward unit normal, area element J = |a1
+/// x a2|.
 struct Point {
   Vec3 x, a1, a2, n;
   double jacobian = 0;
@@ -27,7 +28,8 @@ Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site)
 /// Returns the mean curvature chi = 1/2 div n (P-36); 1/R for a sphere. Units 1/length.
 double mean_curvature(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area uses the same points.
+/// Integral measures by Gauss quadrature. Volume, centroid and moments are exact for the polynomials involved; the area, whose integrand is not a
+/// polynomial, is approximated with the same Gauss points.
 struct Measures {
   double area = 0, volume = 0;
   Vec3 centroid;        ///< centroid of the volume (P-42)
@@ -42,22 +44,24 @@ bool distinct(double longer, double shorter, double volume);
 struct PrincipalAxes {
   Vec3 lengths = Vec3::Zero();     ///< lengths of the semi-axes in descending order
   Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along the semi-axes; the first nonzero component of each is positive
-  bool longest_defined = false;    ///< the longest and the middle semi-axis are distinct
-  bool shortest_defined = false;   ///< the middle and the shortest semi-axis are distinct
+  /// whether the longest and the middle semi-axis differ enough to define the direction of the longest one
+  bool longest_defined = false;
+  /// whether the middle and the shortest semi-axis differ enough to define the direction of the shortest one
+  bool shortest_defined = false;
 };
 PrincipalAxes principal_axes(const Measures& measures);
 
 /// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-// The functions below compute extreme coordinates of a closed surface and extreme distances in a plane section. They apply Newton's method to the
-// exact polynomials of the surface.
+// A range of values on a closed surface: of a coordinate, or of the distance from a point in a plane section. The functions below compute its ends
+// by Newton's method for the exact polynomials of the surface.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
 };
 
-/// Returns the range of two parts together.
+/// Returns the smallest range that contains both given ranges.
 inline Range wider(const Range& a, const Range& b) { return {std::min(a.smallest, b.smallest), std::max(a.largest, b.largest)}; }
 
 /// Returns the smallest and largest coordinate x_{c+1} of the Bezier points, which bound the patch.
@@ -69,8 +73,9 @@ Range coordinate_range(const Patches& surface, int c);
 /// Returns the point of the surface with the smallest coordinate x_{c+1}, to round-off.
 Vec3 lowest(const Patches& surface, int c);
 
-/// Returns the shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface, to round-off if the extremum
-/// is simple. No symmetry is assumed. The range of a whole surface is the union over its parts. The range is empty if the plane misses the surface.
+/// Returns the shortest and longest distance of `centre` to the curve in which the plane x2 = centre_2 cuts the surface, to round-off if the
+/// extremum is simple (nonzero second derivative). No symmetry of the surface is assumed. The range of a whole surface is the union over its parts.
+/// The range is empty if the plane misses the surface.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
 /// Deformation measures of the series (6.2): D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90. The inclination is NaN if
@@ -91,18 +96,19 @@ class Geometry {
   /// Returns V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements.
   double volume(const Net& net) const;
 
-  /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, over the given elements in ascending order. A row is complete if they
-  /// include all elements that touch its point. `b` is overwritten, shape (N, 3).
+  /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, summed over the given elements in ascending order. The row of a control
+  /// point is complete if the given elements include all elements on which its function is not zero. `b` is overwritten, shape (N, 3).
   void volume_gradient(const Net& net, std::span<const int> elements, Net& b) const;
   Net volume_gradient(const Net& net) const;
 
-  /// Adds to b the derivative of int g.x dV, int N_A (g.x) n dG, exactly, over the given elements. Rows are complete as above. x is relative to
-  /// `origin`.
+  /// Adds to b the derivative of int g.x dV with respect to the control points, int N_A (g.x) n dG, exactly, summed over the given elements. The
+  /// row of a control point is complete if they include all elements on which its function is not zero. x is relative to `origin`.
   void add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const;
 
   Measures measures(const Net& net) const;
 
-  /// Returns the moments of each block, block after block: computed for the given blocks, zero for the others. measures() combines them.
+  /// Returns the moments of each block of elements, one block after the other: computed for the given blocks, zero for all other blocks. measures()
+  /// combines them.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
@@ -114,22 +120,22 @@ class Geometry {
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 
-  /// Returns the ranges that deformation() needs, over the given elements: section distances (0) and extents (1, 2, 3). Those of a whole surface are
-  /// the unions over its parts. deformation() throws RunFailure if the plane misses the surface.
+  /// Returns the ranges that deformation() needs, over the given elements: section distances (0) and extents (1, 2, 3). The ranges of a whole
+  /// surface are the unions of the ranges of its parts. deformation() throws RunFailure if the plane misses the surface.
   static constexpr int n_extremes = 4;
   std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);
 
  private:
   BezierMap map_;
-  std::vector<int> all_, all_blocks_;  ///< 0 .. n_elements - 1, 0 .. n_blocks - 1
+  std::vector<int> all_, all_blocks_;  ///< indices 0 .. n_elements - 1 of all elements; indices 0 .. n_blocks - 1 of all blocks
 };
 
 /// Computes measures of one control net.
 Measures measures(const spline::Space& space, const Net& net);
 double volume(const spline::Space& space, const Net& net);
 
-/// Returns the velocity U of the centroid (P-42) of the interior of x if the net moves by v (6.4), exactly.
+/// Returns exactly the velocity U (6.4) of the centroid (P-42) of the volume enclosed by the surface x, if its control points move with velocity v.
 Vec3 centroid_velocity(const BezierMap& map, const Net& x, const Net& v);
 
 }  // namespace tanktread::surface

@@ -24,7 +24,8 @@ struct Table {
   }
 };
 
-/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, with x and the tangents as three registers each. Sums over s first, then over t.
+/// Calls use(q_s, q_t, x, a1, a2) at every node of the tensor rule, with the position x and the tangents a1, a2 as three SIMD registers each, one
+/// per component. Sums over s first, then over t.
 template <int p, int n, bool with_place, class Use>
 inline void each_node(const Table<p, n>& table, const Lanes& points_of_lanes, Use use) {
   const auto* points = reinterpret_cast<const Register*>(points_of_lanes.value);

@@ -1,5 +1,5 @@
 #pragma once
-// Integrals over elements from their Bezier points, for one element per register lane.
+// Integrals over elements from their Bezier points, vectorised: each lane of a SIMD register holds one element.
 
 #include "base/pack.hpp"
 
@@ -8,19 +8,20 @@ namespace tanktread::surface::kernel {
 constexpr int largest_degree = 6;
 constexpr int most_bezier = (largest_degree + 1) * (largest_degree + 1);
 
-/// Bezier points, or values dual to them, of one element of degree p per lane: component c of point b in lane l is value[(c * (p+1)^2 + b) *
-/// pack_lanes() + l].
+/// Bezier points, or derivatives with respect to them, of one element of degree p per lane: component c of point b in lane l is value[(c * (p+1)^2
+/// + b) * pack_lanes() + l].
 struct alignas(sizeof(double) * most_lanes) Lanes {
   double value[3 * most_bezier * most_lanes];
 };
 
-/// Computes 1/3 int x.n dG of each element; the sum over a closed surface is its volume. Exact, (3p - 1)/2 + 1 Gauss points per direction.
+/// Computes 1/3 int x.n dG of each element; the sum over a closed surface is its volume. Exact, with (3p - 1)/2 + 1 Gauss points per direction.
 void volume(int degree, const Lanes& x, double (&volume)[most_lanes]);
 
-/// Computes int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, with the same Gauss points.
+/// Computes int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, with the same Gauss points as volume().
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient);
 
-/// Computes int B_b (g.x) n dG, the derivative of int g.x over the interior. Exact, (4p - 1)/2 + 1 Gauss points per direction.
+/// Computes int B_b (g.x) n dG, the derivative of the integral of g.x over the interior with respect to the Bezier points. Exact, with (4p - 1)/2 +
+/// 1 Gauss points per direction.
 void moment_gradient(int degree, const Lanes& x, const double* g, Lanes& gradient);
 
 /// Contributions of each element to the area, int dG, and to the integrals of 1, x_i and x_i x_j (11, 22, 33, 12, 13, 23) over the interior, by the
@@ -31,8 +32,8 @@ struct Moments {
 };
 void moments(int degree, const Lanes& x, Moments& result);
 
-/// Fluxes of a velocity v through each element, int v.n dG and int x_i v.n dG, and its contributions to the volume and to int x_i over the interior,
-/// as above. Exact, (4p - 1)/2 + 1 Gauss points per direction.
+/// Fluxes of a velocity v through each element, int v.n dG and int x_i v.n dG, and contributions of each element to the volume and to int x_i over
+/// the interior, as in Moments. Exact, with (4p - 1)/2 + 1 Gauss points per direction.
 struct Transport {
   double volume[most_lanes], first[3][most_lanes], flux[most_lanes], carried[3][most_lanes];
 };

@@ -17,20 +17,20 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Part of a mid-line inside one Bezier element.
+/// Part of an element's mid-line that lies inside one Bezier element.
 struct LinePiece {
   spline::Site first, last;
 };
 
-/// Returns the pieces of a mid-line, which is straight in the plane of its macro face, between the borders of Bezier elements. `direction` 0: along
-/// x.
+/// Returns the parts into which the borders of Bezier elements divide a mid-line, which is straight in the plane of its macro face (face of the
+/// cube). `direction` 0: along x.
 std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
   std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;
   double at = end - length;
   while (at < end - 1e-9 * length) {
     spline::Place inside = start;
-    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // past the border of the element that ends here
+    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // a point just past the border of the Bezier element that ends here
     spline::Site site = locate(inside);
     const spline::Element& element = space.elements[site.element];
     const double from = element.origin[direction], size = element.size[direction], to = std::min(from + size, end);
@@ -107,17 +107,17 @@ struct Sample {
   Eigen::VectorXd fields;
 };
 
-/// Returns whether a vertex is at a pole, where sides of elements have zero length.
+/// Returns whether a vertex is at a pole, where the sides of elements along the azimuth have zero length.
 bool on_pole(const Lattice& lattice, int vertex) {
   if (lattice.pad == 0) return false;
   const int height = lattice.height(vertex / lattice.units);
   return height == 0 || height == lattice.height(lattice.rows);
 }
 
-/// Returns whether a ray cannot be continued: at the border of an open face, or at a pole.
+/// Returns whether a mesh line cannot be continued along a ray, because it arrives at the border of the polar lattice or at a pole.
 bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
-/// Evaluates both surfaces, the load and the fields at lattice vertices, each once.
+/// Evaluates the unstressed and the current surface, the load and the fields at lattice vertices, each vertex only once.
 class Samples {
  public:
   Samples(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net, const FieldAt& load, const FieldsAt& fields)
@@ -129,14 +129,15 @@ class Samples {
       spline::Site site = locate_(spline::place(lattice_, vertex));
       const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
       found->second = {on(rest_), on(now_), Vec3::Zero(), {}};
-      if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);  // at the pole itself, a load per area has only a limit
+      // moved off the pole, where a load per area is only defined as a limit
+      if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);
       if (load_) found->second.load = load_(site);
       if (fields_) found->second.fields = fields_(site);
     }
     return found->second;
   }
 
-  /// Returns F at a parametric point.
+  /// Returns F, the map of unstressed to current tangents and normal (1.5), at a parametric point.
   Mat3 gradient(const spline::Place& p) const {
     const spline::Site site = locate_(p);
     return frame(now_, site) * frame(rest_, site).inverse();
@@ -160,7 +161,7 @@ class Samples {
   std::unordered_map<int, Sample> known_;
 };
 
-/// Returns at most `most` vertices, `stride` units apart along a ray, up to an extraordinary point or a pole.
+/// Returns the vertices along a ray, `stride` lattice units apart: `most` of them, or fewer if the ray arrives at an extraordinary point or a pole.
 std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int most) {
   std::vector<int> found;
   while (static_cast<int>(found.size()) < most) {
@@ -175,7 +176,8 @@ std::vector<int> vertices_along(const Lattice& lattice, Ray ray, int stride, int
   return found;
 }
 
-/// Vertices one edge length apart on the line of an edge: up to three before it, its two ends, up to three after it. `start`: index of its first end.
+/// Vertices on the mesh line of an edge, one edge length apart: up to three before the edge, its two ends, up to three after it. `start`: index of
+/// the first end of the edge.
 struct EdgeLine {
   std::vector<int> vertices;
   int start = 0;
@@ -207,7 +209,7 @@ Sample fourth_difference(Samples& samples, const EdgeLine& line, int first) {
   return sum;
 }
 
-/// Returns the gradient of the fields along the surface on a tile, shape (m, 3), from differences between the corners.
+/// Returns the gradient of the fields along the surface on a mesh element, shape (m, 3) for m components, from differences between the corners.
 Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
   const auto differences = [&](auto Sample::*what) {
     const auto at = [&](int k) -> const auto& { return samples.at(side[k].vertex).*what; };
@@ -219,7 +221,7 @@ Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
   return differences(&Sample::fields) * (x.transpose() * x).inverse() * x.transpose();
 }
 
-/// Deformation gradient and gradient of the fields at a tile.
+/// Deformation gradient F and gradient G of the fields (1.5) at the centre of a mesh element.
 struct Gradients {
   Mat3 f;
   Eigen::MatrixX3d fields;
@@ -251,7 +253,8 @@ Resolution mean(const Resolution& a, const Resolution& b) {
   return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
-/// Returns the tile of twice the width (or height) that contains this tile on the grid of the initial mesh; the same tile if there is none.
+/// Returns the element of twice the width (or height) that contains this mesh element on the grid of the initial mesh; returns the mesh element
+/// itself if there is none.
 spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
   spline::Rectangle out = r;
   int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;
@@ -261,7 +264,7 @@ spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bo
   return size <= lattice.base && end <= at + size ? out : r;
 }
 
-/// Returns the resolution along s and t of a tile.
+/// Returns the estimated errors of a mesh element along s and along t.
 std::array<Resolution, 2> on_tile(const Lattice& l, Samples& samples, const spline::Rectangle& r) {
   const std::array<Ray, 4> side = spline::sides(l, r);
   const Gradients g{samples.gradient({r.face, (r.x + 0.5 * r.width) / l.units, (l.height(r.y) + 0.5 * r.height) / l.height(l.rows)}),

@@ -33,29 +33,30 @@ struct MetricFields {
   FieldAt traction, velocity;
 };
 
-/// Returns the metrics of elements(mesh), in its order, on the surface of `net`. These are the elements of the T-mesh, which are marked and refined,
-/// not the Bezier elements: a mid-line may cross several of those. If a mid-line ends at a pole, where most fields have no value, only its length is
-/// computed.
+/// Returns the metrics of elements(mesh), in its order, on the surface of `net`. These are the elements of the T-mesh, which are marked and
+/// refined, not the Bezier elements: a mid-line may cross several Bezier elements. If a mid-line ends at a pole, where most fields have no value,
+/// only its length is computed.
 std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
                                             const MetricFields& fields);
 
 /// Returns the traction per current area of a load per reference area (3.7): f J0/J, where `load` has control values, and `rest` and `net` are the
-/// two configurations. This function and the next one store references, so their arguments must outlive the result.
+/// two configurations. The result of this function and of field_of_net() refers to the arguments, which must outlive it.
 FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net& net, const Net& load);
 
 /// Returns the field with control values `net`.
 FieldAt field_of_net(const spline::Space& space, const Net& net);
 
-/// Errors of an element along one direction. They estimate the distance between the exact surface or load and cubics on elements of this length,
+/// Errors of an element along one direction. They estimate how far the exact surface or load is from its best approximation by cubics on elements
+/// of this length,
 ///
 ///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per present area                       (1.5)
 ///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
 /// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
 /// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the current surface, and the
-/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
-/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no
-/// error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
+/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points,
+/// do not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has
+/// no error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
 struct Errors {
   double surface = 0;  ///< e(x), length
   double load = 0;     ///< e(phi), unit of phi; 0 without a load
@@ -67,11 +68,11 @@ struct Errors {
 struct Resolution {
   double length = 0;  ///< mean length of the edges
   Errors errors;
-  Errors merged;  ///< errors of the element of twice the length that contains this one; 16 times `errors` if there is none
+  Errors merged;  ///< errors of the element of twice the length that contains this one; if there is none, 16 times `errors`
 };
 
-/// Returns the resolution of elements(mesh), in its order, along s and t. A line of sample points ends at an extraordinary point or a pole; if it has
-/// fewer than five points, the estimate is 0. A side that is a pole is ignored.
+/// Returns the estimated errors of elements(mesh), in its order, along s and along t. A line of sample points ends at an extraordinary point or a
+/// pole; if it has fewer than five points, the estimate is 0. A side of an element that is collapsed to a pole is ignored.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
                                                   const FieldAt& load, const FieldsAt& fields = {});
 

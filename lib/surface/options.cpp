@@ -186,7 +186,7 @@ double ParticleShape::circumscribed_radius() const {
 double ParticleShape::equivalent_radius() const {
   if (shape == "sphere") return radius.value();
   if (shape == "red cell") {
-    // V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (0.21 + 2.0 r^2 - 1.12 r^4) dr
+    // Volume of a red cell divided by R^3: V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (0.21 + 2.0 r^2 - 1.12 r^4) dr
     const double volume = 2.0 * std::numbers::pi * (0.21 / 3.0 + 2.0 * 2.0 / 15.0 - 1.12 * 8.0 / 105.0);
     return radius.value() * std::cbrt(volume * 3.0 / (4.0 * std::numbers::pi));
   }

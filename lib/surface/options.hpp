@@ -11,12 +11,13 @@
 
 namespace tanktread::surface {
 
-/// Options `Surface/*` of the deck: the spline space of the particle's surface. Keys of the mesh that is not selected are not set.
+/// Options `Surface/*` of the deck: the spline space of the particle's surface. Keys of the mesh that is not selected (cube or polar) are not set.
 struct MeshOptions {
   std::string mesh = "cube";  ///< cube, polar
 
   std::optional<int> elements_per_side;             ///< n of the cube mesh
-  std::optional<std::string> extraordinary_points;  ///< rule at points where three elements meet: g1, catmull-clark
+  /// rule at the eight points of the cube mesh where three elements meet: g1, catmull-clark
+  std::optional<std::string> extraordinary_points;
 
   std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
   std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
@@ -38,13 +39,14 @@ struct MeshOptions {
   double n_elements() const;
 };
 
-/// Options `Particle/initial shape` of the deck: the shape at the start of a run, if it is not the resting shape. One of the first four is set.
+/// Options `Particle/initial shape` of the deck: the shape at the start of a run, if it is not the resting shape. Exactly one of `map`, `stretch`,
+/// `file` and `run` is set.
 struct InitialShape {
   std::optional<Mat3> map;          ///< linear map applied to the resting shape about its centre
   std::optional<Vec3> stretch;      ///< factors of a linear map that stretches the resting shape along the particle's body-fixed axes
   std::optional<std::string> file;  ///< Bezier-extraction text of a surface on the particle's mesh
   std::optional<std::string> run;   ///< results of another run, or one of its snapshots
-  std::optional<int> mode;          ///< index, from 1, of the mode of the run's spectrum that is added to its shape
+  std::optional<int> mode;          ///< mode of the run's spectrum that is added to its shape, counted from 1
   double mode_amplitude = 0.01;     ///< largest displacement of this mode, divided by R_C
   std::string volume = "resting";   ///< volume that the particle has and keeps: of the `resting` shape, or the initial shape's `own`
 
@@ -64,7 +66,7 @@ struct ParticleShape {
   std::optional<Vec3> semi_axes;    ///< semi-axes of a spheroid or ellipsoid along its body-fixed x1, x2, x3; not set for other shapes
   std::optional<std::string> file;  ///< path of the Bezier-extraction text with surface and spline space; set for the shape `file`
   Vec3 center = Vec3::Zero();       ///< centre of the resting shape
-  Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees that turns the axes of space into the body-fixed axes
+  Vec3 orientation = Vec3::Zero();  ///< rotation vector (axis times angle) in degrees from the space-fixed axes to the body-fixed axes
   std::optional<InitialShape> initial;  ///< initial shape; if not set, the resting shape
 
   void declare(deck::Section& section);
@@ -75,7 +77,7 @@ struct ParticleShape {
   /// Surface read from the file, without `center` and `orientation` applied; null for the other shapes.
   std::shared_ptr<const spline::SplineSurface> imported;
 
-  /// Returns whether all keys of the resting shape are equal to those of `other`.
+  /// Returns whether all keys of the resting shape are equal to the keys of `other`.
   bool same_rest(const ParticleShape& other) const;
 
   /// Returns the rotation matrix whose columns are the particle's body-fixed axes.
@@ -84,7 +86,7 @@ struct ParticleShape {
   /// Reads `imported` if the shape is `file`. Throws UserError if the file does not contain a closed surface.
   void read();
 
-  /// Returns whether the size is known: its keys are set, or the file has been read.
+  /// Returns whether the size of the particle is known: its keys are set, or the file with the shape has been read.
   bool sized() const;
 
   /// Returns R_C, the radius of the sphere of equal volume.
@@ -98,11 +100,11 @@ struct ParticleShape {
 /// line. The centre line starts along x1 and may bend.
 struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
-  std::optional<double> depth;           ///< d, largest deviation of the factor from 1; not set for `straight` and `file`
-  std::optional<double> half_length;     ///< w, distance from the middle of the profile to where the factor is 1
-  std::optional<double> corner_radius;   ///< radius of the rounded edges of a `step`
-  std::string directions = "x2 x3";      ///< directions in which the cross-section varies
-  std::optional<std::string> points;     ///< path of the file of factors; set for `file`
+  std::optional<double> depth;           ///< d, largest deviation of the factor from 1; not set for the profiles `straight` and `file`
+  std::optional<double> half_length;     ///< w, distance along the centre line from the middle of the profile to where the factor is 1
+  std::optional<double> corner_radius;   ///< radius of the rounded edges of the profile `step`
+  std::string directions = "x2 x3";      ///< directions in which the factor scales the cross-section
+  std::optional<std::string> points;     ///< path of the file of factors; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
   double bend_start = 0, bend_angle = 90;  ///< coordinate at which the arc begins; angle of the arc, from x1 towards x2, degrees
   std::optional<double> start, end;      ///< ends of the modelled part, as coordinates along the centre line
@@ -115,7 +117,7 @@ struct ChannelOptions {
 /// Options `Tube/*` of the deck: a straight tube along x1 around the particle, with a constant cross-section in the plane x2 x3. Keys of other
 /// cross-sections are not set.
 struct TubeOptions {
-  bool present = false;  ///< true if the scene has a tube; otherwise all other members are ignored
+  bool present = false;  ///< true if the deck has a tube; otherwise all other members are ignored
 
   std::string section = "circle";            ///< cross-section: circle, ellipse, rectangle, file
   std::optional<double> radius;              ///< radius of the circle; default 1
@@ -125,8 +127,10 @@ struct TubeOptions {
 
   std::optional<double> length;  ///< length of the wall; if not set, 2 pi R_T, or more for a long particle
   double period = 0;  ///< period of the duct along x1, as given by Domain; 0 if the duct is not periodic
-  std::optional<double> periodic_length;  ///< L, period along x1 of tube and particles (a train); not set if there is none or if Domain gives it
-  std::optional<int> images;              ///< M, without effect: a periodic tube has all images
+  /// L, period along x1 of tube and particles; not set if the tube is not periodic or Domain gives the period
+  std::optional<double> periodic_length;
+  /// M, number of periodic images; has no effect, because the kernels of a periodic tube contain all images
+  std::optional<int> images;
   int azimuthal_elements = 24;   ///< number of elements around the wall
   static constexpr int default_axial_elements = 25;
   std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; an open wall has three more rows of control points
@@ -134,13 +138,15 @@ struct TubeOptions {
 
   double contact_gap = 0.02;  ///< smallest allowed gap between particle and wall, divided by R_C; a run stops if the gap is smaller
 
-  std::optional<double> repulsion;        ///< stress by which the wall repels a membrane at zero gap; not set if there is no repulsion
-  std::optional<double> repulsion_range;  ///< gap over which this stress decreases by a factor of e
+  /// stress by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
+  std::optional<double> repulsion;
+  std::optional<double> repulsion_range;  ///< increase of the gap over which the repulsive stress decreases by a factor of e
 
   std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
   int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  std::optional<ChannelOptions> channel;  ///< options of a channel; if set, all members are keys of the section Channel
+  /// options of a channel; if set, the section Channel of the deck contains the keys of all members
+  std::optional<ChannelOptions> channel;
   std::string list() const { return channel ? "Channel" : "Tube"; }
 
   void declare(deck::Section& section);

@@ -29,7 +29,7 @@ std::vector<double> chord_ends(const PlaneCurve& curve) {
   return out;
 }
 
-/// Returns a bound of |x''| over part of a piece; x'' is linear on a cubic piece.
+/// Returns an upper bound of |x''| over part of a cubic piece of a curve, on which x'' is linear.
 double bend(const PlaneCurve& curve, double begin, double end) {
   if (const auto* ellipse = std::get_if<Ellipse>(&curve)) return ellipse->semi_axes.maxCoeff();
   const double inside = 1e-9 * (end - begin);
@@ -38,7 +38,7 @@ double bend(const PlaneCurve& curve, double begin, double end) {
 
 double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
 
-/// Returns the parameter of the point nearest to p on the segment from a to b: 0 at a, 1 at b.
+/// Returns the parameter (0 at a, 1 at b) of the point of the segment from a to b that is nearest to p.
 double foot(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
   return std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
@@ -130,7 +130,8 @@ double Outline::corner_angle(int k) const {
 
 double Outline::radius() const { return std::sqrt(area_ / std::numbers::pi); }
 
-/// Finds the foot of the perpendicular by Newton's method, restricted to the chord's piece of the curve; its ends are candidates too.
+/// Finds the point nearest to p on the part of the curve that belongs to the chord: the foot of the perpendicular by Newton's method, or an end
+/// point.
 Nearest Outline::nearest_on(const Chord& chord, const Vec2& p) const {
   const double h = chord.end - chord.begin;
   double u = chord.begin + h * foot(p, chord.a, chord.b);
@@ -169,8 +170,8 @@ Nearest Outline::nearest(const Vec2& p) const {
   return best;
 }
 
-/// Returns the point of the outline nearest to p. p lies within the distance r of x, and `its` is the nearest point to x. Chords that contain only
-/// points y with |y - x|^2 - |its - x|^2 > 2 r |y - its| are skipped, because such points are farther from p than `its`.
+/// Returns the point of the outline nearest to p, where p lies within the distance r of x, and `its` is the point of the outline nearest to x. A
+/// point y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is farther from p than `its`, so chords that contain only such points are skipped.
 Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
   Nearest best;
   best.distance = std::numeric_limits<double>::infinity();
@@ -182,7 +183,8 @@ Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, con
   return best;
 }
 
-/// Tests against the polygon of the chords. If the point is so close that polygon and curve may differ, uses the normal at the nearest point instead.
+/// Returns whether p is inside the polygon of the chords. If p is so close to the outline that polygon and curve may differ, uses the normal at the
+/// nearest point of the outline instead.
 bool Outline::within(const Vec2& p, const Nearest& nearest) const {
   if (nearest.distance <= 2 * sag_) {
     Vec2 out = normal(nearest.side, nearest.u);

@@ -24,9 +24,10 @@ struct Ellipse {
 };
 
 /// A piecewise cubic curve, twice continuously differentiable: a cubic B-spline.
-///   piece e, local 0 <= s = (u - breaks[e])/(breaks[e+1] - breaks[e]) <= 1:   x(s) = sum_i bezier[e][i] B_i(s)
+///   On piece e, with the local parameter 0 <= s = (u - breaks[e])/(breaks[e+1] - breaks[e]) <= 1:   x(s) = sum_i bezier[e][i] B_i(s)
 struct CubicCurve {
-  bool closed = false;                      ///< periodic: u = breaks.back() is u = breaks.front(), with equal derivatives
+  /// true for a periodic curve: u = breaks.back() and u = breaks.front() are the same point, with equal derivatives
+  bool closed = false;
   std::vector<double> breaks;               ///< m + 1 ascending knots
   std::vector<std::array<Vec2, 4>> bezier;  ///< m pieces
 };
@@ -35,7 +36,8 @@ struct CubicCurve {
 using PlaneCurve = std::variant<Ellipse, CubicCurve>;
 
 bool closed(const PlaneCurve& curve);
-std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter; a closed curve is periodic and accepts any u
+std::array<double, 2> range(
+    const PlaneCurve& curve);  ///< first and last value of the parameter; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
 /// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:
@@ -47,8 +49,8 @@ CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector
 /// Returns the open spline that also has the given derivatives with respect to u at its ends.
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points, const Vec2& first, const Vec2& last);
 
-/// Returns the B-spline control points. Closed: m points; point i belongs to the function with its middle knot at breaks[i]. Open (end knots
-/// fourfold): m + 3 points.
+/// Returns the B-spline control points. A closed curve with m pieces has m points; point i belongs to the B-spline with its middle knot at
+/// breaks[i]. An open curve (end knots fourfold) has m + 3 points.
 std::vector<Vec2> control_points(const CubicCurve& curve);
 
 /// The point of an outline nearest to a given point, and the side of the outline on which the given point lies.
@@ -56,7 +58,7 @@ struct Nearest {
   int side = 0;
   double u = 0;
   Vec2 x;               ///< nearest point
-  double distance = 0;  ///< distance to the nearest point; positive for a point inside the outline, negative outside
+  double distance = 0;  ///< distance from the given point to the nearest one; positive inside the outline, negative outside
 };
 
 /// Closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), traversed in the direction of rotation from x2 towards x3. The curve has either
@@ -75,7 +77,7 @@ class Outline {
   Vec2 tangent(int k, double u) const { return at(k, u).d.normalized(); }
   Vec2 normal(int k, double u) const;  ///< unit normal out of the tube's interior (into the wall)
 
-  /// Returns the angle inside the outline at the start of side k, 0 .. 2 pi; pi if there is no corner.
+  /// Returns the interior angle of the outline at the start of side k, in radians from 0 to 2 pi; pi if there is no corner.
   double corner_angle(int k) const;
 
   double length() const { return length_; }
@@ -89,19 +91,19 @@ class Outline {
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
-  /// Returns the point nearest to p among those that may be nearest to a point within r of x. `its` is the nearest point to x. The distance has no
-  /// sign.
+  /// Returns the point of the outline nearest to p, for p within the distance r of x. `its` is the point of the outline nearest to x; it limits the
+  /// search. The distance in the result has no sign.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
   /// Returns the number of elements of each side when `elements` are distributed by length, with at least `least` per side and equally many on sides
   /// of equal length. Their sum may exceed `elements` slightly.
   std::vector<int> shares(int elements, int least = 1) const;
 
-  /// Returns the m + 1 knots of m elements on side k, evenly spaced in its parameter.
+  /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.
   std::vector<double> knots(int k, int m) const;
 
-  /// Returns the outline as cubic splines on shares(elements, 2) even elements. They interpolate the points at the knots and, on open sides, the end
-  /// tangents. All sides of the result are CubicCurves. The approximation is of order 4, exact for straight sides.
+  /// Returns the outline as cubic splines on shares(elements, 2) even elements. The splines interpolate the points at the knots and, on open sides,
+  /// the tangents at the ends. All sides of the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
   Outline spline(int elements) const;
 
  private:
@@ -128,10 +130,11 @@ class Outline {
   std::array<Vec2, 2> box_;
 };
 
-/// Returns the section of a tube: the exact circle or ellipse, four straight sides, or the spline through the points of a file. Throws UserError.
+/// Returns the cross-section of a tube: the exact circle or ellipse, the four straight sides of a rectangle, or the spline through the points of a
+/// file. Throws UserError.
 Outline outline(const TubeOptions& options);
 
-/// Returns the section of a tube as cubic splines on `elements` elements.
+/// Returns the cross-section of a tube as cubic splines on `elements` elements.
 inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
 
 /// Returns the outline through the points of a file, as described at `Tube/outline`. Throws UserError with file, line and numbers in one sentence.

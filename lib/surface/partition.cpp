@@ -15,7 +15,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Neighbours of every element in compressed rows, weighted by the number of common control points.
+/// Neighbours of every element, stored as compressed sparse rows, weighted by the number of common control points.
 struct Graph {
   std::vector<idx_t> start, neighbour, weight;
 };
@@ -44,7 +44,7 @@ Graph common_points(const spline::Space& space, const std::vector<std::vector<in
   return graph;
 }
 
-/// Returns the costs as positive integers, which METIS requires.
+/// Returns the costs scaled to positive integers, which METIS requires.
 std::vector<idx_t> scaled(std::span<const double> cost) {
   const double largest = *std::max_element(cost.begin(), cost.end());
   std::vector<idx_t> result;
@@ -59,7 +59,7 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
-  options[METIS_OPTION_UFACTOR] = 10;  // imbalance of at most one per cent
+  options[METIS_OPTION_UFACTOR] = 10;  // allows the costs of the parts to differ from the mean by one per cent
   const auto method = parts <= 8 ? METIS_PartGraphRecursive : METIS_PartGraphKway;
   const int status = method(&n, &constraints, graph.start.data(), graph.neighbour.data(), weights.data(), nullptr, graph.weight.data(), &k,
                             nullptr, nullptr, options, &cut, owner.data());
@@ -67,8 +67,8 @@ std::vector<int> element_owners(Graph graph, int parts, std::span<const double> 
   return {owner.begin(), owner.end()};
 }
 
-/// Assigns each of the shared points to the part that owns most of the elements around it, the clearest cases first. If that part already has its
-/// number of points, the point goes to the adjacent part with the fewest points.
+/// Assigns each control point that lies on elements of several parts to the part that owns most of the elements around it, beginning with the
+/// points with the largest majority. If this part already has its share of the points, the point goes to the adjacent part with the fewest points.
 std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, const std::vector<int>& element_owner, int parts,
                               std::span<const int> shared) {
   const int n = static_cast<int>(shared.size());
@@ -93,7 +93,7 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-/// Returns parts of nearly equal cost, with these points distributed among them.
+/// Returns parts of nearly equal cost, with the given points distributed among them.
 Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)

@@ -8,7 +8,7 @@
 
 namespace tanktread::surface {
 
-/// One owner (0 .. parts - 1) for every element and every control point.
+/// The owner (part 0 .. parts - 1) of every element and of every control point.
 struct Partition {
   int parts = 1;
   std::vector<int> element_owner, point_owner;
@@ -20,8 +20,8 @@ struct Partition {
 /// UserError if there are more parts than elements.
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
 
-/// Returns a partition if only some points have work, for example the fundamental points of a symmetric surface. Only these points are balanced; the
-/// other points have no owner (-1).
+/// Returns a partition for the case that only some control points cause work, for example the fundamental points of a symmetric surface. Only these
+/// points are balanced; the other points have no owner (-1).
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points);
 
 /// Work of one rank: the points it owns, and all elements that touch them; both ascending.

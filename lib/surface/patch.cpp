@@ -57,7 +57,7 @@ double mean_curvature(const Jet& jet) {
   return -(e * jet.tt.dot(n) - 2 * f * jet.st.dot(n) + g * jet.ss.dot(n)) / (2 * (e * g - f * f));
 }
 
-/// Sums over s first, then over t.
+/// Computes the positions on the grid of a patch by sums over the Bernstein polynomials in s first, then in t.
 Grid sample(const Patch& patch) {
   const int p = patch.degree;
   Grid x;

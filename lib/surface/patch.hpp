@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// View of the Bezier points of one element, shape (3, (p+1)^2): all of x1, then x2, then x3, s fastest.
+/// View of the Bezier points of one element, stored as a (3, (p+1)^2) array: all x1, then all x2, then all x3; s fastest.
 struct Patch {
   int degree = 3;
   const double* points = nullptr;
@@ -37,7 +37,7 @@ double mean_curvature(const Jet& jet);
 
 constexpr int cells = 6;  ///< number of grid intervals per direction
 
-/// Positions at (i, j)/cells, indexed [j][i].
+/// Positions at the parameters (s, t) = (i, j)/cells of an element, indexed [j][i].
 using Grid = std::array<std::array<Vec3, cells + 1>, cells + 1>;
 Grid sample(const Patch& patch);
 

@@ -9,7 +9,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Linear system for the derivatives at the knots.
+/// Linear system for the derivatives of an interpolating cubic spline at its knots.
 class Rows {
  public:
   explicit Rows(int n) : n_(n), right_(Eigen::MatrixXd::Zero(n, 2)) {}
@@ -42,8 +42,8 @@ std::vector<Step> steps(const std::vector<double>& breaks, const std::vector<Vec
   return out;
 }
 
-/// Adds the row that makes the second derivative continuous between the steps `left` and `right`. `column`: columns of the derivatives at their
-/// knots.
+/// Adds the equation that makes the second derivative continuous between the intervals `left` and `right`. `column`: columns of the unknown
+/// derivatives at the three knots of these intervals.
 void join(Rows& rows, int row, const Step& left, const Step& right, const std::array<int, 3>& column) {
   rows.add(row, column[0], 1 / left.h);
   rows.add(row, column[1], 2 / left.h + 2 / right.h);
@@ -51,7 +51,7 @@ void join(Rows& rows, int row, const Step& left, const Step& right, const std::a
   rows.value(row, 3 * (left.slope / left.h + right.slope / right.h));
 }
 
-/// Adds the row that sets the third derivative of step k to that of step k + 1, or to zero if it vanishes.
+/// Adds the equation that makes the third derivatives on intervals k and k + 1 equal, or the third derivative on interval k zero if `vanishes`.
 void third_derivative(Rows& rows, int row, const std::vector<Step>& steps, int k, bool vanishes) {
   const Step& a = steps[k];
   const double one = 1 / (a.h * a.h);
@@ -77,7 +77,7 @@ CubicCurve hermite(bool closed, const std::vector<double>& breaks, const std::ve
   return curve;
 }
 
-/// Returns the spline through the points; `ends` adds the rows for the ends of an open spline.
+/// Returns the cubic spline that interpolates the points; `ends` adds the equations for the ends of an open spline.
 template <class Ends>
 CubicCurve interpolate(bool closed, const std::vector<double>& breaks, const std::vector<Vec2>& points, const Ends& ends) {
   const std::vector<Step> step = steps(breaks, points);

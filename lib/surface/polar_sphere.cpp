@@ -16,8 +16,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Circles of control points. Control point A has the distance profile[2 row] from the axis, in the direction `across`, and the height profile[2 row
-/// + 1]. `across` has length 1, except at a C1 pole.
+/// Rows of control points on circles about the axis. Control point A is at the distance profile[2 row] from the axis in the direction `across`, and
+/// at the height profile[2 row + 1]. `across` has length 1, except at a C1 pole.
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
@@ -44,7 +44,7 @@ struct Circles {
   }
 };
 
-/// Returns the profile of points on the sphere at evenly spaced colatitudes.
+/// Returns the profile (radii and heights of the rows) of points on the sphere at evenly spaced colatitudes.
 Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   std::vector<double> profile;
   double last = -1;
@@ -58,7 +58,8 @@ Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   return Eigen::Map<Eigen::VectorXd>(profile.data(), Eigen::Index(profile.size()));
 }
 
-/// The integral over one sector (all sectors are equal), with its gradient and Gauss-Newton matrix with respect to the profile.
+/// The misfit to the sphere, int |grad eps|^2 + eps^2 dG, over one sector between two meridians (all sectors are equal), with its gradient and
+/// Gauss-Newton matrix with respect to the profile.
 struct Misfit {
   double value = 0;
   Eigen::VectorXd gradient;
@@ -83,7 +84,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the single point at a pole stays on the axis
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the control point at a pole stays on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }
@@ -113,8 +114,8 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // residual: eps, and the gradient of eps in an orthonormal frame. slope: derivatives of `residual` with respect to the profile of rows first ..
-    // last.
+    // residual: eps = (|x|^2 - 1)/2, and the gradient of eps in an orthonormal frame of the tangent plane. slope: derivatives of `residual` with
+    // respect to the profile of rows first .. last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);
@@ -147,9 +148,9 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   const Sector sector(mesh, space);
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
-  // Sliding along the meridian hardly changes the misfit, so the damping must be nearly zero to find the best distribution. A long slide leaves the
-  // sphere by its square at first, and the next step corrects this. But if rows are closer together than the points of a row, a long slide may fold
-  // the surface.
+  // Moving the rows along the meridian hardly changes the misfit, so the damping of the Gauss-Newton steps must be nearly zero to find the best
+  // distribution. In a long step, rows that move along their tangents leave the sphere by the square of the step, which the next step corrects. But
+  // if rows are closer together than the points within a row, a long step may fold the surface, so its length is limited.
   const double longest = mesh.meridional > mesh.azimuthal ? 0.2 : std::numeric_limits<double>::infinity();
   double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {

@@ -17,7 +17,7 @@ namespace {
 constexpr int points = 16;  ///< 4 x 4
 constexpr int most = (spline::max_degree + 1) * (spline::max_degree + 1);
 
-/// Derivatives in s and t of the Bernstein polynomials at the points, one column per polynomial.
+/// Derivatives in s and t of the Bernstein polynomials at the Gauss points, one column per polynomial.
 struct Table {
   Eigen::Matrix<double, points, Eigen::Dynamic> in_s, in_t;
 };

@@ -10,8 +10,8 @@ namespace tanktread::surface {
 
 /// The worst elements of a surface, from 4 x 4 Gauss points of each Bezier element.
 struct Quality {
-  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with m the direction of the sum of a1 x a2: near 1 on an
-  /// even element, zero or less on a folded one. The next two members are the element and the position where it occurs.
+  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with a1, a2 the tangents and m the direction of the sum
+  /// of a1 x a2: near 1 on an even element, zero or less on a folded one. The next two members are the element and the position where it occurs.
   double jacobian_ratio = 1;
   int folded_element = 0;
   Vec3 folded_place = Vec3::Zero();
@@ -26,7 +26,7 @@ struct Quality {
 Quality quality(const BezierMap& map, const Net& net);
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 
-/// Returns the worse value of each measure.
+/// Returns, for each measure, the worse one of its values in a and b.
 Quality worse(const Quality& a, const Quality& b);
 
 /// Throws RunFailure, with element and position, if an element is folded: its jacobian_ratio is not above `least`.

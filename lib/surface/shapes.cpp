@@ -12,14 +12,15 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Returns the k for which the mesh is the uniform one of 3 * 2^k elements per side, or -1.
+/// Returns the k for which the mesh is uniform with 3 * 2^k elements per side of the cube, or -1 if there is none.
 int subdivisions(const spline::TMesh& mesh, int n_points) {
   int level = 0, n = 3;
   while (6 * n * n + 2 < n_points) n *= 2, ++level;
   return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
 }
 
-/// Returns initial control points: the subdivided net itself if the mesh is uniform, otherwise points of the limit surface.
+/// Returns initial control points of the sphere: vertices of the subdivided net itself if the mesh is uniform with 3 * 2^k elements per side,
+/// otherwise points of the limit surface.
 Net smooth_start(const spline::TMesh& mesh) {
   const std::vector<int> vertices = spline::anchors(mesh);
   const int level = subdivisions(mesh, static_cast<int>(vertices.size()));
@@ -94,7 +95,7 @@ Net imported_shape(const ParticleShape& shape) {
 
 namespace {
 
-/// The net of the face x3 = 1 with one ring of mirror images around it.
+/// The vertices of the cube's face x3 = 1 with one ring of mirror images of vertices around it.
 struct FaceNet {
   int n;
   Net points;
@@ -103,8 +104,8 @@ struct FaceNet {
   Vec3 at(int i, int j) const { return points.row((j + 1) * (n + 3) + i + 1).transpose(); }
   void set(int i, int j, const Vec3& x) { points.row((j + 1) * (n + 3) + i + 1) = x.transpose(); }
 
-  /// Fills the ring with mirror images in the planes x1 = -+x3 and x2 = -+x3. The four outermost corners do not exist on the cube. Each is set so
-  /// that the corner element becomes a parallelogram.
+  /// Fills the ring around the face with mirror images of vertices in the planes x1 = -+x3 and x2 = -+x3. The four outermost corners do not exist
+  /// on the cube. Each is set so that the corner element becomes a parallelogram.
   void mirror() {
     for (int k = 0; k <= n; ++k) {
       set(-1, k, mirrored(at(1, k), 0, -1));
@@ -142,7 +143,8 @@ FaceNet coarse_net() {
   return net;
 }
 
-/// Applies the Catmull-Clark rule (Q + 2 R + (N - 3) P)/N, with Q the mean of the face points and R the mean of the edge midpoints.
+/// Applies the Catmull-Clark rule (Q + 2 R + (N - 3) P)/N, with P the vertex, N its valence, Q the mean of the adjacent face points and R the mean
+/// of the midpoints of its edges.
 Vec3 vertex_point(const FaceNet& net, int i, int j) {
   const bool corner = (i == 0 || i == net.n) && (j == 0 || j == net.n);
   const Vec3 p = net.at(i, j);
@@ -183,8 +185,8 @@ void uniform_b_spline(double x, double (&value)[4]) {
   value[3] = x * x * x / 6;
 }
 
-/// Returns the weighted mean of the 4 x 4 vertices around the cell of a point on the cube. The point is mapped to the face x3 = 1 by swapping two
-/// axes and changing a sign, and the result is mapped back.
+/// Returns the weighted mean of the 4 x 4 vertices around the cell that contains a point of the cube. The point is mapped to the face x3 = 1 by
+/// swapping two axes and changing a sign, and the result is mapped back.
 template <class Weights>
 Vec3 radial_mean(const Vec3& on_cube, int n, const Net& net, Weights weights) {
   int axis;

@@ -10,10 +10,10 @@
 
 namespace tanktread::surface {
 
-/// Catmull-Clark subdivision of a net of 3 x 3 elements per face, projected radially onto the unit sphere. It is C2 except at the eight corners,
-/// including the cube edges. (An equiangular map has kinks along the cube edges, which a smooth spline space smears out: ten times the error in the
-/// normal.) The initial net divides the cube's edges in thirds. Its inner vertices lie at (0.26, 0.26, 1), which gave the smallest error in the
-/// normal for fitted spheres of 3 to 24 elements per side.
+/// Smooth map from the surface of a cube to the unit sphere: Catmull-Clark subdivision of a net of 3 x 3 elements per face, projected radially onto
+/// the sphere. It is C2, also across the edges of the cube, except at its eight corners. (An equiangular map has kinks along the cube edges, which
+/// smooth splines cannot represent; the error in the normal is ten times as large.) The initial net divides the cube's edges in thirds. Its inner
+/// vertices lie at (0.26, 0.26, 1), which gave the smallest error in the normal for fitted spheres of 3 to 24 elements per side.
 ///
 /// The surface has all symmetries of the cube, so one face is stored; its neighbours are its mirror images.
 class CubeSphere {
@@ -23,10 +23,12 @@ class CubeSphere {
 
   int elements_per_side() const { return n_; }
 
-  /// Returns a vertex of the last net, or its bilinear interpolation, on the unit sphere, for a point on the surface of the cube [-1, 1]^3.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3: a vertex of the last subdivided net, or a bilinear
+  /// interpolation between its vertices.
   Vec3 net_point(const Vec3& on_cube) const;
 
-  /// Returns a point of the limit surface, on the unit sphere: a bicubic B-spline, exact except in the eight corner elements.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube: a point of the limit surface, evaluated as a bicubic B-spline.
+  /// This is exact except in the elements at the corners of the cube.
   Vec3 limit_point(const Vec3& on_cube) const;
 
  private:
@@ -34,8 +36,8 @@ class CubeSphere {
   Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
 };
 
-/// Returns the control points of the unit sphere: the control points of a smooth cube sphere after `fits` least-squares fits of the surface to its
-/// own radial image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the
+/// Returns the control points of the unit sphere: the control points of a CubeSphere after `fits` least-squares fits of the surface to its own
+/// radial image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the
 /// projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
@@ -45,9 +47,9 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 ///
 ///   int |grad eps|^2 + eps^2 dG,   eps = (|x|^2 - 1) / 2,
 ///
-/// over the surface itself, where grad eps is the part of x in the tangent plane, the error of the normal. The minimum also optimises the
-/// distribution of the elements along the meridian. Compared with a least-squares fit of positions, the error in the normal is 0.6 times as large, in
-/// the radius half.
+/// over the surface itself. grad eps is the part of x in the tangent plane, which is zero if the normal is exact. The minimum also optimises the
+/// distribution of the elements along the meridian. Compared with a least-squares fit of positions, the error in the normal is 0.6 times as large,
+/// in the radius half.
 Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int axis = 2);
 
 /// Coefficients c of the half thickness sqrt(1 - r^2)/2 (c0 + c1 r^2 + c2 r^4) of a red cell with unit radius       (Evans & Fung 1972)
@@ -57,8 +59,8 @@ constexpr double red_cell_profile[] = {0.21, 2.0, -1.12};
 ///   (x1, x2, x3) -> (x1, x2, x3/2 (c0 + c1 r^2 + c2 r^4)),  r^2 = x1^2 + x2^2
 Vec3 red_cell(const Vec3& on_unit_sphere);
 
-/// Returns the resting shape of a deck at its position, from a fitted unit sphere. Nothing is scaled after the fit, so the volume has the error of
-/// the fit. Lengths refer to the deck's radius.
+/// Returns the resting shape of a deck at its position, from a fitted unit sphere. The result is not rescaled, so its volume has the error of the
+/// fit. Lengths are in the unit of the deck.
 Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape);
 
 /// Returns the resting shape on the cube mesh, or on the structured mesh with its poles on the body-fixed axis x_{axis+1} of the particle.

@@ -13,8 +13,8 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Half of a closed surface of revolution that is symmetric about its equator. A point at height z of the unit sphere maps to a parallel with the
-/// radius equator sqrt(1 - z^2) and the given height.
+/// Half of a closed surface of revolution that is symmetric about its equator. A point of the unit sphere at height z maps to a circle about the
+/// axis with the radius `equator` times sqrt(1 - z^2), at the height `height(z)`.
 struct Meridian {
   double equator;
   std::function<double(double z)> height, slope;  ///< slope: derivative of height with respect to z
@@ -42,7 +42,7 @@ Meridian spheroid(double equator, double pole) {
 
 Meridian red_cell_meridian(double radius) {
   const auto half_thickness = [](double z) { return red_cell({std::sqrt(1 - z * z), 0, z})[2]; };
-  const auto slope = [](double z) {  // derivative of z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
+  const auto slope = [](double z) {  // height'(z), with height = z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
     const auto [c0, c1, c2] = red_cell_profile;
     const double r2 = 1 - z * z;
     return (c0 + c1 * r2 + c2 * r2 * r2) / 2 - z * z * (c1 + 2 * c2 * r2);
@@ -68,7 +68,7 @@ Meridian resting_meridian(const ParticleShape& shape, int axis) {
   return spheroid(semi_axes[(axis + 1) % 3], semi_axes[axis]);
 }
 
-/// Returns the oblate spheroid whose half area divided by 2 pi is `area`.
+/// Returns the oblate spheroid with this reduced volume whose surface area is 4 pi times `area`.
 Meridian spheroid_of(double reduced_volume, double area) {
   const auto of_ratio = [&](double ratio) {
     const Meridian unit = spheroid(1, ratio);
@@ -76,7 +76,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
     return spheroid(scale, scale * ratio);
   };
   const double volume = reduced_volume * std::pow(4 * std::numbers::pi * area, 1.5) / (6 * std::sqrt(std::numbers::pi));
-  double low = 0, high = 1;  // ratio of the semi-axes, with which the volume grows
+  double low = 0, high = 1;  // bounds of the ratio of the semi-axes; the volume at fixed area grows with this ratio
   for (int k = 0; k < 60; ++k) {
     const double middle = (low + high) / 2;
     const Meridian one = of_ratio(middle);
@@ -85,7 +85,8 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// Returns the height on the meridian `other` that encloses the same area with the equator as the height z on the meridian `one`.
+/// Returns the height z on the unit sphere whose image on the meridian `other` encloses the same area with the equator as the image of height z
+/// does on `one`.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

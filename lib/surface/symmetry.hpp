@@ -1,5 +1,6 @@
 #pragma once
-// Reflections that map a surface and its spline space onto themselves, and sums over such a surface from one element of each orbit.
+// Reflections that map a surface and its spline space onto themselves, and sums over a symmetric surface that are computed from one element per
+// orbit.
 
 #include <array>
 #include <functional>
@@ -13,16 +14,16 @@
 
 namespace tanktread::surface {
 
-/// One of the eight maps of the unit square onto itself: coordinates swapped, then reversed.
+/// One of the eight symmetries of the unit square: the coordinates are swapped or not, then reversed or not.
 struct Turn {
   bool exchanged = false, turned[2] = {false, false};
 
   std::array<double, 2> operator()(double s, double t) const;
-  int bernstein(int b, int p) const;  ///< index of the image of entry b of a (p + 1) x (p + 1) grid that is symmetric about its middle
+  int bernstein(int b, int p) const;  ///< index of the image of entry b of a (p + 1) x (p + 1) grid under this map
   Turn after(const Turn& first) const;
 };
 
-/// A map x -> c + diag(signs) (x - c) about the middle c of a surface: a mirror plane (one sign is -1), a half turn (two), the point symmetry
+/// A map x -> c + diag(signs) (x - c) about the centre c of a surface: a mirror plane (one sign is -1), a half turn (two), the point symmetry
 /// (three). It stores the image of each control point and of each Bezier element, and how the parameters of each element are permuted.
 struct Image {
   Vec3 signs = Vec3::Ones();
@@ -30,7 +31,7 @@ struct Image {
   std::vector<Turn> turn;
 };
 
-/// The map of an image about a given middle.
+/// Reflection x -> c + diag(signs) (x - c) of an image about a given centre c.
 struct Reflection {
   Vec3 signs = Vec3::Ones(), middle = Vec3::Zero();
 
@@ -38,11 +39,12 @@ struct Reflection {
   Vec3 operator()(const Vec3& x) const { return middle + of_vector(x - middle); }
 };
 
-/// Returns the image if the space and all these nets are mapped onto themselves: positions within 1e-10 of the first net's size (the accuracy of
-/// refined fits), basis functions within 1e-10, sites within 1e-9. Elements may be permuted.
+/// Returns the image with these signs if it maps the space and all these nets onto themselves: positions within 1e-10 of the first net's size (the
+/// accuracy of refined fits), basis functions within 1e-10, sites within 1e-9. Elements may be mapped to other elements.
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
 
-/// A group of such images. Its fundamental control points are orbit representatives, all in one connected part of the surface if possible.
+/// A group of reflections that map a surface onto itself. Its fundamental control points are orbit representatives, all in one connected part of
+/// the surface if possible.
 class Symmetry {
  public:
   /// Creates the trivial group for n points.
@@ -55,10 +57,10 @@ class Symmetry {
   const std::vector<Image>& images() const { return images_; }          ///< all except the identity
   const std::vector<int>& fundamental() const { return fundamental_; }  ///< ascending
 
-  const std::vector<int>& source() const { return source_; }  ///< fundamental point of the orbit of each point
+  const std::vector<int>& source() const { return source_; }  ///< for each control point, the fundamental point of its orbit
 
-  /// Returns the factors, per component, that convert the vector at a point's source to the vector at the point, shape (N, 3): 1, -1, or 0 if an
-  /// image maps the point onto itself and changes the sign of the component.
+  /// Returns the factors, per component, that convert the vector at a point's source (the fundamental point of its orbit) to the vector at the
+  /// point, shape (N, 3): 1, -1, or 0 if an image maps the point onto itself and changes the sign of the component.
   const Net& signs() const { return signs_; }
 
   /// Completes a symmetric field of vectors (control values or values at the sites) from its rows at the fundamental points. A component becomes zero
@@ -86,7 +88,7 @@ struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;
 
-  bool whole() const;  ///< no element is its own image
+  bool whole() const;  ///< whether all weights are 1: no image except the identity maps an element onto itself
 };
 
 /// Returns the fundamental elements. `points(e)`: the control points of element e.
@@ -96,12 +98,14 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
 void fold(const Symmetry& symmetry, Net& sums);
 
 /// Fields of one parity. The mirror plane across each axis maps them to themselves (1) or to their negative (-1). Half turns and the point symmetry
-/// multiply them by the product over their axes. With 1 for all planes they are the symmetric fields. Any field is a sum of one field of each parity.
+/// multiply them by the product over their axes. The parity 1 for all planes is that of symmetric fields. Any field is a sum of one field of each
+/// parity.
 class Parity {
  public:
   explicit Parity(const Symmetry& symmetry, const Vec3& of_planes = Vec3::Ones());
 
-  /// Return the factors that convert a vector, or a scalar, at the source of a point to the value at the point, like Symmetry::signs.
+  /// Return the factors that convert a vector, or a scalar, at the source of a point (the fundamental point of its orbit) to the value at the
+  /// point, like Symmetry::signs.
   const Net& signs() const { return signs_; }
   const Eigen::VectorXd& scalar_signs() const { return scalar_signs_; }
 

@@ -6,7 +6,7 @@ namespace tanktread::surface {
 namespace INSTRUCTIONS {
 namespace {
 
-/// Computes columns first .. first + width - 1.
+/// Computes columns first .. first + width - 1 of the three sums.
 template <int width>
 void add_columns(int first, int n, int n_rows, const double* rows, const double* factors, double* out) {
   constexpr int registers = width / lanes;
@@ -20,7 +20,7 @@ void add_columns(int first, int n, int n_rows, const double* rows, const double*
     for (int k = 0; k < registers; ++k) store(sum[c][k], out + n * c + first + lanes * k);
 }
 
-/// Computes a single column, for the columns that do not fill a register.
+/// Computes a single column of the three sums, for the columns that do not fill a SIMD register.
 void add_column(int k, int n, int n_rows, const double* rows, const double* factors, double* out) {
   for (int c = 0; c < 3; ++c) {
     double sum = 0;

@@ -15,20 +15,21 @@ namespace tanktread::surface {
 
 namespace {
 
-/// A corner of the grid: position, velocity, unstressed position (if there is one), height above the plane.
+/// A corner of a grid triangle: position x, velocity v, unstressed position (if the membrane has one), height above the plane x2 = centre_2.
 struct Corner {
   Vec3 x, v, unstressed;
   double height;
 };
 
-/// Sums over the curve so far: circulation, length, weight of its points (6.6), and weighted angular velocity.
+/// Sums over the parts of the section curve added so far: circulation, length, weight of the material points (6.6), and weighted angular velocity.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;
   double circulation = 0, length = 0, weight = 0, turned = 0;
-  bool onwards = false, backwards = false;  // true if a piece moves along the curve; true if a piece moves against it
+  // whether some part of the curve moves in its positive direction; whether some part moves against it
+  bool onwards = false, backwards = false;
 
-  /// Adds the piece of the curve in a flat triangle, whose corners run counter-clockwise seen from outside.
+  /// Adds the part of the section curve x2 = centre_2 that lies in a flat triangle, whose corners run counter-clockwise seen from outside.
   void cut(const Corner& a, const Corner& b, const Corner& c) {
     const bool above[3] = {a.height >= 0, b.height >= 0, c.height >= 0};
     if (above[0] == above[1] && above[1] == above[2]) return;
@@ -44,7 +45,8 @@ struct Circuit {
       unstressed[n++] = from.unstressed + share * (to.unstressed - from.unstressed);
     }
     const Vec3 normal = (b.x - a.x).cross(c.x - a.x), along = x[1] - x[0];
-    if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;  // at a corner, round-off determines the direction
+    // the plane meets only a corner of the triangle, so that round-off determines the direction
+    if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;
     const double sense = along.dot(Vec3::UnitY().cross(normal)) > 0 ? 1 : -1;
     const double treads = sense * along.dot(v[0] + v[1]) / 2;
     circulation += treads;
@@ -66,8 +68,8 @@ struct Circuit {
 using kernel::n_harmonics;
 using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
-/// Integrals over the surface x/R: of products of harmonics (the lower triangle), of harmonics times v.n, and of harmonics times n. The integrals of
-/// x/R times n are the diagonal entries V/R^3, whose sum is 3 V/R^3.
+/// Integrals over the surface x/R: of products h_i h_j of solid harmonics (the lower triangle), of h_i v.n, and of h_i n. The integrals of x_i n_i
+/// are V/R^3 each, where V is the volume.
 struct Sums {
   Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
   Eigen::Map<Values> motion;
@@ -81,7 +83,8 @@ struct Sums {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
-  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();  // points this close are in the plane
+  // points closer than this to the plane x2 = centre_2 count as lying in it
+  const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();
   const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {
     const auto [low, high] = hull(places[e], 1);
@@ -121,7 +124,8 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  const Mat3 moments = all.normals.block<3, 3>(1, 0);  // V/R^3 times the identity but for quadrature errors; gives no residual for a translation
+  // int x_i n_j dG / R^3, which is V/R^3 times the identity except for quadrature errors. With V itself, a translation would leave a residual.
+  const Mat3 moments = all.normals.block<3, 3>(1, 0);
   Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();
   const Values motion = all.motion - all.normals * frame;

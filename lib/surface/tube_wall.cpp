@@ -18,7 +18,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Cubic splines in one variable: pieces with four functions each, and collocation points, each with all pieces that contain it.
+/// Cubic splines in one variable: intervals between knots (pieces) with four functions each, and collocation points, each with all pieces that
+/// contain it.
 struct Line {
   struct Piece {
     std::array<int, 4> functions;
@@ -28,7 +29,7 @@ struct Line {
   std::vector<Piece> pieces;
   std::vector<std::vector<std::pair<int, double>>> sites;
 
-  /// Adds a site at u, given the knots of the pieces from `first` on.
+  /// Adds a collocation point at u, given the knots of the pieces from index `first` on.
   void add_site(double u, const std::vector<double>& knots, int first, bool closed) {
     const int m = static_cast<int>(knots.size()) - 1;
     const double tiny = 1e-9 * (knots[m] - knots[0]);
@@ -46,7 +47,7 @@ struct Line {
     sites.push_back(std::move(at));
   }
 
-  /// Adds the pieces between the knots. Function j of the extended knots has the index number(j).
+  /// Adds the pieces between the knots. The function that begins at knot j of `extended` has the index number(j).
   template <class Number>
   void add_pieces(const std::vector<double>& extended, int m, const Number& number) {
     for (int e = 0; e < m; ++e) {
@@ -64,8 +65,8 @@ struct Line {
   }
 };
 
-/// Adds the splines on these knots to a line. Closed: function i has its middle knot at knots[i]. Open: end knots have multiplicity four. If
-/// `inwards`, the sites at the ends are moved halfway to their neighbours.
+/// Adds the splines with the given knots. If `closed`, they are periodic, and the middle knot of function i is knots[i]. Otherwise the end knots
+/// have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
 void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards) {
   const int m = static_cast<int>(knots.size()) - 1, n = closed ? m : m + 3, first = static_cast<int>(line.pieces.size()), offset = line.n;
   const double period = knots[m] - knots[0];
@@ -85,7 +86,7 @@ void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards
   line.n += n;
 }
 
-/// Returns the integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x, g = `grading`.
+/// Returns the integral of the element density 1 + (g - 1)/(1 + x^4) from 0 to x, where g is `grading`.
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -141,8 +142,9 @@ spline::Space product(const Line& along, const Line& around) {
   return space;
 }
 
-/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. The elements along `open` are those between these knots, but the
-/// seam cuts the last one in two; open.pieces[0] is its second part.
+/// Makes the densities on a wall periodic along x1. `knots`: knots of the periodic splines along x1, except the last one. `open`: the open splines
+/// of the wall's geometry, with the same elements, except that the seam between the end and the start of the period divides the last element into
+/// two; open.pieces[0] is its second part.
 void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<double>& knots) {
   const double period = wall.end - wall.start;
   std::vector<double> ends{wall.start}, cycle = knots;
@@ -158,7 +160,8 @@ void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<dou
   }
   wall.sites = sites_of(open, around);
   const int last = static_cast<int>(closed.pieces.size()) - 1, m = static_cast<int>(around.pieces.size());
-  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());  // fraction of the last element that lies before the seam
+  // fraction of the last periodic element that lies before the end of the wall
+  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());
   const auto fill = [&](int piece, int of_closed, double from, double to) {
     const Line::Piece &here = open.pieces[static_cast<std::size_t>(piece)], &there = closed.pieces[static_cast<std::size_t>(of_closed)];
     const Eigen::Matrix4d values = there.extraction * spline::restriction(3, from, to).transpose();
@@ -184,8 +187,8 @@ void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<dou
   wall.period = period;
 }
 
-/// Returns a wall without its control points, and the control points of the outline. `periodic`: knots of periodic densities, between the first and
-/// the last of `knots`, or empty.
+/// Returns a wall without its control points, and the control points of the outline. `periodic`: knots of the periodic splines for densities, all
+/// of them between the first and the last of `knots`; empty if the wall is not periodic.
 std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
                                              const std::vector<double>& periodic = {}) {
   Line along, around;
@@ -222,7 +225,8 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;  // control points of the function x1
+    // x1 coordinates of the control points (Greville points), with which x1 is a linear function
+    const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
   }
@@ -251,7 +255,8 @@ TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, 
 
 namespace {
 
-/// Returns the control points of the spline through a value of a channel's sections, with the slopes of this value at the ends and at triple knots.
+/// Returns the control points of the spline that interpolates a quantity of a channel's sections, with given slopes at the ends and at triple
+/// knots.
 std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
   const double step = 1e-6 * (knots.back() - knots.front());
@@ -273,7 +278,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // the seam is at a quarter of the last element
+  if (channel->repeats()) {  // the wall ends, one period after its start, at a quarter of the last periodic element
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);
@@ -281,14 +286,16 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
   }
   auto [wall, ring] = woven(channel->outline(), knots, azimuthal_elements, periodic);
   wall.space.description = "channel, " + wall.space.description;
-  const double wider = std::sqrt(channel->outline().area() / wall.outline.area());  // gives the spline's outline the area of the section
+  // scales the spline approximation of the outline to the exact area
+  const double wider = std::sqrt(channel->outline().area() / wall.outline.area());
   for (Vec2& point : ring) point *= wider;
   double narrowest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);  // ends of a straight channel are coarser
+    // equally narrow sections: the smallest, because elements are longer at the ends of a straight channel
+    wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);
     narrowest = at.factor.minCoeff();
   }
   const auto centre = through(*channel, knots, [](const Channel::Section& at) -> Vec2 { return at.centre.head<2>(); });
