@@ -143,6 +143,9 @@ class Results {
   Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next
 };
 
+/// Returns the names of the series that a run of this scene records.
+std::vector<std::string> names_of_series(const Scene& scene);
+
 /// Returns a sentence for each expectation that the run cannot meet because it does not reach its time. Throws UserError if an expected series is not
 /// recorded in this scene.
 std::vector<std::string> check_expectations(const Scene& scene);

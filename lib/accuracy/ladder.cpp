@@ -1,0 +1,196 @@
+#include "accuracy/ladder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "accuracy/outcome.hpp"
+#include "accuracy/publication.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "deck/words.hpp"
+#include "record/files/file.hpp"
+#include "system/agreement.hpp"
+#include "system/ranks.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// How the directory of a level continues.
+enum class Start { finished, resume, anew };
+
+class Ladder {
+ public:
+  Ladder(const Task& task, const Program& program) : task_(task), program_(program) {}
+
+  int climb() {
+    serially([this] { prepare(); });
+    for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
+      if (const std::string why = reason_to_stop(k); !why.empty()) return conclude(stopped, why);
+      const int code = run(k);
+      if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
+      if (count_ >= 3 && judge(k)) return conclude(met, "");
+    }
+    if (count_ == 0) throw RunFailure("no level came to its end: " + failure_);
+    return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
+  }
+
+ private:
+  fs::path directory(int k) const { return task_.directory / ("level_" + std::to_string(k)); }
+
+  /// Runs `act` on the first rank. All ranks throw if it fails.
+  void serially(const std::function<void()>& act) const {
+    coupling::decided([&] {
+      act();
+      return std::vector<double>{0};
+    });
+  }
+
+  /// Prints a line on the first rank.
+  void say(const std::string& line) const {
+    if (ranks_.rank() == 0 && !task_.quiet) std::printf("%s\n", line.c_str()), std::fflush(stdout);
+  }
+
+  void prepare() {
+    occupation_ = std::make_unique<output::Occupation>(task_.directory);
+    if (!task_.resume) {
+      if (!task_.overwrite) output::check_vacant(task_.directory);
+      output::start_directory(task_.directory);
+    }
+    output::write_whole(task_.directory / ladder_file, task_.deck);
+  }
+
+  /// Returns the sentence with which the ladder stops before level k because of its limit; empty if it goes on.
+  std::string reason_to_stop(int k) const {
+    const auto limit = task_.options.wall_clock_limit;
+    if (!limit) return {};
+    const auto numbers = coupling::decided([&] {
+      return std::vector<double>{seconds_here(), levels_.empty() ? 0 : predicted_seconds(seconds_)};
+    });
+    if (numbers[0] + numbers[1] <= *limit) return {};
+    return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, numbers[1], *limit);
+  }
+
+  double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  /// Runs level k, unless it is finished. Returns `stopped`, or 0 if it has ended or failed.
+  int run(int k) {
+    const Level level{k, k, k};
+    const std::string deck = program_.deck(settings(task_.values, level));
+    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(k, level, deck))}; });
+    const auto start = static_cast<Start>(static_cast<int>(known[0]));
+    const auto began = Clock::now();
+    if (start != Start::finished) {
+      const auto limit = task_.options.wall_clock_limit;
+      const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
+      try {
+        if (program_.run(deck, directory(k), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
+      } catch (const RunFailure& failure) {
+        failure_ = failure.what();
+        say(formatted("  level %-5d failed: ", k) + failure_);
+        return 0;
+      }
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    serially([&] {
+      std::optional<Outcome> outcome = finished(directory(k), level, deck);
+      if (!outcome) throw RunFailure("the results of " + directory(k).string() + " are not those that were written");
+      if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
+      seconds_.push_back(outcome->seconds);
+      levels_.push_back(std::move(*outcome));
+    });
+    ++count_;
+    return 0;
+  }
+
+  Start start_of(int k, const Level& level, const std::string& deck) const {
+    if (!task_.resume) return Start::anew;
+    if (finished(directory(k), level, deck)) return Start::finished;
+    std::error_code absent;
+    if (!task_.runs_in_time || !fs::is_directory(directory(k), absent)) return Start::anew;
+    for (const auto& entry : fs::directory_iterator(directory(k)))
+      if (const std::string name = entry.path().filename(); name.starts_with("snapshot_") && name.ends_with(".hdf")) return Start::resume;
+    return Start::anew;
+  }
+
+  /// Estimates the errors of the finest level and says what is missing. Returns whether all requests are met.
+  bool judge(int k) {
+    const auto all_met = coupling::decided([&] {
+      answers_.clear();
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
+      return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
+    });
+    say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k), 2e-3 / std::pow(4., k),
+                  seconds_.empty() ? 0 : seconds_.back()));
+    for (const Answer& one : answers_) say("              " + sentence(one));
+    return all_met[0] != 0;
+  }
+
+  /// Publishes the finest finished level as the results, and returns the exit code.
+  int conclude(Code code, const std::string& why) {
+    if (coupling::decided([&] { return std::vector<double>{double(levels_.size())}; })[0] == 0) {
+      if (code == stopped) return stopped;
+      throw RunFailure("no level came to its end" + (failure_.empty() ? "" : ": " + failure_));
+    }
+    const auto outcome = coupling::decided([&] {
+      answers_.clear();
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_), why, seconds_here());
+      report(code, why, missed_expectations);
+      return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
+    });
+    return static_cast<int>(outcome[0]);
+  }
+
+  void report(Code code, const std::string& why, const std::string& missed_expectations) const {
+    std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
+    if (code == stopped) line += "; --resume " + task_.directory.string() + " goes on";
+    for (const Answer& one : answers_)
+      if (code != met && !one.met) line += "; " + sentence(one);
+    if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;
+    if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
+    if (!task_.quiet) std::printf("  results     %s\n", task_.directory.c_str());
+  }
+
+  const Task& task_;
+  const Program& program_;
+  const Clock::time_point start_ = Clock::now();
+  coupling::Ranks ranks_;
+  std::unique_ptr<output::Occupation> occupation_;  // on the first rank
+  std::vector<Outcome> levels_;                     // finished levels, on the first rank
+  std::vector<double> seconds_;                     // their wall seconds, on the first rank
+  std::vector<Answer> answers_;                     // on the first rank
+  int count_ = 0;                                   // number of finished levels
+  std::string failure_;                             // message of the last level that failed
+};
+
+}  // namespace
+
+double predicted_seconds(const std::vector<double>& seconds) {
+  const std::size_t n = seconds.size();
+  if (n == 0) return 0;
+  const double growth = n > 1 && seconds[n - 2] > 0 ? std::clamp(seconds[n - 1] / seconds[n - 2], 1.5, 5.) : 2.5;
+  return seconds[n - 1] * growth;
+}
+
+std::optional<std::string> ladder_deck(const fs::path& directory) {
+  const auto there = coupling::decided([&] {
+    std::error_code absent;
+    return std::vector<double>{double(fs::is_regular_file(directory / ladder_file, absent))};
+  });
+  if (there[0] == 0) return {};
+  return text_of_file(directory / ladder_file, (directory / ladder_file).string(), 10'000'000);
+}
+
+int climb(const Task& task, const Program& program) { return Ladder(task, program).climb(); }
+
+}  // namespace tanktread::accuracy

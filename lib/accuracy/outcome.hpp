@@ -1,0 +1,55 @@
+#pragma once
+// Results of the levels of a ladder, and the errors estimated from them.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accuracy/estimate.hpp"
+#include "accuracy/levels.hpp"
+#include "accuracy/request.hpp"
+#include "record/files/run_record.hpp"
+
+namespace tanktread::accuracy {
+
+/// A finished level.
+struct Outcome {
+  Level level;
+  std::filesystem::path directory;
+  output::RunRecord record;
+  double seconds = 0;  ///< wall seconds that the level has taken
+};
+
+/// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
+std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
+
+/// Returns a series as a function of time. Of a branch of steady shapes, whose points differ between levels, only its folds and its last point are
+/// compared; the abscissa is their index. A run of one row has one point.
+Curve curve(const output::RunRecord& record, const std::string& series);
+
+/// The estimate for one request.
+struct Answer {
+  Request request;
+  Estimate estimate;
+  double value = 0;      ///< value that the error is of: the largest magnitude over the run, the last value, or the average
+  double allowed = 0;    ///< the request in the unit of the series
+  bool met = false;
+  Curve difference;      ///< difference of the last two levels, for the part `run`
+};
+
+/// Returns the answer to a request from the levels finished so far, coarse to fine.
+Answer answer(const Request& request, const std::vector<Outcome>& levels);
+
+/// Estimated error of a series of the finest level: one value per row.
+struct SeriesError {
+  std::string name, unit, si;
+  std::vector<double> values;  ///< NaN where the estimate cannot be trusted
+  std::string untrusted;       ///< reason, empty if it can be trusted
+};
+
+/// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels);
+
+}  // namespace tanktread::accuracy
