@@ -221,10 +221,10 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck) {
   return request;
 }
 
-/// Runs the deck on finer and finer levels until its requests are met. Returns the exit code.
-int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry) {
+/// Runs the deck on finer and finer levels until its requests are met, or with `--check` prints the prediction. Returns the exit code.
+int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
   const RunRequest whole = run_request(arguments, deck.effective());
-  check_vacant(whole);
+  if (!arguments.check) check_vacant(whole);
   accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
                       scene.in_system() && scene.runs_in_time()};
   accuracy::check_levels(task.values);
@@ -247,7 +247,10 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     request.output = directory, request.deck_text = text, request.resume = resume, request.overwrite = true, request.quiet = true;
     return simulate(of_level, request);
   };
-  return accuracy::climb(task, program);
+  if (!arguments.check) return accuracy::climb(task, program);
+  for (const std::string& line : accuracy::forecast(task, program))
+    if (speaks) std::cout << line << "\n";
+  return done;
 }
 
 /// Returns the deck with which a run in a directory began. Collective.
@@ -290,9 +293,9 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (arguments.check) {
     const std::string chosen = plan_text(plan(scene, coupling::Ranks().size()));
     if (speaks) std::cout << deck.effective() << "\n" << chosen;
-    return done;
+    return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(done);
   }
-  if (scene.accuracy.present) return climb(scene, deck, arguments, registry);
+  if (scene.accuracy.present) return climb(scene, deck, arguments, registry, speaks);
   RunRequest request = run_request(arguments, deck.effective());
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   return simulate(scene, request);

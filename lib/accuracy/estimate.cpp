@@ -23,7 +23,7 @@ Estimate estimated(const std::vector<double>& differences, double scale, const s
   if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs three levels"};
   if (std::max(last, differences[n - 2]) <= round_off * scale) return {std::max(last, differences[n - 2]), unknown, ""};
   const auto factor = [&](std::size_t level) { return differences[level - 1] / (expected[level - 1] - expected[level]); };
-  const double error = std::max(factor(n), std::sqrt(factor(n) * factor(n - 1))) * finest;
+  const double error = 1.2 * std::max(factor(n), 0.8 * std::sqrt(factor(n) * factor(n - 1))) * finest;
   const double ratio = expected[n - 1] / finest * factor(n - 1) / factor(n);
   if (ratio >= least_ratio && ratio <= most_ratio) return {error, ratio, ""};
   if (n > 2 && std::isfinite(differences[n - 3])) {
@@ -66,6 +66,25 @@ double mean(const Curve& curve) {
     if (!std::isnan(middle)) sum += step * middle, length += step;
   }
   return length > 0 ? sum / length : unknown;
+}
+
+double statistical_error(const Curve& curve) {
+  constexpr std::size_t batches = 8;
+  if (curve.at.size() < 4 * batches) return unknown;
+  const double start = curve.at.front(), length = (curve.at.back() - start) / batches;
+  std::vector<double> means;
+  for (std::size_t k = 0; k < batches; ++k) {
+    Curve part;
+    for (std::size_t i = 0; i < curve.at.size(); ++i)
+      if (curve.at[i] >= start + static_cast<double>(k) * length && curve.at[i] <= start + static_cast<double>(k + 1) * length)
+        part.at.push_back(curve.at[i]), part.values.push_back(curve.values[i]);
+    if (part.at.size() > 1) means.push_back(mean(part));
+  }
+  if (means.size() < batches) return unknown;
+  double sum = 0, squares = 0;
+  for (const double one : means) sum += one / batches;
+  for (const double one : means) squares += (one - sum) * (one - sum);
+  return std::sqrt(squares / (batches * (batches - 1.)));
 }
 
 std::vector<double> envelope(const Curve& curve, const std::vector<double>& at) {

@@ -36,6 +36,7 @@ class Ladder {
     serially([this] { prepare(); });
     for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
       if (const std::string why = reason_to_stop(k); !why.empty()) return conclude(stopped, why);
+      if (k == balanced_from && count_ == k && balance() == stopped) return conclude(stopped, "the runs that balance the parts were stopped");
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
       if (count_ >= 3 && judge(k)) return conclude(met, "");
@@ -45,7 +46,9 @@ class Ladder {
   }
 
  private:
-  fs::path directory(int k) const { return task_.directory / ("level_" + std::to_string(k)); }
+  static constexpr int balanced_from = 4;  // first level whose parts are balanced; before it this costs more than it saves
+
+  fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
   /// Runs `act` on the first rank. All ranks throw if it fails.
   void serially(const std::function<void()>& act) const {
@@ -84,40 +87,68 @@ class Ladder {
 
   /// Runs level k, unless it is finished. Returns `stopped`, or 0 if it has ended or failed.
   int run(int k) {
-    const Level level{k, k, k};
+    std::optional<Outcome> outcome;
+    const int code = run({k, std::max(0, k - slack_.time), std::max(0, k - slack_.quadrature)}, std::to_string(k), outcome);
+    if (code == stopped || !failure_of_last_.empty()) return code;
+    if (ranks_.rank() == 0) seconds_.push_back(outcome->seconds), levels_.push_back(std::move(*outcome));
+    ++count_;
+    return 0;
+  }
+
+  /// Runs level 1 with looser tolerances of time and of quadrature. Sets by how much these parts may be looser from now on. Returns `stopped`, or 0.
+  int balance() {
+    std::optional<Outcome> time, quadrature;
+    if (run({1, 0, 1}, "1_time", time) == stopped || run({1, 1, 0}, "1_quadrature", quadrature) == stopped) return stopped;
+    const auto found = coupling::decided([&] {
+      std::vector<double> least;
+      for (const Request& request : task_.options.requests) {
+        const Answer finest = answer(request, levels_, task_.values);
+        if (finest.met || !finest.estimate.trusted() || !time || !quadrature) continue;
+        const double whole = finest.estimate.error * std::pow(4., levels_.back().level.mesh - 1);
+        const double of_time = slack(part_error(request, levels_[1], *time), whole);
+        const double of_quadrature = slack(part_error(request, levels_[1], *quadrature), whole);
+        least = least.empty() ? std::vector{of_time, of_quadrature}
+                              : std::vector{std::min(least[0], of_time), std::min(least[1], of_quadrature)};
+      }
+      return least.empty() ? std::vector<double>{0, 0} : least;
+    });
+    slack_ = {0, static_cast<int>(found[0]), static_cast<int>(found[1])};
+    return 0;
+  }
+
+  /// Runs one level in its directory, unless it is finished. Returns `stopped`, or 0 if it has ended or failed. Sets `outcome` on the first rank.
+  int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) {
+    failure_of_last_.clear();
     const std::string deck = program_.deck(settings(task_.values, level));
-    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(k, level, deck))}; });
+    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck))}; });
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
     const auto began = Clock::now();
     if (start != Start::finished) {
       const auto limit = task_.options.wall_clock_limit;
       const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
       try {
-        if (program_.run(deck, directory(k), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
+        if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
       } catch (const RunFailure& failure) {
-        failure_ = failure.what();
-        say(formatted("  level %-5d failed: ", k) + failure_);
+        failure_ = failure_of_last_ = failure.what();
+        say("  level " + name + " failed: " + failure_);
         return 0;
       }
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     serially([&] {
-      std::optional<Outcome> outcome = finished(directory(k), level, deck);
-      if (!outcome) throw RunFailure("the results of " + directory(k).string() + " are not those that were written");
+      outcome = finished(directory(name), level, deck);
+      if (!outcome) throw RunFailure("the results of " + directory(name).string() + " are not those that were written");
       if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
-      seconds_.push_back(outcome->seconds);
-      levels_.push_back(std::move(*outcome));
     });
-    ++count_;
     return 0;
   }
 
-  Start start_of(int k, const Level& level, const std::string& deck) const {
+  Start start_of(const fs::path& place, const Level& level, const std::string& deck) const {
     if (!task_.resume) return Start::anew;
-    if (finished(directory(k), level, deck)) return Start::finished;
+    if (finished(place, level, deck)) return Start::finished;
     std::error_code absent;
-    if (!task_.runs_in_time || !fs::is_directory(directory(k), absent)) return Start::anew;
-    for (const auto& entry : fs::directory_iterator(directory(k)))
+    if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
+    for (const auto& entry : fs::directory_iterator(place))
       if (const std::string name = entry.path().filename(); name.starts_with("snapshot_") && name.ends_with(".hdf")) return Start::resume;
     return Start::anew;
   }
@@ -126,7 +157,7 @@ class Ladder {
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
       answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, task_.values));
       return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
     });
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k), 2e-3 / std::pow(4., k),
@@ -143,8 +174,8 @@ class Ladder {
     }
     const auto outcome = coupling::decided([&] {
       answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_), why, seconds_here());
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, task_.values));
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, task_.values), why, seconds_here());
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });
@@ -170,7 +201,8 @@ class Ladder {
   std::vector<double> seconds_;                     // their wall seconds, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
-  std::string failure_;                             // message of the last level that failed
+  Level slack_;                                     // by how many levels time and quadrature are looser than the mesh
+  std::string failure_, failure_of_last_;           // messages of the last level that failed, and of the last level if it failed
 };
 
 }  // namespace

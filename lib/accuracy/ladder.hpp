@@ -50,6 +50,10 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// RunFailure if no level comes to its end. Collective.
 int climb(const Task& task, const Program& program);
 
+/// Runs the two lowest levels in a temporary directory. Returns, one line each, the level that is predicted to meet each request, and the predicted
+/// seconds. The lines are those of the first rank. Collective.
+std::vector<std::string> forecast(const Task& task, const Program& program);
+
 /// Returns the predicted seconds of the next level from those of the levels before it, coarse to fine: the last one times its growth, which is
 /// limited to 1.5 ... 5; 2.5 if it is unknown. The seconds include `fixed` seconds that do not grow.
 double predicted_seconds(const std::vector<double>& seconds);

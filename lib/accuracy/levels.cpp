@@ -136,7 +136,13 @@ void set_quadrature(Setter& to, int level) {
 int elements_per_side(int level) { return sides.at(static_cast<std::size_t>(level)); }
 
 double expected_error(const Level& level) {
-  return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -2.) * std::pow(2., -level.time);
+  return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -2.) * std::pow(2., -level.mesh);
+}
+
+int slack(double part, double whole) {
+  if (!(whole > 0)) return 0;
+  if (!(part > 0)) return 2;
+  return static_cast<int>(std::clamp(std::floor(std::log(whole / (4 * part)) / std::log(4.)), -1., 2.));
 }
 
 std::vector<std::string> settings(const Values& deck, const Level& level) {

@@ -28,8 +28,12 @@ constexpr int last_level = 11;
 int elements_per_side(int level);
 
 /// Returns the expected size of the error of a level, 1 at level 0: the geometric mean of the error of the mesh, n^-4, and of the tolerances,
-/// 4^-level.
+/// 4^-level. A part that is looser than the mesh is assumed not to matter.
 double expected_error(const Level& level);
+
+/// Returns by how many levels a part may be looser than the mesh so that its error is at most a fourth of the whole one; between -1 (finer) and 2.
+/// `part` and `whole`: errors at the same level.
+int slack(double part, double whole);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:
 /// - `elements per side` is n. A polar mesh has 2n elements from pole to pole, and around the pole axis as many as the deck's ratio gives. Of several

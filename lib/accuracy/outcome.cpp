@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 
 #include "base/errors.hpp"
@@ -66,6 +67,23 @@ double magnitude_of_unit(const output::RunRecord& record, const std::string& uni
   return most;
 }
 
+bool is_of_several(const output::RunRecord& record) {
+  return std::ranges::any_of(record.series(), [](const output::Series& one) { return one.name.find('/') != std::string::npos; });
+}
+
+/// Returns whether the membrane of a particle resists bending, or is an interface. `particle`: `<name>/`, or empty. Copies of a particle have a
+/// number after its name.
+bool bends(const Values& deck, const std::string& particle) {
+  for (const auto& [path, value] : deck) {
+    const bool of_it = particle.empty() ? path.starts_with("Membrane/") : path.starts_with("Particles/") &&
+                       particle.starts_with(path.substr(10, path.find('/', 10) - 10));
+    if (!of_it || value.empty()) continue;
+    if (path.ends_with("Membrane/law") && value.find("surface tension") != std::string::npos) return true;
+    if (path.find("/bending") != std::string::npos && !path.ends_with("reference") && std::strtod(value.c_str(), nullptr) > 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck) {
@@ -92,22 +110,45 @@ Curve curve(const output::RunRecord& record, const std::string& series) {
   return found;
 }
 
-Answer answer(const Request& request, const std::vector<Outcome>& levels) {
-  Answer found{request, {}, 0, 0, false, {}};
+double part_error(const Request& request, const Outcome& level, const Outcome& looser) {
+  const auto of = [&](const Outcome& one) { return part(curve(one.record, request.series), request.of); };
+  return largest(difference(of(level), of(looser)).values) / 3;
+}
+
+std::string obstacle(const std::vector<Outcome>& levels, const Values& deck) {
+  constexpr double compressed = -0.02;  // tension divided by the modulus
+  const output::RunRecord& finest = levels.back().record;
+  for (const output::Series& series : finest.series()) {
+    const std::size_t slash = series.name.rfind('/') + 1;
+    const std::string name = series.name.substr(slash), particle = series.name.substr(0, slash);
+    if (name == "contact_impulse" && series.values.back() > 0) return "Contact/limiter holds particles apart by forces that depend on the time step";
+    if (name != "smallest_tension" || *std::ranges::min_element(series.values) > compressed || bends(deck, particle)) continue;
+    const std::vector<double> sizes = norms(differences(series.name, Of::run, levels));
+    if (!estimated(sizes, magnitude(curve(finest, series.name)), expected_errors(levels)).trusted())
+      return "the membrane is compressed and does not resist bending, so that it would form wrinkles, which no mesh represents";
+  }
+  return {};
+}
+
+Answer answer(const Request& request, const std::vector<Outcome>& levels, const Values& deck) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Answer found{request, {}, 0, 0, false, unknown};
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
   found.allowed = request.relative ? request.value * magnitude(whole) : request.value;
   const std::vector<Curve> all = differences(request.series, request.of, levels);
   const std::vector<double> sizes = norms(all);
   found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels));
-  if (!all.empty()) found.difference = all.back();
   const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
   if (tiny && !found.estimate.trusted()) found.estimate = {std::max(sizes.back(), sizes[sizes.size() - 2]), found.estimate.ratio, ""};
-  found.met = found.estimate.trusted() && found.estimate.error <= found.allowed;
+  if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
+  if (const std::string why = obstacle(levels, deck); found.estimate.trusted() && !why.empty()) found.estimate.untrusted = why;
+  found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;
   return found;
 }
 
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels) {
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const Values& deck) {
+  const std::string why = obstacle(levels, deck);
   std::vector<SeriesError> all;
   const output::RunRecord& finest = levels.back().record;
   for (const output::Series& series : finest.series()) {
@@ -116,8 +157,8 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels) {
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
     const Estimate estimate = estimated(norms(pairs), magnitude_of_unit(finest, series.unit), expected_errors(levels));
-    one.untrusted = estimate.untrusted;
-    if (estimate.trusted()) {
+    one.untrusted = estimate.trusted() ? why : estimate.untrusted;
+    if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
       if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // rows before a fold have its error
         for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;

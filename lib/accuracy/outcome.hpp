@@ -36,11 +36,21 @@ struct Answer {
   double value = 0;      ///< value that the error is of: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< the request in the unit of the series
   bool met = false;
-  Curve difference;      ///< difference of the last two levels, for the part `run`
+  double statistical = 0;  ///< statistical error of an average of several particles, which the estimate does not contain; NaN if it is unknown
 };
 
-/// Returns the answer to a request from the levels finished so far, coarse to fine.
-Answer answer(const Request& request, const std::vector<Outcome>& levels);
+/// Returns the answer to a request from the levels finished so far, coarse to fine. `deck`: values of all keys.
+Answer answer(const Request& request, const std::vector<Outcome>& levels, const Values& deck);
+
+/// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. Its errors fall by 4
+/// per level.
+double part_error(const Request& request, const Outcome& level, const Outcome& looser);
+
+/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can:
+/// - the limiter of contacts acts, whose forces depend on the time step;
+/// - a membrane without bending resistance is compressed, and its smallest tension does not converge: wrinkles would form that no mesh represents.
+/// `deck`: values of all keys.
+std::string obstacle(const std::vector<Outcome>& levels, const Values& deck);
 
 /// Estimated error of a series of the finest level: one value per row.
 struct SeriesError {
@@ -50,6 +60,6 @@ struct SeriesError {
 };
 
 /// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels);
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const Values& deck);
 
 }  // namespace tanktread::accuracy

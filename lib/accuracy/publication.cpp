@@ -55,7 +55,8 @@ std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, 
   for (const Answer& one : answers) {
     text += "    - request: " + in_quotes(one.request.text()) + "\n      series: " + in_quotes(one.request.series) + "\n      of: " +
             word(one.request.of) + "\n      value: " + real_text(one.value) + "\n      allowed: " + real_text(one.allowed) +
-            "\n      estimated error: " + real_text(one.estimate.trusted() ? one.estimate.error : NAN) + "\n      ratio: " +
+            "\n      estimated error: " + real_text(one.estimate.trusted() ? one.estimate.error : NAN) +
+            (std::isnan(one.statistical) ? "" : "\n      statistical error: " + real_text(one.statistical)) + "\n      ratio: " +
             real_text(one.estimate.ratio) + "\n      met: " + (one.met ? "true" : "false") + "\n";
     if (!one.estimate.trusted()) text += "      untrusted: " + in_quotes(one.estimate.untrusted) + "\n";
   }
@@ -66,6 +67,15 @@ std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, 
     text += "    - {level: " + std::to_string(one.level.mesh) + ", seconds: " + real_text(one.seconds) + ", settings: [" + keys + "]}\n";
   }
   return text;
+}
+
+/// Returns the summary of one run without its statement about errors, which the sections of the ladder replace.
+std::string without_statement(std::string summary) {
+  const std::size_t begin = summary.find("\nestimated errors:\n");
+  if (begin == std::string::npos) return summary;
+  std::size_t end = summary.find('\n', begin + 1);
+  while (end != std::string::npos && summary.compare(end, 3, "\n  ") == 0) end = summary.find('\n', end + 1);
+  return summary.erase(begin, end == std::string::npos ? end : end - begin);
 }
 
 /// Returns the text of the summary with the section `expect` replaced.
@@ -80,7 +90,8 @@ std::string with_expect(const std::string& summary, const std::string& section) 
 std::string sentence(const Answer& one) {
   const std::string name = one.request.text();
   if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
-  return name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
+  const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
+  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (1.4 times the estimate must be allowed)");
 }
 
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
@@ -102,7 +113,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   std::string missed, text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
   for (const deck::Verdict& one : verdicts)
     if (!one.passed && one.not_binding.empty()) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + one.name + ": " + one.reason;
-  text = with_expect(text, expect_text(verdicts, task.expect, errors));
+  text = with_expect(without_statement(text), expect_text(verdicts, task.expect, errors));
   text += "error:\n";
   for (const SeriesError& one : errors)
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";

@@ -122,6 +122,7 @@ class Results {
   void write_record();
   output::Durable durable() const;
   std::string finish(const Account& account, const Phases& phases);
+  output::Entries<std::string> known_errors() const;
   std::map<std::string, std::string> origin() const;
 
   const Scene& scene_;

@@ -33,8 +33,7 @@ bool is_unfinished(const std::string& name) {
 /// Returns whether the entry of a directory is the folder of a level of a ladder.
 bool is_level(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename();
-  return entry.is_directory() && name.size() > level.size() && name.starts_with(level) &&
-         name.find_first_not_of("0123456789", level.size()) == std::string::npos;
+  return entry.is_directory() && name.size() > level.size() && name.starts_with(level) && name[level.size()] >= '0' && name[level.size()] <= '9';
 }
 
 template <class Test>

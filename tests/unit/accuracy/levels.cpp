@@ -81,6 +81,14 @@ TEST(Levels, RefuseShapesOfOneMesh) {
   EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
 }
 
+TEST(Levels, LoosenAPartThatDoesNotMatter) {
+  EXPECT_EQ(slack(1. / 4, 1), 0);
+  EXPECT_EQ(slack(1. / 17, 1), 1);
+  EXPECT_EQ(slack(1e-6, 1), 2);
+  EXPECT_EQ(slack(1, 1), -1);  // finer
+  EXPECT_EQ(slack(0, 1), 2);
+}
+
 TEST(Levels, LeaveOutASectionOfADeck) {
   const std::string deck = "Tanktread:\n  Flow:\n    type: duct\n  Expect:\n    a:\n      value: 1\n  Output:\n    interval: 1\n";
   EXPECT_EQ(without_section(deck, "Expect"), "Tanktread:\n  Flow:\n    type: duct\n  Output:\n    interval: 1\n");
