@@ -62,7 +62,7 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
   coupling::decided([&] {
     int most = 2;
     for (const Request& request : task.options.requests) {
-      const Answer one = answer(request, outcomes, task.values);
+      const Answer one = answer(request, outcomes);
       const int level = needed(one, one.estimate.error, task.options.levels);
       most = std::max(most, level);
       lines.push_back("  accuracy    " + request.text() +

@@ -40,13 +40,14 @@ class Ladder {
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
       if (count_ >= 3 && judge(k)) return conclude(met, "");
+      if (hopeless()) return conclude(missed, "finer levels do not help");
     }
     if (count_ == 0) throw RunFailure("no level came to its end: " + failure_);
     return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
   }
 
  private:
-  static constexpr int balanced_from = 4;  // first level whose parts are balanced; before it this costs more than it saves
+  static constexpr int balanced_from = 3;  // first level whose parts are balanced; before it their errors are not known
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
@@ -88,31 +89,33 @@ class Ladder {
   /// Runs level k, unless it is finished. Returns `stopped`, or 0 if it has ended or failed.
   int run(int k) {
     std::optional<Outcome> outcome;
-    const int code = run({k, std::max(0, k - slack_.time), std::max(0, k - slack_.quadrature)}, std::to_string(k), outcome);
+    const int code = run(level_at(k), std::to_string(k), outcome);
     if (code == stopped || !failure_of_last_.empty()) return code;
     if (ranks_.rank() == 0) seconds_.push_back(outcome->seconds), levels_.push_back(std::move(*outcome));
     ++count_;
     return 0;
   }
 
-  /// Runs level 1 with looser tolerances of time and of quadrature. Sets by how much these parts may be looser from now on. Returns `stopped`, or 0.
+  Level level_at(int k) const { return k < balanced_from ? Level{k, k, k} : balanced(k, shares_[0], shares_[1]); }
+
+  /// Runs level 2 with looser tolerances of time and of quadrature, and sets the shares of these parts in the error: the largest ones of all requests
+  /// that are not met. Returns `stopped`, or 0.
   int balance() {
     std::optional<Outcome> time, quadrature;
-    if (run({1, 0, 1}, "1_time", time) == stopped || run({1, 1, 0}, "1_quadrature", quadrature) == stopped) return stopped;
+    if (run({2, 1, 2}, "2_time", time) == stopped || run({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
     const auto found = coupling::decided([&] {
-      std::vector<double> least;
+      std::vector<double> most;
       for (const Request& request : task_.options.requests) {
-        const Answer finest = answer(request, levels_, task_.values);
-        if (finest.met || !finest.estimate.trusted() || !time || !quadrature) continue;
-        const double whole = finest.estimate.error * std::pow(4., levels_.back().level.mesh - 1);
-        const double of_time = slack(part_error(request, levels_[1], *time), whole);
-        const double of_quadrature = slack(part_error(request, levels_[1], *quadrature), whole);
-        least = least.empty() ? std::vector{of_time, of_quadrature}
-                              : std::vector{std::min(least[0], of_time), std::min(least[1], of_quadrature)};
+        const Answer finest = answer(request, levels_);
+        const double whole = finest.estimate.error;
+        if (finest.met || !(whole > 0) || !time || !quadrature) continue;
+        const double of_time = part_error(request, levels_[2], *time, time_ratio) / whole;
+        const double of_quadrature = part_error(request, levels_[2], *quadrature, quadrature_ratio) / whole;
+        most = most.empty() ? std::vector{of_time, of_quadrature} : std::vector{std::max(most[0], of_time), std::max(most[1], of_quadrature)};
       }
-      return least.empty() ? std::vector<double>{0, 0} : least;
+      return most.empty() ? std::vector<double>{shares_} : most;
     });
-    slack_ = {0, static_cast<int>(found[0]), static_cast<int>(found[1])};
+    shares_ = {found[0], found[1]};
     return 0;
   }
 
@@ -148,6 +151,11 @@ class Ladder {
     if (finished(place, level, deck)) return Start::finished;
     std::error_code absent;
     if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
+    try {
+      if (!resumes(output::RunRecord::load(place / "run.h5").deck(), deck)) return Start::anew;
+    } catch (const UserError&) {  // there is no record, or it is damaged
+      return Start::anew;
+    }
     for (const auto& entry : fs::directory_iterator(place))
       if (const std::string name = entry.path().filename(); name.starts_with("snapshot_") && name.ends_with(".hdf")) return Start::resume;
     return Start::anew;
@@ -157,13 +165,22 @@ class Ladder {
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
       answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, task_.values));
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
       return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
     });
-    say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k), 2e-3 / std::pow(4., k),
-                  seconds_.empty() ? 0 : seconds_.back()));
+    say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
+                  2e-3 / std::pow(4., level_at(k).time), seconds_.empty() ? 0 : seconds_.back()));
     for (const Answer& one : answers_) say("              " + sentence(one));
     return all_met[0] != 0;
+  }
+
+  /// Returns whether the two finest levels have an obstacle, so that finer ones have it too.
+  bool hopeless() const {
+    return coupling::decided([&] {
+      if (levels_.size() < 4) return std::vector<double>{0};
+      const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
+      return std::vector<double>{double(!obstacle(levels_).empty() && !obstacle(before).empty())};
+    })[0] != 0;
   }
 
   /// Publishes the finest finished level as the results, and returns the exit code.
@@ -174,8 +191,8 @@ class Ladder {
     }
     const auto outcome = coupling::decided([&] {
       answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, task_.values));
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, task_.values), why, seconds_here());
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_));
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_), why, seconds_here());
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });
@@ -201,7 +218,7 @@ class Ladder {
   std::vector<double> seconds_;                     // their wall seconds, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
-  Level slack_;                                     // by how many levels time and quadrature are looser than the mesh
+  std::vector<double> shares_{0.25, 0.25};          // errors of time and quadrature at level 2, divided by the whole error
   std::string failure_, failure_of_last_;           // messages of the last level that failed, and of the last level if it failed
 };
 

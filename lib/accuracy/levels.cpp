@@ -139,10 +139,14 @@ double expected_error(const Level& level) {
   return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -2.) * std::pow(2., -level.mesh);
 }
 
-int slack(double part, double whole) {
-  if (!(whole > 0)) return 0;
-  if (!(part > 0)) return 2;
-  return static_cast<int>(std::clamp(std::floor(std::log(whole / (4 * part)) / std::log(4.)), -1., 2.));
+Level balanced(int k, double time, double quadrature) {
+  const double whole = expected_error({k, k, k}) / expected_error({2, 2, 2});
+  const auto level = [&](double share, double ratio) {
+    const double part = share * std::pow(ratio, 2 - k);
+    const double looser = part > 0 ? std::floor(std::log(whole / (4 * part)) / std::log(ratio) + 1e-9) : 2;
+    return std::max(0, k - static_cast<int>(std::clamp(looser, -2., 2.)));
+  };
+  return {k, level(time, time_ratio), level(quadrature, quadrature_ratio)};
 }
 
 std::vector<std::string> settings(const Values& deck, const Level& level) {

@@ -31,9 +31,14 @@ int elements_per_side(int level);
 /// 4^-level. A part that is looser than the mesh is assumed not to matter.
 double expected_error(const Level& level);
 
-/// Returns by how many levels a part may be looser than the mesh so that its error is at most a fourth of the whole one; between -1 (finer) and 2.
-/// `part` and `whole`: errors at the same level.
-int slack(double part, double whole);
+/// Factors by which one level reduces the errors of time integration and of quadrature. The local error of a step falls by 4, the error at a time by
+/// less.
+constexpr double time_ratio = 2.5, quadrature_ratio = 4;
+
+/// Returns level k with balanced parts. `time` and `quadrature`: errors of these parts at level 2, divided by the whole error there; 0.25 leaves the
+/// tolerances as they are. A part is loosened by up to two levels as long as its error is at most a fourth of the expected one, and otherwise
+/// tightened by up to two levels.
+Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:
 /// - `elements per side` is n. A polar mesh has 2n elements from pole to pole, and around the pole axis as many as the deck's ratio gives. Of several

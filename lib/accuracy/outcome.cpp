@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
+#include <sstream>
 
+#include "accuracy/obstacles.hpp"
 #include "base/errors.hpp"
 #include "base/text_file.hpp"
 
@@ -12,11 +13,16 @@ namespace tanktread::accuracy {
 
 namespace {
 
-/// Returns the status in a summary, without quotes; empty if there is no summary.
-std::string status_of(const std::filesystem::path& directory) {
+/// Returns the summary of a run; empty if there is none.
+std::string summary_of(const std::filesystem::path& directory) {
   const std::filesystem::path path = directory / "summary.yaml";
   if (std::error_code absent; !std::filesystem::exists(path, absent)) return {};
-  const std::string text = text_of_file(path, path.string(), 10'000'000), head = "status: \"";
+  return text_of_file(path, path.string(), 10'000'000);
+}
+
+/// Returns the status in a summary, without quotes; empty if there is no summary.
+std::string status_of(const std::filesystem::path& directory) {
+  const std::string text = summary_of(directory), head = "status: \"";
   if (!text.starts_with(head)) return {};
   return text.substr(head.size(), text.find('"', head.size()) - head.size());
 }
@@ -71,20 +77,18 @@ bool is_of_several(const output::RunRecord& record) {
   return std::ranges::any_of(record.series(), [](const output::Series& one) { return one.name.find('/') != std::string::npos; });
 }
 
-/// Returns whether the membrane of a particle resists bending, or is an interface. `particle`: `<name>/`, or empty. Copies of a particle have a
-/// number after its name.
-bool bends(const Values& deck, const std::string& particle) {
-  for (const auto& [path, value] : deck) {
-    const bool of_it = particle.empty() ? path.starts_with("Membrane/") : path.starts_with("Particles/") &&
-                       particle.starts_with(path.substr(10, path.find('/', 10) - 10));
-    if (!of_it || value.empty()) continue;
-    if (path.ends_with("Membrane/law") && value.find("surface tension") != std::string::npos) return true;
-    if (path.find("/bending") != std::string::npos && !path.ends_with("reference") && std::strtod(value.c_str(), nullptr) > 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
+
+bool resumes(const std::string& one, const std::string& other) {
+  const auto kept = [](const std::string& deck) {
+    std::istringstream lines(without_section(deck, "Output"));
+    std::string text, line;
+    while (std::getline(lines, line))
+      if (!line.starts_with("    final time:")) text += line + "\n";
+    return text;
+  };
+  return kept(one) == kept(other);
+}
 
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck) {
   const std::string ended = status_of(directory);
@@ -110,27 +114,22 @@ Curve curve(const output::RunRecord& record, const std::string& series) {
   return found;
 }
 
-double part_error(const Request& request, const Outcome& level, const Outcome& looser) {
+double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio) {
   const auto of = [&](const Outcome& one) { return part(curve(one.record, request.series), request.of); };
-  return largest(difference(of(level), of(looser)).values) / 3;
+  return largest(difference(of(level), of(looser)).values) / (ratio - 1);
 }
 
-std::string obstacle(const std::vector<Outcome>& levels, const Values& deck) {
-  constexpr double compressed = -0.02;  // tension divided by the modulus
-  const output::RunRecord& finest = levels.back().record;
-  for (const output::Series& series : finest.series()) {
-    const std::size_t slash = series.name.rfind('/') + 1;
-    const std::string name = series.name.substr(slash), particle = series.name.substr(0, slash);
-    if (name == "contact_impulse" && series.values.back() > 0) return "Contact/limiter holds particles apart by forces that depend on the time step";
-    if (name != "smallest_tension" || *std::ranges::min_element(series.values) > compressed || bends(deck, particle)) continue;
-    const std::vector<double> sizes = norms(differences(series.name, Of::run, levels));
-    if (!estimated(sizes, magnitude(curve(finest, series.name)), expected_errors(levels)).trusted())
-      return "the membrane is compressed and does not resist bending, so that it would form wrinkles, which no mesh represents";
-  }
+std::string obstacle(const std::vector<Outcome>& levels) {
+  const Outcome& finest = levels.back();
+  for (const output::Series& series : finest.record.series())
+    if (series.name == "contact_impulse" && series.values.back() > 0)
+      return "Contact/limiter holds particles apart by forces that depend on the time step";
+  if (summary_of(finest.directory).find(wrinkles) != std::string::npos)
+    return "the membrane is compressed and resists bending too little for its mesh, so that wrinkles can have grown that the mesh does not represent";
   return {};
 }
 
-Answer answer(const Request& request, const std::vector<Outcome>& levels, const Values& deck) {
+Answer answer(const Request& request, const std::vector<Outcome>& levels) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   Answer found{request, {}, 0, 0, false, unknown};
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
@@ -140,15 +139,18 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   const std::vector<double> sizes = norms(all);
   found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels));
   const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
-  if (tiny && !found.estimate.trusted()) found.estimate = {std::max(sizes.back(), sizes[sizes.size() - 2]), found.estimate.ratio, ""};
+  if (tiny && !found.estimate.trusted()) {
+    const double before = sizes[sizes.size() - 2];
+    found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
+  }
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
-  if (const std::string why = obstacle(levels, deck); found.estimate.trusted() && !why.empty()) found.estimate.untrusted = why;
+  if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
   found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;
   return found;
 }
 
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const Values& deck) {
-  const std::string why = obstacle(levels, deck);
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels) {
+  const std::string why = obstacle(levels);
   std::vector<SeriesError> all;
   const output::RunRecord& finest = levels.back().record;
   for (const output::Series& series : finest.series()) {
@@ -157,7 +159,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const Values
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
     const Estimate estimate = estimated(norms(pairs), magnitude_of_unit(finest, series.unit), expected_errors(levels));
-    one.untrusted = estimate.trusted() ? why : estimate.untrusted;
+    one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
       if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // rows before a fold have its error

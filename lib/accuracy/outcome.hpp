@@ -22,6 +22,9 @@ struct Outcome {
   double seconds = 0;  ///< wall seconds that the level has taken
 };
 
+/// Returns whether two decks differ at most in `Time/final time` and the section `Output`, so that a run of one is resumed with the other.
+bool resumes(const std::string& one, const std::string& other);
+
 /// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
@@ -39,18 +42,17 @@ struct Answer {
   double statistical = 0;  ///< statistical error of an average of several particles, which the estimate does not contain; NaN if it is unknown
 };
 
-/// Returns the answer to a request from the levels finished so far, coarse to fine. `deck`: values of all keys.
-Answer answer(const Request& request, const std::vector<Outcome>& levels, const Values& deck);
+/// Returns the answer to a request from the levels finished so far, coarse to fine.
+Answer answer(const Request& request, const std::vector<Outcome>& levels);
 
-/// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. Its errors fall by 4
-/// per level.
-double part_error(const Request& request, const Outcome& level, const Outcome& looser);
+/// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. `ratio`: factor by
+/// which one level reduces it.
+double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
-/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can:
+/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. Judges the finest level:
 /// - the limiter of contacts acts, whose forces depend on the time step;
-/// - a membrane without bending resistance is compressed, and its smallest tension does not converge: wrinkles would form that no mesh represents.
-/// `deck`: values of all keys.
-std::string obstacle(const std::vector<Outcome>& levels, const Values& deck);
+/// - the finest run warns of wrinkles that its mesh does not represent.
+std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.
 struct SeriesError {
@@ -60,6 +62,6 @@ struct SeriesError {
 };
 
 /// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const Values& deck);
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels);
 
 }  // namespace tanktread::accuracy

@@ -81,12 +81,11 @@ TEST(Levels, RefuseShapesOfOneMesh) {
   EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
 }
 
-TEST(Levels, LoosenAPartThatDoesNotMatter) {
-  EXPECT_EQ(slack(1. / 4, 1), 0);
-  EXPECT_EQ(slack(1. / 17, 1), 1);
-  EXPECT_EQ(slack(1e-6, 1), 2);
-  EXPECT_EQ(slack(1, 1), -1);  // finer
-  EXPECT_EQ(slack(0, 1), 2);
+TEST(Levels, AreBalancedByTheSharesOfTheirParts) {
+  EXPECT_EQ(balanced(2, 0.25, 0.25), (Level{2, 2, 2}));
+  EXPECT_EQ(balanced(2, 0.25 / time_ratio, 0.25 / quadrature_ratio), (Level{2, 1, 1}));
+  EXPECT_EQ(balanced(4, 0, 1e-6), (Level{4, 2, 2}));
+  EXPECT_EQ(balanced(4, 1, 1), (Level{4, 6, 5}));  // the error of time falls more slowly than that of the mesh
 }
 
 TEST(Levels, LeaveOutASectionOfADeck) {
