@@ -52,17 +52,27 @@ std::vector<Curve> differences(const std::string& series, Of of, const std::vect
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, see `estimated`.
-std::vector<double> expected_errors(const std::vector<Outcome>& levels) {
-  std::vector<double> sizes;
-  for (const Outcome& one : levels) sizes.push_back(expected_error(one.level));
-  return sizes;
-}
-
 std::vector<double> norms(const std::vector<Curve>& differences) {
   std::vector<double> found;
   for (const Curve& one : differences) found.push_back(largest(one.values));
   return found;
+}
+
+/// Returns the expected sizes of the errors of the levels, see `estimated`: those of mesh and tolerances together. If `looser` shows that a share of the
+/// error at level 2 is that of time integration, this share falls with its tolerance.
+std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
+                                    const std::optional<Outcome>& looser) {
+  std::vector<double> sizes;
+  for (const Outcome& one : levels) sizes.push_back(expected_error(one.level));
+  if (!looser || levels.size() < 4) return sizes;
+  const std::vector<double> first = norms(differences(request.series, request.of, {levels.begin(), levels.begin() + 3}));
+  const double whole = estimated(first, scale, {sizes.begin(), sizes.begin() + 3}).error, size = sizes[2];
+  const double share = part_error(request, levels[2], *looser, time_ratio) / whole;
+  if (!(share > 0)) return sizes;
+  const double of_time = std::min(share, 0.8);
+  for (std::size_t k = 0; k < sizes.size(); ++k)
+    sizes[k] = (1 - of_time) * sizes[k] / size + of_time * std::pow(time_ratio, 2 - levels[k].level.time);
+  return sizes;
 }
 
 /// Returns the largest magnitude of all series with the same unit, relative to which differences are round-off: a component may vanish by symmetry.
@@ -129,7 +139,7 @@ std::string obstacle(const std::vector<Outcome>& levels) {
   return {};
 }
 
-Answer answer(const Request& request, const std::vector<Outcome>& levels) {
+Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   Answer found{request, {}, 0, 0, false, unknown};
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
@@ -137,7 +147,7 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels) {
   found.allowed = request.relative ? request.value * magnitude(whole) : request.value;
   const std::vector<Curve> all = differences(request.series, request.of, levels);
   const std::vector<double> sizes = norms(all);
-  found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels));
+  found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels, request, magnitude(whole), looser));
   const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
   if (tiny && !found.estimate.trusted()) {
     const double before = sizes[sizes.size() - 2];
@@ -149,7 +159,7 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels) {
   return found;
 }
 
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels) {
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
   const std::string why = obstacle(levels);
   std::vector<SeriesError> all;
   const output::RunRecord& finest = levels.back().record;
@@ -158,7 +168,8 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels) {
     SeriesError one{series.name, series.unit, series.si, {}, {}};
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
-    const Estimate estimate = estimated(norms(pairs), magnitude_of_unit(finest, series.unit), expected_errors(levels));
+    const double scale = magnitude_of_unit(finest, series.unit);
+    const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");

@@ -42,8 +42,9 @@ struct Answer {
   double statistical = 0;  ///< statistical error of an average of several particles, which the estimate does not contain; NaN if it is unknown
 };
 
-/// Returns the answer to a request from the levels finished so far, coarse to fine.
-Answer answer(const Request& request, const std::vector<Outcome>& levels);
+/// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: the run of level 2 with a looser tolerance of time, if
+/// there is one; it shows which share of the errors falls with this tolerance.
+Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 /// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. `ratio`: factor by
 /// which one level reduces it.
@@ -62,6 +63,7 @@ struct SeriesError {
 };
 
 /// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels);
+/// `looser`: see `answer`.
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 }  // namespace tanktread::accuracy
