@@ -58,8 +58,8 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, see `estimated`: those of mesh and tolerances together. If `looser` shows that a share of the
-/// error at level 2 is that of time integration, this share falls with its tolerance.
+/// Returns the expected sizes of the errors of the levels, see `estimated`: those of mesh and tolerances together. If `looser` shows that a share of
+/// the error at level 2 is that of time integration, this share falls with its tolerance.
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;

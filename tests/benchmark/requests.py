@@ -158,7 +158,7 @@ class Scene:
     def reference(self, level):
         """Returns a run two levels finer."""
         series = self.series[0].split("@")[0]
-        words = {"Accuracy/requests": f"{series}=1e-14", "Accuracy/levels": level + 3,
+        words = {"Accuracy/requests": f"{series}=1e-14", "Accuracy/levels": min(level + 3, max(level + 2, 7)),
                  "Accuracy/wall-clock limit": 5 * self.limit}
         self.study._make([str(self.study.program), "--resume", str(self.directory), *sets(words), "--quiet"])
         finer = [k for k in (level + 2, level + 1) if (self.directory / f"level_{k}/summary.yaml").exists()]

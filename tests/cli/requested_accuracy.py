@@ -5,7 +5,11 @@ import math
 import os
 import pathlib
 import signal
+import sys
 import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "postproc"))
+os.environ["TANKTREAD"] = str(pathlib.Path(sys.argv[1]).resolve())
 
 from harness import check, close, deck, main, refused, run, series, start, summary
 
@@ -138,6 +142,58 @@ def resistance_has_errors():
     exact = -6 * math.pi
     close(series("drag", "drag_x3")[-1], exact, 1e-3 * abs(exact), "drag")
     check(found["accuracy"]["met"] and found["error"]["drag_x3"] > 0, found["accuracy"])
+
+
+def tables_reports_and_bands_have_errors():
+    import numpy
+    from tanktread import report
+    from tanktread.studies import sweep
+    from tanktread.studies.fit_data import SeriesData
+
+    deck(DROP + "  Accuracy: {requests: 'taylor_inertia=1%'}\n")
+    deck("deck: deck.yaml\ngrid: {Particle/viscosity ratio: [1.0, 2.0]}\nrecord: {D: taylor_inertia}\n", "study.yaml")
+    made = sweep.run("study.yaml", "table", jobs=1)
+    columns, _ = sweep.table(pathlib.Path("table"))
+    check((columns["D error"] > 0).all() and (columns["D error"] < 0.01 * columns["D"]).all(), columns)
+    one = made.outcomes[0].run
+    low, high = one.band("taylor_inertia")
+    check((low <= high).all() and numpy.nanmax(high - low) > 0, "the band")
+    found = report.of_run(one.directory, None)
+    check(found["curves"]["errors"]["taylor_inertia"] and any(title == "Accuracy" and rows for title, _, rows in found["sections"]), "the report")
+    datum = SeriesData({"series": "taylor_inertia", "value": 0.1, "error": 1e-9}, "data", pathlib.Path())
+    prediction = datum.prediction(one)
+    weighted = datum.residuals(prediction, [])[0] * numpy.nanmax(one.errors["taylor_inertia"])
+    close(weighted, 0.1 - one.series["taylor_inertia"][-1], 1e-6, "residual divided by the discretisation error")
+
+
+def a_run_without_a_request_states_what_it_knows():
+    deck(DROP)
+    run("deck.yaml", "--quiet", "--output", "plain")
+    known = summary("plain")["estimated errors"]
+    check("unknown" in known["mesh"] and float(known["time integration"].split()[0]) > 0 and "quadrature" in known, known)
+    run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--quiet", "--output", "asked")
+    check("estimated errors" not in summary("asked"), "the mesh is said to be unknown")
+
+
+def the_check_predicts_levels_and_seconds():
+    deck(DROP)
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=0.1%", "--check")
+    check("is predicted to meet it" in result.stdout and "s in all, from a pilot run" in result.stdout, result.stdout[-400:])
+    check(not pathlib.Path("results").exists(), "results were written")
+
+
+def wrinkles_are_reported_instead_of_an_error():
+    import math
+
+    deck("""Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {law: neo-Hookean, capillary number: 0.1}
+  Time: {final time: 5.0}
+  Output: {interval: 1.0}
+""")
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "wrinkled", code=1)
+    check("wrinkles" in result.stderr.splitlines()[-1], result.stderr)
+    check(math.isnan(summary("wrinkled")["accuracy"]["requests"][0]["estimated error"]), "an error in spite of wrinkles")
 
 
 def wrong_requests_are_refused():
