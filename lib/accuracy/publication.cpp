@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/position.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "base/text_file.hpp"
@@ -99,6 +100,11 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   const Outcome& finest = levels.back();
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
+  if (levels.size() > 1) {
+    const Outcome& before = levels[levels.size() - 2];
+    const double fine = expected_error(finest.level), coarse = expected_error(before.level);
+    write_position_errors(finest.directory, before.directory, task.directory, 1.2 * fine / (coarse - fine));
+  }
   output::RunRecord record = finest.record;
   deck::SeriesTable table;
   for (const output::Series& series : record.series()) table[series.name] = series.values;

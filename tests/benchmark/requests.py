@@ -44,8 +44,8 @@ SHIPPED = {
     "drop_steady": ("drop_steady", {}, [D, "leading_rate", "stresslet_11"]),
     "capsule_steady": ("capsule_steady", {}, [D, "leading_rate", ENERGY]),
     "jeffery": ("jeffery", {"Time/final time": 6.0}, ["inclination", "stresslet_13", "angular_velocity_x2"]),
-    "sphere_array": ("sphere_array", {}, ["drag_x1", "pressure_gradient_x1", "stresslet_11"]),
-    "settling": ("settling_spheres", {}, ["upper/velocity_x3", "upper/center_x3", "smallest_gap"]),
+    "sphere_array": ("sphere_array", {}, ["sphere/drag_x1", "pressure_gradient_x1", "sphere/torque_x2"]),
+    "settling": ("settling_spheres", {}, ["left/velocity_x3", "left/centroid_x3", "left/stresslet_33"]),
     "tube": ("capsule_in_tube", {"Time/final time": 2.0}, [V1, "disturbed_pressure_drop", LENGTH]),
     "fold": ("drop_branch", {}, ["parameter", "taylor_inertia", "area"]),
 }
@@ -145,6 +145,7 @@ class Scene:
             result = "unknown" if not request["met"] and code == 4 else "untrusted" if "untrusted" in request else (
                 "met" if true <= request["allowed"] else "missed") if request["met"] else "not reached"
             cheapest = self.cheapest(request, reference) if search and request["met"] else numpy.nan
+            cost = self.fresh(request["request"]) if search and request["met"] else cost
             row = {"scene": self.name, "request": request["request"], "level": level, "allowed": request["allowed"],
                    "true": true, "estimate": request["estimated error"],
                    "factor": request["estimated error"] / true if true > 0 else numpy.nan, "result": result,
@@ -154,6 +155,13 @@ class Scene:
             rows.append(row)
         (self.directory / "requests.json").write_text(json.dumps(rows), encoding="utf-8")
         return rows
+
+    def fresh(self, request):
+        """Returns the processor seconds of a whole ladder."""
+        words = sets(self.settings | {"Accuracy/requests": request})
+        directory = self.directory.with_name(f"{self.name}_fresh")
+        return self.study._make([str(self.study.program), str(tanktread.runs.deck_at(self.deck)), "--no-expect", "--quiet",
+                                 "--overwrite", "--output", str(directory), *words])["processor_seconds"]
 
     def reference(self, level):
         """Returns a run two levels finer."""

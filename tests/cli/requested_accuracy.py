@@ -46,6 +46,7 @@ def _same(a, b, tolerance):
 
 def a_request_is_met_and_every_series_has_an_error():
     import numpy
+    import tanktread
 
     deck(DROP)
     run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--accuracy", "area@end=1e-3", "--quiet", "--output", "met")
@@ -68,6 +69,8 @@ def a_request_is_met_and_every_series_has_an_error():
         factor = numpy.nanmax(file["error/taylor_inertia"][:]) / true.max()
         check(1 / 4 < factor < 4, f"the estimate is {factor} times the error")
     check(summary("met")["error"]["taylor_inertia"] > 0, "no error in the summary")
+    errors = [shot.fields["position error"].max() for shot in tanktread.run("met").snapshots()]
+    check(len(errors) > 5 and 0 < max(errors) < 0.02, errors)  # of the radius
 
 
 def a_looser_request_takes_fewer_levels():
