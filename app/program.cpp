@@ -17,6 +17,7 @@
 #include "app/provenance.hpp"
 #include "app/signals.hpp"
 #include "app/runs.hpp"
+#include "accuracy/ladder.hpp"
 #include "base/errors.hpp"
 #include "deck/document.hpp"
 #include "deck/words.hpp"
@@ -37,7 +38,7 @@ namespace {
 enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in addition to `stopped`, 4
 
 struct Arguments {
-  std::vector<std::string> decks, settings;
+  std::vector<std::string> decks, settings, accuracy;
   std::string output, resume, new_deck;
   bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false;
   bool no_expect = false;
@@ -96,6 +97,10 @@ void state(CLI::App& app, Arguments& arguments) {
       "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
+  app.add_option("--accuracy", arguments.accuracy,
+                 "'[<particle>/]<series>[@end|@mean]=<value>[%]': runs on finer and finer levels until the error of the series is at most this "
+                 "(repeatable; see Accuracy in the manual of keys)")
+      ->allow_extra_args(false);
   const auto directory = [](const std::string& name) {
     return name.starts_with('-') ? "must be followed by a directory, but " + name + " is an option (a directory of that name is ./" + name + ")" : "";
   };
@@ -189,6 +194,73 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
       if (*name) *name = found(**name, {}, arguments);
 }
 
+/// Reads the scene of a deck, with its files, and checks it.
+void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
+  deck.declare(scene);
+  if (auto& outline = scene.tube.outline) find(*outline, kept_name(*outline), arguments, scene);
+  if (auto& channel = scene.tube.channel; channel && channel->points) find(*channel->points, kept_name(*channel->points), arguments, scene);
+  if (auto& history = scene.flow.history; history && history->file) {
+    find(*history->file, kept_flow_history, arguments, scene);
+    history->read();
+  }
+  find_shapes(scene, arguments, scene);
+  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
+  if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
+  scene.particles = with_copies(scene.particles, scene.domain);
+  scene.check();
+}
+
+RunRequest run_request(const Arguments& arguments, const std::string& deck) {
+  RunRequest request;
+  request.resume = !arguments.resume.empty();
+  request.output = request.resume             ? arguments.resume
+                   : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
+                                              : arguments.output;
+  request.overwrite = arguments.overwrite;
+  request.quiet = arguments.quiet;
+  request.deck_text = deck;
+  request.provenance = provenance();
+  return request;
+}
+
+/// Runs the deck on finer and finer levels until its requests are met, or with `--check` prints the prediction. Returns the exit code.
+int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
+  const RunRequest whole = run_request(arguments, deck.effective());
+  if (!arguments.check) check_vacant(whole);
+  accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
+                      scene.in_system() && scene.runs_in_time()};
+  accuracy::check_levels(task.values);
+  std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
+  arguments.accuracy.clear();
+  if (whole.resume) arguments.resume += "/level_0";  // where the files that the deck names are kept
+  accuracy::Program program;
+  program.deck = [&](const std::vector<std::string>& settings) {
+    deck::Document level = deck::read({}, settings, base);
+    Scene of_level(registry);
+    prepare(level, arguments, of_level);
+    return level.effective();
+  };
+  program.run = [&](const std::string& text, const std::filesystem::path& directory, bool resume, std::optional<double> limit) {
+    deck::Document level = deck::read_text(text);
+    Scene of_level(registry);
+    prepare(level, arguments, of_level);
+    if (limit) of_level.output.wall_clock_limit = std::min(*limit, of_level.output.wall_clock_limit.value_or(*limit));
+    RunRequest request = whole;
+    request.output = directory, request.deck_text = text, request.resume = resume, request.overwrite = true, request.quiet = true;
+    return simulate(of_level, request);
+  };
+  if (!arguments.check) return accuracy::climb(task, program);
+  for (const std::string& line : accuracy::forecast(task, program))
+    if (speaks) std::cout << line << "\n";
+  return done;
+}
+
+/// Returns the deck with which a run in a directory began. Collective.
+std::string deck_of_run(const std::string& directory) {
+  const std::optional<std::string> ladder = accuracy::ladder_deck(directory);
+  return ladder ? *ladder : stored_deck(directory);
+}
+
 int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (arguments.reference) {
     if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene(registry));
@@ -212,41 +284,26 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   refuse(resume && !arguments.output.empty(), "--output", "--resume", "a run goes on in its own directory");
   refuse(resume && arguments.overwrite, "--overwrite", "--resume", "one deletes what the other goes on from");
 
-  const std::string stored = resume ? stored_deck(arguments.resume) : std::string();
+  const std::string stored = resume ? deck_of_run(arguments.resume) : std::string();
+  std::vector<std::string> settings = arguments.settings;
+  if (!arguments.accuracy.empty()) settings.push_back(accuracy::setting_of(arguments.accuracy));
   Scene scene(registry), before(registry);
-  deck::Document deck = deck::read(arguments.decks, arguments.settings, stored, arguments.no_expect ? "--no-expect" : "");
-  deck.declare(scene);
+  deck::Document deck = deck::read(arguments.decks, settings, stored, arguments.no_expect ? "--no-expect" : "");
+  prepare(deck, arguments, scene);
   if (resume) check_changes(stored, deck, before);
-  if (auto& outline = scene.tube.outline) find(*outline, kept_name(*outline), arguments, scene);
-  if (auto& channel = scene.tube.channel; channel && channel->points) find(*channel->points, kept_name(*channel->points), arguments, scene);
-  if (auto& history = scene.flow.history; history && history->file) {
-    find(*history->file, kept_flow_history, arguments, scene);
-    history->read();
-  }
-  find_shapes(scene, arguments, scene);
-  for (ParticleKind& kind : scene.particles) find_shapes(kind, arguments, scene);
-  if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
-  scene.particles = with_copies(scene.particles, scene.domain);
-  scene.check();
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
+  accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
   if (arguments.check) {
     const std::string chosen = plan_text(plan(scene, coupling::Ranks().size()));
     if (speaks) std::cout << deck.effective() << "\n" << chosen;
-    return done;
+    return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(done);
   }
-  RunRequest request;
-  request.output = resume                     ? arguments.resume
-                   : arguments.output.empty() ? "results/" + default_name(arguments.decks, arguments.settings)
-                                              : arguments.output;
-  request.resume = resume;
-  request.overwrite = arguments.overwrite;
+  if (scene.accuracy.present) return climb(scene, deck, arguments, registry, speaks);
+  RunRequest request = run_request(arguments, deck.effective());
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
-  request.quiet = arguments.quiet;
-  request.deck_text = deck.effective();
-  request.provenance = provenance();
   return simulate(scene, request);
 }
 

@@ -295,6 +295,22 @@ int Results::close(const Account& account, const Phases& phases) {
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
+/// Returns what is known of the errors of the run: those of time integration and quadrature.
+output::Entries<std::string> Results::known_errors() const {
+  output::Entries<std::string> errors;
+  double steps = 0;
+  for (const output::Series& series : record_->series())
+    if (series.name == "step_error")
+      for (const double error : series.values)
+        if (error > 0) steps += error;
+  if (steps > 0)
+    errors.emplace_back("time integration", formatted("%.2g R_C: sum of the errors of all steps, root mean square over the points", steps));
+  if (scene_.quadrature.rule == "adaptive")
+    errors.emplace_back("quadrature", formatted("%.2g of the velocities: a fifth of Quadrature/tolerance", scene_.quadrature.tolerance / 5));
+  errors.emplace_back("mesh", "unknown: --accuracy estimates it from several meshes");
+  return errors;
+}
+
 /// Writes the summary. Warns about missed expectations that are not binding. Returns the missed binding expectations, which fail the run, in one
 /// line.
 std::string Results::finish(const Account& account, const Phases& phases) {
@@ -326,6 +342,7 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   summary.plan = account.plan;
   summary.numbers = numbers(scene_, *body_);
   summary.modes = account.modes;
+  summary.errors = known_errors();
   summary.warnings = warnings_;
   output::write_whole(directory_ / "summary.yaml", output::yaml(summary));
   series_->write();
@@ -334,10 +351,14 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   return missed;
 }
 
-std::vector<std::string> check_expectations(const Scene& scene) {
+std::vector<std::string> names_of_series(const Scene& scene) {
   std::vector<std::string> names;
   for (const Column& one : columns(scene).all()) names.push_back(one.name);
-  deck::check_series(scene.expect.all, names);
+  return names;
+}
+
+std::vector<std::string> check_expectations(const Scene& scene) {
+  deck::check_series(scene.expect.all, names_of_series(scene));
   const double last = scene.continuation.present ? scene.continuation.points : 0;
   const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
   return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);

@@ -124,6 +124,7 @@ class Results {
   void write_record();
   output::Durable durable() const;
   std::string finish(const Account& account, const Phases& phases);
+  output::Entries<std::string> known_errors() const;
   std::map<std::string, std::string> origin() const;
 
   const Scene& scene_;
@@ -144,6 +145,9 @@ class Results {
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next
 };
+
+/// Returns the names of the series that a run of this scene records.
+std::vector<std::string> names_of_series(const Scene& scene);
 
 /// Returns a sentence for each expectation that the run cannot meet because it does not reach its time. Throws UserError if an expected series is not
 /// recorded in this scene.

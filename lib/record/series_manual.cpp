@@ -38,6 +38,7 @@ constexpr Entry fields[] = {
     {"mode k imaginary", "1", "capsule, drop", "its imaginary part"},
     {"pressure", "force/length^2", "prescribed body",
      "p = -t.n of the traction t on the body, its mean over the surface as of the exact solution"},
+    {"position error", "length", "with requested accuracy", "estimated error of the position of the surface, along its normal (9.1)"},
     {"pressure error", "force/length^2", "prescribed body", "p - p_exact, where the exact solution is known"},
 };
 
@@ -45,7 +46,11 @@ constexpr Entry entries[] = {
     {"status", "", "all", "why the run ended: `done`, `steady`, `past` (Time/end when past), `stopped: ` by what, `failed: ` and the reason"},
     {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
     {"final in SI", "", "all", "the same in SI units, with the list Units, as texts: a number and its unit"},
-    {"expect", "", "all", "of every Expect: name, value found, value expected, error, whether it passed"},
+    {"expect", "", "all", "of every Expect: name, value found, value expected, error, with requested accuracy also the estimated error, and whether "
+     "it passed"},
+    {"estimated errors", "", "without requested accuracy", "errors of time integration and of quadrature; the error of the mesh is unknown"},
+    {"error", "", "with requested accuracy", "last value of the estimated error of every series; `/error/<name>` in `run.h5` has all values"},
+    {"accuracy", "", "with requested accuracy", "requests with their estimated errors, and the levels with their settings and seconds"},
     {"counts", "1", "all", "work of the whole run"},
     {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
     {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},

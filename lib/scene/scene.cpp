@@ -31,6 +31,15 @@ struct OutputList {
   }
 };
 
+/// Declares the sections Output, Expect and Accuracy.
+void declare_results(deck::Section& root, Scene& scene) {
+  OutputList results{scene};
+  root.section("Output", results, "results");
+  root.section("Expect", scene.expect, "expected results");
+  root.optional_section("Accuracy", scene.accuracy,
+                        "requested accuracy: the run is repeated on finer meshes, with finer tolerances, until the estimated errors meet it");
+}
+
 /// Section Channel.
 struct ChannelList {
   surface::TubeOptions& tube;
@@ -210,7 +219,6 @@ void Scene::declare(deck::Section& root) {
                                                      "physical units of the deck: the meaning of a length, time or force of 1. With this section a "
                                                      "value may have a unit, `5.3 uN/m`, and results are labelled with SI units"))
     root.take(units = std::make_shared<const deck::Units>(given));
-  OutputList results{*this};
   flow.registered = &registry->flows;
   root.section("Flow", flow, "the ambient flow and the outer fluid");
   const bool several = root.given("Particles");
@@ -262,8 +270,7 @@ void Scene::declare(deck::Section& root) {
   periodic.driven = flow.history.has_value();
   root.section("Symmetry", symmetry, "use of the symmetries of the scene");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
-  root.section("Output", results, "results");
-  root.section("Expect", expect, "expected results");
+  declare_results(root, *this);
 }
 
 std::vector<Scene> Scene::alone() const {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "accuracy/request.hpp"
 #include "base/rejections.hpp"
 #include "scene/copies.hpp"
 #include "scene/domain.hpp"
@@ -111,6 +112,7 @@ struct Scene : ParticleKind {
   coupling::SolverOptions solvers;
   output::Options output;
   deck::Expectations expect;
+  accuracy::Options accuracy;
   std::vector<SeriesParts::Chosen> series;  ///< Output/series
   bool volume_given = false;  ///< true if the deck has the section Volume
   std::vector<std::pair<std::string, std::string>> files;  ///< files that the deck names: path, and name of the copy that the run keeps

@@ -85,6 +85,7 @@ def curves(run):
                                                                   if name.endswith("/taylor_inertia")]
     return {"x": _list(run.time[rows]), "label": run.time_label,
             "y": {name: _list(run.series[name][rows]) for name in kept},
+            "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
             "units": {name: run.units[name] for name in kept},
             "meanings": {name: run.descriptions[name] for name in kept}}
 
@@ -103,19 +104,30 @@ def _or_dash(value):
     return "–" if value != value else value
 
 
+def accuracy_rows(found):
+    """Returns the table of the requests of a ladder; empty without a request."""
+    if not found:
+        return []
+    return [["", "request", "value", "allowed", "estimated error", "remark"]] + [
+        ["✓" if one["met"] else "✗", one["request"], *(_or_dash(one[key]) for key in ("value", "allowed",
+                                                                                 "estimated error")),
+         one.get("untrusted", "")] for one in found["requests"]]
+
+
 def of_run(directory, field):
     run = run_of(directory)
     summary = run.summary or {}
     status = summary.get("status", "not finished: this is what it has written so far")
     facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
-    sections = [("Expectations", "table", [["", "name", "value", "expected", "error"]] + [
+    sections = [("Expectations", "table", [["", "name", "value", "expected", "error", "estimated error"]] + [
         ["✓" if one.get("passed") else "✗", one.get("name"),
-         *(_or_dash(one.get(key)) for key in ("value", "expected", "error"))]
+         *(_or_dash(one.get(key, "–")) for key in ("value", "expected", "error", "estimated error"))]
         for one in summary.get("expect") or []])]
+    sections.append(("Accuracy", "table", accuracy_rows(summary.get("accuracy"))))
     sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
-                 for title, word in (("Plan", "plan"), ("Numbers of the scene", "numbers"),
-                                     ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"),
-                                     ("Counts", "counts"))]
+                 for title, word in (("Errors", "estimated errors"), ("Plan", "plan"),
+                                     ("Numbers of the scene", "numbers"), ("Seconds by phase", "seconds"),
+                                     ("Bytes of memory", "memory"), ("Counts", "counts"))]
     sections.insert(0, ("Warnings", "list", summary.get("warnings") or []))
     sections.append(("Deck", "text", run.deck_text))
     return {"title": run.name, "facts": facts, "shapes": shapes(run, field),

@@ -20,6 +20,8 @@ class Run:
 
     `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
     A series is NaN where it is undefined, as its description states. `units`, `descriptions`: by the same names.
+    `errors`: estimated errors of the series, by the same names, if an accuracy was requested; NaN where none can be
+    estimated, as `untrusted` states by the same names. Empty without a request.
     `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.
     `summary`: the content of summary.yaml, or None before the run has ended."""
 
@@ -30,6 +32,10 @@ class Run:
             self.series = {name: data[:] for name, data in found.items()}
             self.units = {name: text_of_hdf(data.attrs["unit"]) for name, data in found.items()}
             self.descriptions = {name: text_of_hdf(data.attrs["description"]) for name, data in found.items()}
+            errors = datasets(file["error"]) if "error" in file else {}
+            self.errors = {name: data[:] for name, data in errors.items()}
+            self.untrusted = {name: text_of_hdf(data.attrs["description"]).removeprefix("no error: ")
+                              for name, data in errors.items() if not numpy.isfinite(data[:]).any()}
             self.deck_text = text_of_hdf(file["deck"][()])
             self.provenance = {key: text_of_hdf(value) for key, value in file["provenance"].attrs.items()}
         self.deck = (yaml_text(self.deck_text) or {}).get("Tanktread", {})
@@ -185,6 +191,14 @@ class Run:
         self.require(name)
         known = ~numpy.isnan(self.series[name])
         return self.series["time"][known], self.series[name][known]
+
+    def band(self, name):
+        """Returns the lower and upper limits (rows,) of a series, value minus and plus estimated error; None if the run
+        has no estimated error of it."""
+        error = self.errors.get(name)
+        if error is None or not numpy.isfinite(error).any():
+            return None
+        return self.series[name] - error, self.series[name] + error
 
     def snapshots(self):
         """Returns the saved steps in order of time. Each is read when it is used."""

@@ -11,8 +11,8 @@ from .files import text_of_hdf
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
-              "displacement": "length", "velocity": "velocity", "into cell": "length", "smallest tension": "tension",
-              "largest tension": "tension", "mean curvature": "curvature"}
+              "displacement": "length", "position error": "length", "velocity": "velocity", "into cell": "length",
+              "smallest tension": "tension", "largest tension": "tension", "mean curvature": "curvature"}
 
 
 def evenly(items, n):

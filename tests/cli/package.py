@@ -195,6 +195,8 @@ def _all_figures():
     _made_up("turns", {"Flow": {"type": "simple shear"}}, turns | {f"length_x{k}": 2 - 0.02 * t * (k == 1) for k in (1, 2)}, t)
     for name in "deformation", "shape", "meshes", "refinement", "rheology", "surfactant":
         yield name, ["one"], {}
+    run(deck(CAPSULE, "ladder.yaml"), "--accuracy", "taylor_inertia=50%", "--set", "Accuracy/levels=3", "--output", "ladder", "--quiet")
+    yield "work", "ladder", {}
     yield from (("convergence", ["one"], {"curve": "curve.csv"}), ("animation", "one", {"frame": 0}), ("encounter", ["two"], {}),
                 ("duct", ["tube"], {}), ("tube", ["tube"], {}), ("tube_motion", ["tube"], {}), ("channel", "channel", {}), ("plane_wall", ["wall"], {}),
                 ("suspension", ["lattice"], {"from_": 0.01, "blocks": 2}), ("vesicle", "vesicle", {}), ("branch", ["points"], {}), ("folds", ["points"], {}),

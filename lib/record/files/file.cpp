@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view unfinished = ".part", damaged = ".damaged";
+constexpr std::string_view unfinished = ".part", damaged = ".damaged", ladder = "ladder.yaml", level = "level_";
 
 bool is_result(const std::string& name) {
   return name == "run.h5" || name == "duct.h5" || name == "channel.h5" || name == "run.hdf.series" || name == "summary.yaml" ||
@@ -28,6 +28,12 @@ bool is_result(const std::string& name) {
 
 bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
+}
+
+/// Returns whether the entry of a directory is the folder of a level of a ladder.
+bool is_level(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename();
+  return entry.is_directory() && name.size() > level.size() && name.starts_with(level) && name[level.size()] >= '0' && name[level.size()] <= '9';
 }
 
 template <class Test>
@@ -103,17 +109,26 @@ void check_vacant(const fs::path& directory) {
   std::error_code absent;
   if (!fs::is_directory(directory, absent)) return;
   in_directory(directory, [&] {
-    if (!files_where(directory, is_result).empty())
+    if (fs::exists(directory / ladder) || !files_where(directory, is_result).empty())
       throw UserError(directory.string() + " holds a run: --resume " + directory.string() +
                       " goes on with it, --overwrite deletes it first, --output names another directory.");
   });
 }
 
-void start_directory(const fs::path& directory) {
+void start_results(const fs::path& directory) {
   in_directory(directory, [&] {
     fs::create_directories(directory);
     for (const auto& old : files_where(directory, [](const std::string& name) { return is_result(name) || is_unfinished(name); }))
       fs::remove(old);
+  });
+}
+
+void start_directory(const fs::path& directory) {
+  start_results(directory);
+  in_directory(directory, [&] {
+    fs::remove(directory / ladder);
+    for (const auto& entry : fs::directory_iterator(directory))
+      if (is_level(entry)) start_results(entry.path());
   });
 }
 

@@ -86,6 +86,14 @@ Id open(const std::filesystem::path& path) {
   return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot open " + path.string()};
 }
 
+Id open_copy(const std::filesystem::path& path) {
+  silence();
+  check_opens(path);
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
+  check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");
+  return {H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, "cannot open " + path.string()};
+}
+
 void write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape) {
   write_any(file, name, H5T_NATIVE_DOUBLE, shape, values.data());
 }

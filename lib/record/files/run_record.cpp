@@ -22,6 +22,7 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
     hdf::Shape shape;
     record.series_.push_back(
         {name, hdf::read_attribute(file, at, "unit"), hdf::read_attribute(file, at, "description"), hdf::read_doubles(file, at, shape), {}});
+    if (std::ranges::count(hdf::attribute_names(file, at), "SI") > 0) record.series_.back().si = hdf::read_attribute(file, at, "SI");
     if (record.series_.back().values.size() != record.rows()) throw std::runtime_error("series of unequal length");
   }
   return record;
@@ -65,13 +66,14 @@ void RunRecord::write(Durable durable) const {
   hdf::write_group(file, "provenance");
   hdf::write_group(file, "series");
   for (const auto& [key, text] : provenance_) hdf::attribute(file, "provenance", key, text);
-  for (const Series& one : series_) {
-    const std::string name = "series/" + one.name;
+  const auto add = [&file](const std::string& name, const Series& one) {
     hdf::write(file, name, one.values, {one.values.size()});
     hdf::attribute(file, name, "unit", one.unit);
     hdf::attribute(file, name, "description", one.description);
     if (!one.si.empty()) hdf::attribute(file, name, "SI", one.si);
-  }
+  };
+  for (const Series& one : series_) add("series/" + one.name, one);
+  for (const Series& one : errors_) add("error/" + one.name, one);
   write_whole(path_, hdf::image(file), durable);
 }
 

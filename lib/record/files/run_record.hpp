@@ -21,6 +21,7 @@ struct Series {
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
 /// `unit`, `description` and, if the deck sets its units, `SI`, for example `1e-06 m/s`;
+/// `/error/<name>`, the estimated error of `/series/<name>` if the run is the finest one of a ladder (lib/accuracy): the same shape and attributes;
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///
@@ -48,6 +49,12 @@ class RunRecord {
   /// Replaces deck and provenance (a resumed run may have another number of ranks and another final time). Writes nothing to the disk.
   void describe(std::string deck, std::map<std::string, std::string> provenance);
 
+  /// Adds the estimated error of a series, one value per row.
+  void add_error(Series error) { errors_.push_back(std::move(error)); }
+
+  /// Sets another path, to which `write` writes.
+  void move(std::filesystem::path path) { path_ = std::move(path); }
+
   void write(Durable durable = Durable::no) const;
 
   /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum).
@@ -63,7 +70,7 @@ class RunRecord {
   std::filesystem::path path_;
   std::string deck_;
   std::map<std::string, std::string> provenance_;
-  std::vector<Series> series_;
+  std::vector<Series> series_, errors_;
 };
 
 }  // namespace tanktread::output

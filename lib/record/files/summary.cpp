@@ -45,6 +45,7 @@ std::string yaml(const Summary& summary) {
   text += map("counts", summary.counts) + map("seconds", summary.seconds);
   if (!summary.memory.empty()) text += map("memory", summary.memory);
   text += map("plan", summary.plan) + map("numbers", summary.numbers);
+  if (!summary.errors.empty()) text += map("estimated errors", summary.errors);
   if (!summary.modes.empty()) text += map("modes", summary.modes);
   text += summary.warnings.empty() ? "warnings: []\n" : "warnings:\n";
   for (const std::string& one : summary.warnings) text += "  - " + scalar(one) + "\n";

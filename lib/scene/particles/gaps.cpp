@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double accuracy = 1e-7;  // absolute error of gaps, divided by R_C
+constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by R_C
 
 /// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
@@ -72,7 +72,7 @@ class Pairs {
     const auto& [bound, p, q, beyond] = pair;
     std::unique_ptr<Placed> moved;
     if (!beyond.isZero(0)) moved = std::make_unique<Placed>(members_[q], x_[q].rowwise() + beyond.transpose());
-    return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, accuracy * radius_, reach);
+    return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, gap_accuracy * radius_, reach);
   }
 
  private:
@@ -180,7 +180,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
   const Nearest found = nearest(members, x, cell, [](std::size_t) { return true; });
-  if (found.gap > 10 * accuracy * members.front().body->radius) return check_not_nested(members, x);
+  if (found.gap > 10 * gap_accuracy * members.front().body->radius) return check_not_nested(members, x);
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
     throw UserError("Domain is smaller than " + name(found.first) +

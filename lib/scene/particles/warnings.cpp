@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "accuracy/obstacles.hpp"
 #include "base/formatted.hpp"
 #include "scene/series/diagnostics.hpp"
 
@@ -110,9 +111,8 @@ std::string Warnings::compression(const StepFindings& signs) {
   if (memory_.waves < grown) return {};
   const char* resistance = bending > 0 ? "too little resistance to bending for its mesh" : "no resistance to bending";
   return formatted(
-      "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: waves as short as its elements can have grown a hundredfold; "
-      "set Membrane/bending modulus%s or Membrane/pre-inflation",
-      100 * signs.compressed_area, signs.smallest_tension, resistance, bending > 0 ? " higher" : "");
+      "%.0f %% of the membrane is compressed (to %.2g G_s) with %s: %s; set Membrane/bending modulus%s or Membrane/pre-inflation",
+      100 * signs.compressed_area, signs.smallest_tension, resistance, accuracy::wrinkles, bending > 0 ? " higher" : "");
 }
 
 std::string Warnings::stiffness(const StepFindings& signs) {

@@ -9,6 +9,7 @@ from ..mistakes import optional
 for _name in "matplotlib", "scipy":
     optional(_name, "a figure")
 
+from .accuracy import work  # noqa: E402
 from .animations import animation  # noqa: E402
 from .branches import branch, folds, growth_rates  # noqa: E402
 from .channels import channel, stuck  # noqa: E402

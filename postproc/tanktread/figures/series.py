@@ -18,6 +18,8 @@ Deformation = Literal["taylor_inertia", "taylor_surface"]
 def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformation: Deformation = "taylor_inertia"):
     """Deformation and inclination over time, beside curves of the literature; of several particles, of each.
 
+    Bands are the estimated errors of a run with requested accuracy.
+
     curves: folder of literature curves, named as figures/literature.py says
     deformation: which Taylor parameter"""
     for run in runs:
@@ -65,6 +67,8 @@ def label(run):
 def draw_run(upper, lower, run, deformation, color):
     t = run.time
     upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
+    style.draw_band(upper, run, deformation, color)
+    style.draw_band(lower, run, "inclination", color)
     lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
     for axes, name in (upper, deformation), (lower, "inclination"):
         expected = run.value(f"Expect/{name}")
@@ -85,6 +89,7 @@ def draw_particles(upper, lower, run, deformation, colors):
         pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
         words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
         upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
+        style.draw_band(upper, run, f"{name}/{deformation}", pen["color"])
         lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
 
 

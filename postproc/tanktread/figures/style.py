@@ -52,6 +52,13 @@ def draw(function, *arguments):
         return function(*arguments)
 
 
+def draw_band(axes, run, name, color):
+    """Draws the band of a series' estimated error, if the run has one."""
+    band = run.band(name)
+    if band is not None:
+        axes.fill_between(run.time, *band, color=color, alpha=0.25, linewidth=0, zorder=2)
+
+
 def save(figure, path):
     """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
     path = pathlib.Path(path)

@@ -130,6 +130,7 @@ class SeriesData:
         else:
             self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
         self.count = len(self.values)
+        self.discretisation = None  # error of the runs, if their deck requests an accuracy
 
     def start(self, prediction):
         """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
@@ -149,11 +150,21 @@ class SeriesData:
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9),
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
+        if self.discretisation is None:
+            self.discretisation = self._discretisation(run)
         values = values / run.series[self.series[1]] if len(self.series) > 1 else values
         defined = ~numpy.isnan(values)
         expect(defined[-1] if self.times is None else defined.any(),
                f"{self.name}: {' / '.join(self.series)} is undefined (NaN) in the run")
         return times[defined], values[defined]
+
+    def _discretisation(self, run):
+        """Returns the largest estimated error of the run; of a ratio from both series; 0 if it is unknown."""
+        sizes = [numpy.nanmax(abs(run.series[name])) for name in self.series]
+        errors = [numpy.nanmax(run.errors[name]) if run.band(name) is not None else 0 for name in self.series]
+        if len(self.series) == 1:
+            return errors[0]
+        return sizes[0] / sizes[1] * numpy.hypot(errors[0] / sizes[0], errors[1] / sizes[1])
 
     def predicted(self, prediction, place):
         """Returns the values of the run at the data's times."""
@@ -164,7 +175,9 @@ class SeriesData:
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        return (self.values - self.predicted(prediction, place)) / (1 if self.error is None else self.error)
+        if self.error is None:
+            return self.values - self.predicted(prediction, place)
+        return (self.values - self.predicted(prediction, place)) / numpy.hypot(self.error, self.discretisation or 0)
 
 
 class Experiment:

@@ -87,7 +87,9 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end."""
+    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end.
+
+    A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
         values = outcome.series.get(series) if outcome.done else None
@@ -104,6 +106,10 @@ def recorded(outcome, columns):
             row[name] = numpy.interp(at, outcome.series["time"],
                                      values) if at is not None else TAKES[take](defined) if len(defined) else numpy.nan
             row[name] = float(row[name])
+            error = outcome.run.errors.get(series)
+            if error is not None:
+                row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
+                                             else error[-1] if take == "last" else numpy.max(error))
     return row
 
 
@@ -142,6 +148,9 @@ class Sweep:
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [name for name in self.columns if name not in whole]
+        errors = [f"{name} error" for name in single if any(f"{name} error" in values for values in found)]
+        single = [word for name in single for word in (name, f"{name} error") if word in single + errors]
+        found = [values | {name: values.get(name, numpy.nan) for name in errors} for values in found]
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])

@@ -1,0 +1,101 @@
+#include "accuracy/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/formatted.hpp"
+#include "deck/expectation.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double round_off = 1e-10;
+
+}  // namespace
+
+Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected) {
+  const std::size_t n = differences.size();
+  if (n == 0 || !std::isfinite(differences.back())) return {unknown, unknown, "it has no value on two levels"};
+  const double last = differences.back(), finest = expected[n];
+  if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs three levels"};
+  if (std::max(last, differences[n - 2]) <= round_off * scale) return {std::max(last, differences[n - 2]), unknown, ""};
+  const auto factor = [&](std::size_t level) { return differences[level - 1] / (expected[level - 1] - expected[level]); };
+  const double error = 1.2 * std::max(factor(n), 0.8 * std::sqrt(factor(n) * factor(n - 1))) * finest;
+  const double ratio = expected[n - 1] / finest * factor(n - 1) / factor(n);
+  if (ratio >= least_ratio && ratio <= most_ratio) return {error, ratio, ""};
+  if (n > 2 && std::isfinite(differences[n - 3])) {
+    const double of_two = std::sqrt(expected[n - 2] / finest * factor(n - 2) / factor(n));
+    if (ratio >= 1 && of_two >= least_ratio && of_two <= most_ratio) return {error, of_two, ""};
+  }
+  return {error, ratio, formatted("from level to level its error falls by the factor %.2g, not by 1.5 to 10", ratio)};
+}
+
+Curve difference(const Curve& a, const Curve& b) {
+  Curve found;
+  if (a.at.empty() || b.at.empty()) return found;
+  const double slack = 1e-9 * std::max({std::abs(a.at.front()), std::abs(a.at.back()), std::abs(b.at.back()), 1e-300});
+  for (std::size_t i = 0, j = 0; i < a.at.size() && j < b.at.size();) {
+    if (std::abs(a.at[i] - b.at[j]) <= slack)
+      found.at.push_back(a.at[i]), found.values.push_back(std::abs(a.values[i] - b.values[j])), ++i, ++j;
+    else
+      a.at[i] < b.at[j] ? ++i : ++j;
+  }
+  if (found.at.size() >= std::min<std::size_t>(5, std::min(a.at.size(), b.at.size()))) return found;
+  found = {};
+  for (std::size_t i = 0; i < a.at.size(); ++i)
+    if (a.at[i] >= b.at.front() && a.at[i] <= b.at.back())
+      found.at.push_back(a.at[i]), found.values.push_back(std::abs(a.values[i] - deck::interpolated(b.at, b.values, a.at[i])));
+  return found;
+}
+
+double largest(const std::vector<double>& values) {
+  double most = unknown;
+  for (const double value : values)
+    if (!std::isnan(value) && !(value <= most)) most = value;
+  return most;
+}
+
+double mean(const Curve& curve) {
+  if (curve.at.size() == 1) return curve.values.front();
+  double sum = 0, length = 0;
+  for (std::size_t i = 1; i < curve.at.size(); ++i) {
+    const double step = curve.at[i] - curve.at[i - 1], middle = 0.5 * (curve.values[i] + curve.values[i - 1]);
+    if (!std::isnan(middle)) sum += step * middle, length += step;
+  }
+  return length > 0 ? sum / length : unknown;
+}
+
+double statistical_error(const Curve& curve) {
+  constexpr std::size_t batches = 8;
+  if (curve.at.size() < 4 * batches) return unknown;
+  const double start = curve.at.front(), length = (curve.at.back() - start) / batches;
+  std::vector<double> means;
+  for (std::size_t k = 0; k < batches; ++k) {
+    Curve part;
+    for (std::size_t i = 0; i < curve.at.size(); ++i)
+      if (curve.at[i] >= start + static_cast<double>(k) * length && curve.at[i] <= start + static_cast<double>(k + 1) * length)
+        part.at.push_back(curve.at[i]), part.values.push_back(curve.values[i]);
+    if (part.at.size() > 1) means.push_back(mean(part));
+  }
+  if (means.size() < batches) return unknown;
+  double sum = 0, squares = 0;
+  for (const double one : means) sum += one / batches;
+  for (const double one : means) squares += (one - sum) * (one - sum);
+  return std::sqrt(squares / (batches * (batches - 1.)));
+}
+
+std::vector<double> envelope(const Curve& curve, const std::vector<double>& at) {
+  std::vector<double> found(at.size(), unknown);
+  const auto n = static_cast<std::ptrdiff_t>(curve.at.size());
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const std::ptrdiff_t above = std::lower_bound(curve.at.begin(), curve.at.end(), at[k]) - curve.at.begin();
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, std::min(above, n - 1) - 2); i < std::min(n, above + 2); ++i)
+      if (const double value = curve.values[static_cast<std::size_t>(i)]; !std::isnan(value) && !(value <= found[k])) found[k] = value;
+  }
+  return found;
+}
+
+}  // namespace tanktread::accuracy

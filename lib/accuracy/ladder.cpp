@@ -1,0 +1,246 @@
+#include "accuracy/ladder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "accuracy/outcome.hpp"
+#include "accuracy/publication.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "deck/words.hpp"
+#include "record/files/file.hpp"
+#include "system/agreement.hpp"
+#include "system/ranks.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// How the directory of a level continues.
+enum class Start { finished, resume, anew };
+
+class Ladder {
+ public:
+  Ladder(const Task& task, const Program& program) : task_(task), program_(program) {}
+
+  int climb() {
+    serially([this] { prepare(); });
+    for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
+      if (const std::string why = reason_to_stop(k); !why.empty()) return conclude(stopped, why);
+      if (k == balanced_from && count_ == k && balance() == stopped) return conclude(stopped, "the runs that balance the parts were stopped");
+      const int code = run(k);
+      if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
+      if (count_ >= 3 && judge(k)) return conclude(met, "");
+      if (hopeless()) return conclude(missed, "finer levels do not help");
+    }
+    if (count_ == 0) throw RunFailure("no level came to its end: " + failure_);
+    return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
+  }
+
+ private:
+  static constexpr int balanced_from = 3;  // first level whose parts are balanced; before it their errors are not known
+
+  fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
+
+  /// Runs `act` on the first rank. All ranks throw if it fails.
+  void serially(const std::function<void()>& act) const {
+    coupling::decided([&] {
+      act();
+      return std::vector<double>{0};
+    });
+  }
+
+  /// Prints a line on the first rank.
+  void say(const std::string& line) const {
+    if (ranks_.rank() == 0 && !task_.quiet) std::printf("%s\n", line.c_str()), std::fflush(stdout);
+  }
+
+  void prepare() {
+    occupation_ = std::make_unique<output::Occupation>(task_.directory);
+    if (!task_.resume) {
+      if (!task_.overwrite) output::check_vacant(task_.directory);
+      output::start_directory(task_.directory);
+    }
+    output::write_whole(task_.directory / ladder_file, task_.deck);
+  }
+
+  /// Returns the sentence with which the ladder stops before level k because of its limit; empty if it goes on.
+  std::string reason_to_stop(int k) const {
+    const auto limit = task_.options.wall_clock_limit;
+    if (!limit) return {};
+    const auto numbers = coupling::decided([&] {
+      return std::vector<double>{seconds_here(), levels_.empty() ? 0 : predicted_seconds(seconds_)};
+    });
+    if (numbers[0] + numbers[1] <= *limit) return {};
+    return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, numbers[1], *limit);
+  }
+
+  double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  /// Runs level k, unless it is finished. Returns `stopped`, or 0 if it has ended or failed.
+  int run(int k) {
+    std::optional<Outcome> outcome;
+    const int code = run(level_at(k), std::to_string(k), outcome);
+    if (code == stopped || !failure_of_last_.empty()) return code;
+    if (ranks_.rank() == 0) seconds_.push_back(outcome->seconds), levels_.push_back(std::move(*outcome));
+    ++count_;
+    return 0;
+  }
+
+  Level level_at(int k) const { return k < balanced_from ? Level{k, k, k} : balanced(k, shares_[0], shares_[1]); }
+
+  /// Runs level 2 with looser tolerances of time and of quadrature, and sets the shares of these parts in the error: the largest ones of all requests
+  /// that are not met. Returns `stopped`, or 0.
+  int balance() {
+    std::optional<Outcome> quadrature;
+    if (run({2, 1, 2}, "2_time", looser_) == stopped || run({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
+    const auto found = coupling::decided([&] {
+      std::vector<double> most;
+      for (const Request& request : task_.options.requests) {
+        const Answer finest = answer(request, levels_);
+        const double whole = finest.estimate.error;
+        if (finest.met || !(whole > 0) || !looser_ || !quadrature) continue;
+        const double of_time = part_error(request, levels_[2], *looser_, time_ratio) / whole;
+        const double of_quadrature = part_error(request, levels_[2], *quadrature, quadrature_ratio) / whole;
+        most = most.empty() ? std::vector{of_time, of_quadrature} : std::vector{std::max(most[0], of_time), std::max(most[1], of_quadrature)};
+      }
+      return most.empty() ? std::vector<double>{shares_} : most;
+    });
+    shares_ = {found[0], found[1]};
+    return 0;
+  }
+
+  /// Runs one level in its directory, unless it is finished. Returns `stopped`, or 0 if it has ended or failed. Sets `outcome` on the first rank.
+  int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) {
+    failure_of_last_.clear();
+    const std::string deck = program_.deck(settings(task_.values, level));
+    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck))}; });
+    const auto start = static_cast<Start>(static_cast<int>(known[0]));
+    const auto began = Clock::now();
+    if (start != Start::finished) {
+      const auto limit = task_.options.wall_clock_limit;
+      const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
+      try {
+        if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
+      } catch (const RunFailure& failure) {
+        failure_ = failure_of_last_ = failure.what();
+        say("  level " + name + " failed: " + failure_);
+        return 0;
+      }
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
+    serially([&] {
+      outcome = finished(directory(name), level, deck);
+      if (!outcome) throw RunFailure("the results of " + directory(name).string() + " are not those that were written");
+      if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
+    });
+    return 0;
+  }
+
+  Start start_of(const fs::path& place, const Level& level, const std::string& deck) const {
+    if (!task_.resume) return Start::anew;
+    if (finished(place, level, deck)) return Start::finished;
+    std::error_code absent;
+    if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
+    try {
+      if (!resumes(output::RunRecord::load(place / "run.h5").deck(), deck)) return Start::anew;
+    } catch (const UserError&) {  // there is no record, or it is damaged
+      return Start::anew;
+    }
+    for (const auto& entry : fs::directory_iterator(place))
+      if (const std::string name = entry.path().filename(); name.starts_with("snapshot_") && name.ends_with(".hdf")) return Start::resume;
+    return Start::anew;
+  }
+
+  /// Estimates the errors of the finest level and says what is missing. Returns whether all requests are met.
+  bool judge(int k) {
+    const auto all_met = coupling::decided([&] {
+      answers_.clear();
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+      return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
+    });
+    say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
+                  2e-3 / std::pow(4., level_at(k).time), seconds_.empty() ? 0 : seconds_.back()));
+    for (const Answer& one : answers_) say("              " + sentence(one));
+    return all_met[0] != 0;
+  }
+
+  /// Returns whether the two finest levels have an obstacle, so that finer ones have it too.
+  bool hopeless() const {
+    return coupling::decided([&] {
+      if (levels_.size() < 4) return std::vector<double>{0};
+      const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
+      return std::vector<double>{double(!obstacle(levels_).empty() && !obstacle(before).empty())};
+    })[0] != 0;
+  }
+
+  /// Publishes the finest finished level as the results, and returns the exit code.
+  int conclude(Code code, const std::string& why) {
+    if (coupling::decided([&] { return std::vector<double>{double(levels_.size())}; })[0] == 0) {
+      if (code == stopped) return stopped;
+      throw RunFailure("no level came to its end" + (failure_.empty() ? "" : ": " + failure_));
+    }
+    const auto outcome = coupling::decided([&] {
+      answers_.clear();
+      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_), why, seconds_here());
+      report(code, why, missed_expectations);
+      return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
+    });
+    return static_cast<int>(outcome[0]);
+  }
+
+  void report(Code code, const std::string& why, const std::string& missed_expectations) const {
+    std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
+    if (code == stopped) line += "; --resume " + task_.directory.string() + " goes on";
+    for (const Answer& one : answers_)
+      if (code != met && !one.met) line += "; " + sentence(one);
+    if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;
+    if (!line.empty()) std::fprintf(stderr, "tanktread: %s\n", line.c_str());
+    if (!task_.quiet) std::printf("  results     %s\n", task_.directory.c_str());
+  }
+
+  const Task& task_;
+  const Program& program_;
+  const Clock::time_point start_ = Clock::now();
+  coupling::Ranks ranks_;
+  std::unique_ptr<output::Occupation> occupation_;  // on the first rank
+  std::vector<Outcome> levels_;                     // finished levels, on the first rank
+  std::optional<Outcome> looser_;                   // level 2 with a looser tolerance of time, on the first rank
+  std::vector<double> seconds_;                     // their wall seconds, on the first rank
+  std::vector<Answer> answers_;                     // on the first rank
+  int count_ = 0;                                   // number of finished levels
+  std::vector<double> shares_{0.25, 0.25};          // errors of time and quadrature at level 2, divided by the whole error
+  std::string failure_, failure_of_last_;           // messages of the last level that failed, and of the last level if it failed
+};
+
+}  // namespace
+
+double predicted_seconds(const std::vector<double>& seconds) {
+  const std::size_t n = seconds.size();
+  if (n == 0) return 0;
+  const double growth = n > 1 && seconds[n - 2] > 0 ? std::clamp(seconds[n - 1] / seconds[n - 2], 1.5, 5.) : 2.5;
+  return seconds[n - 1] * growth;
+}
+
+std::optional<std::string> ladder_deck(const fs::path& directory) {
+  const auto there = coupling::decided([&] {
+    std::error_code absent;
+    return std::vector<double>{double(fs::is_regular_file(directory / ladder_file, absent))};
+  });
+  if (there[0] == 0) return {};
+  return text_of_file(directory / ladder_file, (directory / ladder_file).string(), 10'000'000);
+}
+
+int climb(const Task& task, const Program& program) { return Ladder(task, program).climb(); }
+
+}  // namespace tanktread::accuracy

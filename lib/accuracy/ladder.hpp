@@ -1,0 +1,61 @@
+#pragma once
+// Runs of one deck on finer and finer levels until the requested accuracy is met.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "accuracy/levels.hpp"
+#include "accuracy/request.hpp"
+#include "deck/expectation.hpp"
+
+namespace tanktread::accuracy {
+
+/// What the program does for a ladder. Both are collective.
+struct Program {
+  /// Returns the effective deck of the scene with these settings `Section/key=value`, without the sections Accuracy and Expect.
+  std::function<std::string(const std::vector<std::string>& settings)> deck;
+
+  /// Runs this deck into a directory, or resumes the run there, and stops after `limit` seconds if given. Returns the exit code: 0, or `stopped` if
+  /// the run can be resumed. Throws RunFailure.
+  std::function<int(const std::string& deck, const std::filesystem::path& directory, bool resume, std::optional<double> limit)> run;
+};
+
+/// A deck with requests.
+struct Task {
+  Options options;
+  deck::Expectations expect;
+  Values values;        ///< values of all keys of the deck
+  std::string deck;     ///< effective deck, with its requests
+  std::filesystem::path directory;
+  bool resume = false, overwrite = false, quiet = false;
+  bool runs_in_time = true;  ///< false for searches, which cannot be resumed
+};
+
+/// Exit codes of a ladder: all requests are met; one is not met on the finest allowed level; the ladder was stopped, by a signal or by its limit,
+/// and can be resumed.
+enum Code { met = 0, missed = 1, stopped = 4 };
+
+/// Name of the file in the directory of a ladder that holds its deck.
+constexpr const char* ladder_file = "ladder.yaml";
+
+/// Returns the deck of the ladder in a directory; nothing if the directory holds none. Collective.
+std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
+
+/// Climbs the ladder (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of the directory. The results of the finest
+/// finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a section `accuracy` in `summary.yaml`. If the
+/// ladder is resumed, finished levels are kept and an unfinished one is resumed. Returns the code. Throws UserError if the directory is occupied,
+/// RunFailure if no level comes to its end. Collective.
+int climb(const Task& task, const Program& program);
+
+/// Runs the two lowest levels in a temporary directory. Returns, one line each, the level that is predicted to meet each request, and the predicted
+/// seconds. The lines are those of the first rank. Collective.
+std::vector<std::string> forecast(const Task& task, const Program& program);
+
+/// Returns the predicted seconds of the next level from those of the levels before it, coarse to fine: the last one times its growth, which is
+/// limited to 1.5 ... 5; 2.5 if it is unknown. The seconds include `fixed` seconds that do not grow.
+double predicted_seconds(const std::vector<double>& seconds);
+
+}  // namespace tanktread::accuracy

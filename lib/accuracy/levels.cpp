@@ -1,0 +1,194 @@
+#include "accuracy/levels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "base/errors.hpp"
+#include "deck/words.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
+constexpr double loosest = 2e-3;           // Time/tolerance of level 0
+constexpr double least_quadrature = 1e-6;  // far sums in single precision and the rules of near panels keep this
+
+/// Reads values of a deck and collects settings.
+class Setter {
+ public:
+  explicit Setter(const Values& deck) : deck_(deck) {}
+
+  bool has(const std::string& path) const { return deck_.contains(path) && !deck_.at(path).empty(); }
+  double number(const std::string& path, double otherwise) const { return has(path) ? std::strtod(deck_.at(path).c_str(), nullptr) : otherwise; }
+  std::string text(const std::string& path) const {
+    if (!has(path)) return {};
+    std::string value = deck_.at(path);
+    std::erase(value, '"');
+    return value;
+  }
+
+  void set(const std::string& path, double value) { all.push_back(path + "=" + deck::number_text(value)); }
+  void set_whole(const std::string& path, double value, double least, double most) { set(path, std::clamp(std::round(value), least, most)); }
+  /// Multiplies a value that the deck has.
+  void scale(const std::string& path, double factor) {
+    if (has(path)) set(path, number(path, 0) * factor);
+  }
+  /// Lowers a tolerance that is above `most`.
+  void lower(const std::string& path, double most) {
+    if (has(path) && number(path, 0) > most) set(path, most);
+  }
+
+  std::vector<std::string> all;
+
+ private:
+  const Values& deck_;
+};
+
+/// Returns the prefixes of the particles' sections: empty for a single particle, otherwise `Particles/<name>/`.
+std::vector<std::string> particles(const Values& deck) {
+  std::vector<std::string> prefixes;
+  for (const auto& [path, value] : deck)
+    if (path.starts_with("Particles/")) {
+      const std::string prefix = path.substr(0, path.find('/', std::string("Particles/").size()) + 1);
+      if (prefix.size() > std::string("Particles/").size() && prefix != "Particles/defaults/" &&
+          std::ranges::find(prefixes, prefix) == prefixes.end())
+        prefixes.push_back(prefix);
+    }
+  if (prefixes.empty()) prefixes.emplace_back();
+  return prefixes;
+}
+
+/// Returns the key of the particle with this prefix: `Particle/<key>`, or `Particles/<name>/<key>`.
+std::string of_particle(const std::string& prefix, const std::string& key) { return (prefix.empty() ? "Particle/" : prefix) + key; }
+
+bool from_file(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "file"; }
+
+/// Returns the elements per side of the deck, for a polar mesh half the elements from pole to pole; 0 if the mesh is given by a file.
+double side_of(const Setter& deck, const std::string& prefix) {
+  if (from_file(deck, prefix)) return 0;
+  if (deck.text(prefix + "Surface/mesh") == "polar") return deck.number(prefix + "Surface/meridional elements", 16) / 2;
+  return deck.number(prefix + "Surface/elements per side", 6);
+}
+
+void set_adaptation(Setter& to, const std::string& list, double length) {
+  const double error = std::pow(length, 4);
+  to.scale(list + "surface tolerance", error);
+  to.scale(list + "load tolerance", error);
+  to.scale(list + "coarsening tolerance", error);
+  to.scale(list + "reference length", length);
+  to.scale(list + "film resolution", length);
+  to.scale(list + "minimum length", std::min(1., length));
+}
+
+void set_mesh(Setter& to, const std::string& prefix, double ratio, int level) {
+  const double n = std::max(3., std::round(ratio * elements_per_side(level)));
+  const double deck_n = side_of(to, prefix);
+  if (deck_n == 0) return;
+  const std::string surface = prefix + "Surface/";
+  if (to.text(surface + "mesh") == "polar") {
+    const double around = to.number(surface + "azimuthal elements", 32) / to.number(surface + "meridional elements", 16);
+    to.set_whole(surface + "meridional elements", 2 * n, 4, 200);
+    to.set_whole(surface + "azimuthal elements", 4 * std::round(2 * n * around / 4), 4, 400);
+  } else {
+    to.set_whole(surface + "elements per side", n, 3, 200);
+  }
+  if (to.text(prefix + "Adaptation/enabled") == "true") set_adaptation(to, prefix + "Adaptation/", deck_n / n);
+}
+
+void set_wall(Setter& to, const std::string& list, int level) {
+  if (!to.has(list + "/azimuthal elements")) return;
+  const double n = elements_per_side(level), around = to.number(list + "/azimuthal elements", 24) / 24;
+  to.set_whole(list + "/azimuthal elements", 4 * n * around, 8, 400);
+  if (to.has(list + "/axial elements"))
+    to.set_whole(list + "/axial elements", to.number(list + "/axial elements", 25) * n / 6, 8, 400);
+  else if (list == "Tube" && !to.has("Tube/periodic length") && !to.has("Domain/periodic"))
+    to.set_whole(list + "/axial elements", 25 * n / 6, 8, 400);
+  to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
+}
+
+void set_time(Setter& to, int level) {
+  const double tolerance = loosest / std::pow(4., level);
+  if (to.has("Time/fixed step"))
+    to.scale("Time/fixed step", std::pow(2., 2 - level));
+  else
+    to.set("Time/tolerance", std::max(tolerance, 1e-13));
+  to.lower("Time/iteration tolerance", tolerance / 10);
+  to.lower("Steady/tolerance", tolerance / 100);
+  to.lower("Periodic/tolerance", std::clamp(10 * tolerance, 1e-10, 1e-2));
+  to.lower("Continuation/fold tolerance", std::clamp(tolerance / 100, 1e-12, 1e-2));
+}
+
+void set_quadrature(Setter& to, int level) {
+  const double tolerance = std::max(loosest / std::pow(4., level), least_quadrature);
+  if (to.text("Quadrature/rule") == "adaptive")
+    to.set("Quadrature/tolerance", tolerance);
+  else
+    to.set_whole("Quadrature/points", 4 + 2 * level, 2, 64);
+  to.lower("Solvers/tolerance", std::max(tolerance / 100, 1e-15));
+}
+
+}  // namespace
+
+int elements_per_side(int level) { return sides.at(static_cast<std::size_t>(level)); }
+
+double expected_error(const Level& level) {
+  return std::pow(static_cast<double>(elements_per_side(level.mesh)) / elements_per_side(0), -2.) * std::pow(2., -level.mesh);
+}
+
+Level balanced(int k, double time, double quadrature) {
+  const double whole = expected_error({k, k, k}) / expected_error({2, 2, 2});
+  const auto level = [&](double share, double ratio) {
+    const double part = share * std::pow(ratio, 2 - k);
+    const double looser = part > 0 ? std::floor(std::log(whole / (4 * part)) / std::log(ratio) + 1e-9) : 2;
+    return std::max(0, k - static_cast<int>(std::clamp(looser, -2., 2.)));
+  };
+  return {k, level(time, time_ratio), level(quadrature, quadrature_ratio)};
+}
+
+std::vector<std::string> settings(const Values& deck, const Level& level) {
+  Setter to(deck);
+  const std::vector<std::string> all = particles(deck);
+  double finest = 0;
+  for (const std::string& prefix : all) finest = std::max(finest, side_of(to, prefix));
+  for (const std::string& prefix : all)
+    if (finest > 0) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
+  for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
+  set_time(to, level.time);
+  set_quadrature(to, level.quadrature);
+  return to.all;
+}
+
+std::vector<std::string> fixed_meshes(const Values& deck) {
+  std::vector<std::string> fixed;
+  const Setter reads(deck);
+  for (const std::string& prefix : particles(deck))
+    if (from_file(reads, prefix)) fixed.push_back(prefix.empty() ? "Particle" : prefix.substr(0, prefix.size() - 1));
+  return fixed;
+}
+
+void check_levels(const Values& deck) {
+  const Setter reads(deck);
+  for (const std::string& prefix : particles(deck))
+    for (const char* key : {"initial shape/file", "initial shape/run"})
+      if (reads.has(of_particle(prefix, key)) && !from_file(reads, prefix))
+        throw UserError("Accuracy and " + of_particle(prefix, key) +
+                        " contradict each other: the shape is given on one mesh, and the errors are estimated from several meshes.");
+}
+
+std::string without_section(const std::string& deck, const std::string& section) {
+  std::istringstream lines(deck);
+  std::string text, line;
+  bool inside = false;
+  while (std::getline(lines, line)) {
+    const std::size_t indent = line.find_first_not_of(' ');
+    if (indent != std::string::npos && indent <= 2) inside = line.starts_with("  " + section + ":");
+    if (!inside) text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace tanktread::accuracy

@@ -1,0 +1,189 @@
+#include "accuracy/outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "accuracy/obstacles.hpp"
+#include "base/errors.hpp"
+#include "base/text_file.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+/// Returns the summary of a run; empty if there is none.
+std::string summary_of(const std::filesystem::path& directory) {
+  const std::filesystem::path path = directory / "summary.yaml";
+  if (std::error_code absent; !std::filesystem::exists(path, absent)) return {};
+  return text_of_file(path, path.string(), 10'000'000);
+}
+
+/// Returns the status in a summary, without quotes; empty if there is no summary.
+std::string status_of(const std::filesystem::path& directory) {
+  const std::string text = summary_of(directory), head = "status: \"";
+  if (!text.starts_with(head)) return {};
+  return text.substr(head.size(), text.find('"', head.size()) - head.size());
+}
+
+bool holds(const output::RunRecord& record, const std::string& name) {
+  return std::ranges::find(record.series(), name, &output::Series::name) != record.series().end();
+}
+
+/// Returns the values of which a request limits the error, as a curve: the whole series, its last value, or its average.
+Curve part(const Curve& whole, Of of) {
+  if (of == Of::run || whole.at.empty()) return whole;
+  return {{0}, {of == Of::end ? whole.values.back() : mean(whole)}};
+}
+
+double magnitude(const Curve& whole) {
+  double most = 0;
+  for (const double value : whole.values)
+    if (!std::isnan(value)) most = std::max(most, std::abs(value));
+  return most;
+}
+
+/// Returns the differences of all pairs of successive levels, coarse to fine.
+std::vector<Curve> differences(const std::string& series, Of of, const std::vector<Outcome>& levels) {
+  std::vector<Curve> found;
+  for (std::size_t k = 1; k < levels.size(); ++k)
+    found.push_back(difference(part(curve(levels[k].record, series), of), part(curve(levels[k - 1].record, series), of)));
+  return found;
+}
+
+std::vector<double> norms(const std::vector<Curve>& differences) {
+  std::vector<double> found;
+  for (const Curve& one : differences) found.push_back(largest(one.values));
+  return found;
+}
+
+/// Returns the expected sizes of the errors of the levels, see `estimated`: those of mesh and tolerances together. If `looser` shows that a share of
+/// the error at level 2 is that of time integration, this share falls with its tolerance.
+std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
+                                    const std::optional<Outcome>& looser) {
+  std::vector<double> sizes;
+  for (const Outcome& one : levels) sizes.push_back(expected_error(one.level));
+  if (!looser || levels.size() < 4) return sizes;
+  const std::vector<double> first = norms(differences(request.series, request.of, {levels.begin(), levels.begin() + 3}));
+  const double whole = estimated(first, scale, {sizes.begin(), sizes.begin() + 3}).error, size = sizes[2];
+  const double share = part_error(request, levels[2], *looser, time_ratio) / whole;
+  if (!(share > 0)) return sizes;
+  const double of_time = std::min(share, 0.8);
+  for (std::size_t k = 0; k < sizes.size(); ++k)
+    sizes[k] = (1 - of_time) * sizes[k] / size + of_time * std::pow(time_ratio, 2 - levels[k].level.time);
+  return sizes;
+}
+
+/// Returns the largest magnitude of all series with the same unit, relative to which differences are round-off: a component may vanish by symmetry.
+double magnitude_of_unit(const output::RunRecord& record, const std::string& unit) {
+  double most = 0;
+  for (const output::Series& series : record.series())
+    if (series.unit == unit && has_error(series.name)) most = std::max(most, magnitude(curve(record, series.name)));
+  return most;
+}
+
+bool is_of_several(const output::RunRecord& record) {
+  return std::ranges::any_of(record.series(), [](const output::Series& one) { return one.name.find('/') != std::string::npos; });
+}
+
+}  // namespace
+
+bool resumes(const std::string& one, const std::string& other) {
+  const auto kept = [](const std::string& deck) {
+    std::istringstream lines(without_section(deck, "Output"));
+    std::string text, line;
+    while (std::getline(lines, line))
+      if (!line.starts_with("    final time:")) text += line + "\n";
+    return text;
+  };
+  return kept(one) == kept(other);
+}
+
+std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck) {
+  const std::string ended = status_of(directory);
+  if (ended != "done" && ended != "steady" && ended != "past") return {};
+  try {
+    Outcome found{level, directory, output::RunRecord::load(directory / "run.h5"), 0};
+    if (found.record.deck() != deck) return {};
+    if (holds(found.record, "wall_seconds")) found.seconds = found.record.values("wall_seconds").back();
+    return found;
+  } catch (const UserError&) {  // a damaged record: the level is run again
+    return {};
+  }
+}
+
+Curve curve(const output::RunRecord& record, const std::string& series) {
+  if (!holds(record, series)) return {};
+  const std::vector<double>& values = record.values(series);
+  if (!holds(record, "fold")) return {record.values("time"), values};
+  const std::vector<double>& fold = record.values("fold");
+  Curve found;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (fold[k] != 0 || k + 1 == values.size()) found.at.push_back(static_cast<double>(found.at.size())), found.values.push_back(values[k]);
+  return found;
+}
+
+double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio) {
+  const auto of = [&](const Outcome& one) { return part(curve(one.record, request.series), request.of); };
+  return largest(difference(of(level), of(looser)).values) / (ratio - 1);
+}
+
+std::string obstacle(const std::vector<Outcome>& levels) {
+  const Outcome& finest = levels.back();
+  for (const output::Series& series : finest.record.series())
+    if (series.name == "contact_impulse" && series.values.back() > 0)
+      return "Contact/limiter holds particles apart by forces that depend on the time step";
+  if (summary_of(finest.directory).find(wrinkles) != std::string::npos)
+    return "the membrane is compressed and resists bending too little for its mesh, so that wrinkles can have grown that the mesh does not represent";
+  return {};
+}
+
+Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Answer found{request, {}, 0, 0, false, unknown};
+  const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
+  found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
+  found.allowed = request.relative ? request.value * magnitude(whole) : request.value;
+  const std::vector<Curve> all = differences(request.series, request.of, levels);
+  const std::vector<double> sizes = norms(all);
+  found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels, request, magnitude(whole), looser));
+  const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
+  if (tiny && !found.estimate.trusted()) {
+    const double before = sizes[sizes.size() - 2];
+    found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
+  }
+  if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
+  if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
+  found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;
+  return found;
+}
+
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
+  const std::string why = obstacle(levels);
+  std::vector<SeriesError> all;
+  const output::RunRecord& finest = levels.back().record;
+  for (const output::Series& series : finest.series()) {
+    if (!has_error(series.name)) continue;
+    SeriesError one{series.name, series.unit, series.si, {}, {}};
+    const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
+    const Curve whole = curve(finest, series.name);
+    const double scale = magnitude_of_unit(finest, series.unit);
+    const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
+    one.untrusted = why.empty() ? estimate.untrusted : why;
+    if (one.untrusted.empty()) {
+      std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
+      if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // rows before a fold have its error
+        for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;
+      one.values = envelope(pairs.back(), at);
+      const double factor = estimate.error / std::max(largest(pairs.back().values), std::numeric_limits<double>::min());
+      for (double& value : one.values) value *= factor;
+    } else {
+      one.values.assign(series.values.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace tanktread::accuracy

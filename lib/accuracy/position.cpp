@@ -1,0 +1,126 @@
+#include "accuracy/position.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <Eigen/LU>
+
+#include "record/files/nodes.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+using output::StoredSurface;
+
+/// Returns the values and the derivatives at x in [0, 1] of the Lagrange polynomials of the nodes k/p.
+std::array<Eigen::VectorXd, 2> lagrange(int p, double x) {
+  std::array<Eigen::VectorXd, 2> found{Eigen::VectorXd::Ones(p + 1), Eigen::VectorXd::Zero(p + 1)};
+  for (int k = 0; k <= p; ++k)
+    for (int i = 0; i <= p; ++i) {
+      if (i == k) continue;
+      const double step = static_cast<double>(k - i) / p, factor = (x - static_cast<double>(i) / p) / step;
+      found[1][k] = found[1][k] * factor + found[0][k] / step;
+      found[0][k] *= factor;
+    }
+  return found;
+}
+
+/// Returns the position on a cell and its two derivatives.
+std::array<Vec3, 3> evaluated(const StoredSurface& surface, const std::vector<int>& cell, double s, double t) {
+  const int p = static_cast<int>(std::lround(std::sqrt(static_cast<double>(cell.size())))) - 1;
+  const auto a = lagrange(p, s), b = lagrange(p, t);
+  static std::map<int, std::vector<std::array<int, 2>>> orders;
+  auto& order = orders[p];
+  if (order.empty()) order = output::node_order(p);
+  std::array<Vec3, 3> found{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t k = 0; k < cell.size(); ++k) {
+    const auto [i, j] = order[k];
+    const Vec3 x = surface.points.row(cell[k]).transpose();
+    found[0] += a[0][i] * b[0][j] * x, found[1] += a[1][i] * b[0][j] * x, found[2] += a[0][i] * b[1][j] * x;
+  }
+  return found;
+}
+
+double distance_from_cell(const StoredSurface& surface, const std::vector<int>& cell, const Vec3& x) {
+  double s = 0.5, t = 0.5, least = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 8; ++iteration) {
+    const auto [y, along_s, along_t] = evaluated(surface, cell, s, t);
+    const Vec3 off = x - y;
+    least = std::min(least, off.norm());
+    Eigen::Matrix2d normal;
+    normal << along_s.dot(along_s), along_s.dot(along_t), along_s.dot(along_t), along_t.dot(along_t);
+    const Eigen::Vector2d step = normal.inverse() * Eigen::Vector2d(along_s.dot(off), along_t.dot(off));
+    if (!step.allFinite()) break;
+    const double new_s = std::clamp(s + step[0], 0., 1.), new_t = std::clamp(t + step[1], 0., 1.);
+    if (std::abs(new_s - s) + std::abs(new_t - t) < 1e-12) break;
+    s = new_s, t = new_t;
+  }
+  return least;
+}
+
+/// The nodes of a surface in cubes of space, for the search of the nearest one.
+class Cubes {
+ public:
+  explicit Cubes(const StoredSurface& surface) : surface_(surface), cells_of_(static_cast<std::size_t>(surface.points.rows())) {
+    for (std::size_t c = 0; c < surface.cells.size(); ++c)
+      for (const int node : surface.cells[c]) {
+        cells_of_[static_cast<std::size_t>(node)].push_back(c);
+        size_ = std::max(size_, (surface.points.row(node) - surface.points.row(surface.cells[c].front())).norm());
+      }
+    for (Eigen::Index k = 0; k < surface.points.rows(); ++k) nodes_[cube(surface.points.row(k).transpose())].push_back(static_cast<int>(k));
+  }
+
+  double distance(const Vec3& x) const {
+    const std::array<long, 3> here = cube(x);
+    int nearest = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (long i = -1; i <= 1; ++i)
+      for (long j = -1; j <= 1; ++j)
+        for (long k = -1; k <= 1; ++k)
+          if (const auto found = nodes_.find({here[0] + i, here[1] + j, here[2] + k}); found != nodes_.end())
+            for (const int node : found->second)
+              if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < least) least = off, nearest = node;
+    if (nearest < 0) return std::numeric_limits<double>::quiet_NaN();
+    std::set<std::size_t> around;  // the cells at the nearest node, and their neighbours
+    for (const std::size_t c : cells_at(nearest))
+      for (const int node : surface_.cells[c]) around.insert(cells_at(node).begin(), cells_at(node).end());
+    for (const std::size_t c : around) least = std::min(least, distance_from_cell(surface_, surface_.cells[c], x));
+    return least;
+  }
+
+ private:
+  const std::vector<std::size_t>& cells_at(int node) const { return cells_of_[static_cast<std::size_t>(node)]; }
+  std::array<long, 3> cube(const Vec3& x) const { return {std::lround(x[0] / size_), std::lround(x[1] / size_), std::lround(x[2] / size_)}; }
+
+  const StoredSurface& surface_;
+  std::vector<std::vector<std::size_t>> cells_of_;  // cells that contain a node
+  std::map<std::array<long, 3>, std::vector<int>> nodes_;
+  double size_ = std::numeric_limits<double>::min();  // edge of a cube: the largest diameter of a cell
+};
+
+}  // namespace
+
+std::vector<double> distances(const StoredSurface& fine, const StoredSurface& coarse) {
+  const Cubes cubes(coarse);
+  std::vector<double> found;
+  for (Eigen::Index k = 0; k < fine.points.rows(); ++k) found.push_back(cubes.distance(fine.points.row(k).transpose()));
+  return found;
+}
+
+void write_position_errors(const std::filesystem::path& fine, const std::filesystem::path& coarse, const std::filesystem::path& to, double factor) {
+  const auto others = output::snapshot_times(coarse);
+  for (const auto& [name, time] : output::snapshot_times(fine)) {
+    const auto other = std::ranges::find_if(others, [&](const auto& one) { return std::abs(one.second - time) <= 1e-9 * std::max(1., time); });
+    if (other == others.end()) continue;
+    std::vector<double> errors = distances(output::read_surface(fine / name), output::read_surface(coarse / other->first));
+    for (double& error : errors) error *= factor;
+    output::add_field(fine / name, to / name, "position error", errors);
+  }
+}
+
+}  // namespace tanktread::accuracy

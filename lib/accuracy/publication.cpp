@@ -1,0 +1,131 @@
+#include "accuracy/publication.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/position.hpp"
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "base/text_file.hpp"
+#include "deck/expectation.hpp"
+#include "deck/words.hpp"
+#include "record/files/file.hpp"
+
+namespace tanktread::accuracy {
+
+namespace {
+
+namespace fs = std::filesystem;
+using deck::in_quotes;
+using deck::real_text;
+
+/// Makes the files of `from` available in `to` under the same names, by links to the same data if the file system has them.
+void link_files(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    if (!entry.is_regular_file()) continue;
+    const fs::path place = to / entry.path().filename();
+    std::error_code failed;
+    fs::remove(place, failed);
+    fs::create_hard_link(entry.path(), place, failed);
+    if (failed) fs::copy_file(entry.path(), place, fs::copy_options::overwrite_existing, failed);
+    if (failed) throw RunFailure("cannot write " + place.string() + ": " + failed.message());
+  }
+}
+
+/// Returns the verdicts of the expectations as the section `expect` of the summary, each with the estimated error of its series.
+std::string expect_text(const std::vector<deck::Verdict>& verdicts, const deck::Expectations& expect, const std::vector<SeriesError>& errors) {
+  std::string text = verdicts.empty() ? "expect: []\n" : "expect:\n";
+  for (std::size_t k = 0; k < verdicts.size(); ++k) {
+    const deck::Verdict& one = verdicts[k];
+    const auto found = std::ranges::find(errors, expect.all[k].series, &SeriesError::name);
+    text += "  - name: " + in_quotes(one.name) + "\n    value: " + real_text(one.value) + "\n    expected: " + real_text(one.expected) +
+            "\n    error: " + real_text(one.error) + "\n    estimated error: " + real_text(found == errors.end() ? NAN : found->values.back()) +
+            "\n    passed: " + (one.passed ? "true" : "false") + "\n";
+    if (!one.not_binding.empty()) text += "    not binding: " + in_quotes(one.not_binding) + "\n";
+  }
+  return text;
+}
+
+std::string word(Of of) { return of == Of::run ? "run" : of == Of::end ? "end" : "mean"; }
+
+std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::string& why,
+                          double seconds) {
+  std::string text = "accuracy:\n  met: " + std::string(std::ranges::all_of(answers, &Answer::met) ? "true" : "false") + "\n";
+  if (!why.empty()) text += "  stopped: " + in_quotes(why) + "\n";
+  text += "  seconds: " + real_text(seconds) + "\n  requests:\n";
+  for (const Answer& one : answers) {
+    text += "    - request: " + in_quotes(one.request.text()) + "\n      series: " + in_quotes(one.request.series) + "\n      of: " +
+            word(one.request.of) + "\n      value: " + real_text(one.value) + "\n      allowed: " + real_text(one.allowed) +
+            "\n      estimated error: " + real_text(one.estimate.trusted() ? one.estimate.error : NAN) +
+            (std::isnan(one.statistical) ? "" : "\n      statistical error: " + real_text(one.statistical)) + "\n      ratio: " +
+            real_text(one.estimate.ratio) + "\n      met: " + (one.met ? "true" : "false") + "\n";
+    if (!one.estimate.trusted()) text += "      untrusted: " + in_quotes(one.estimate.untrusted) + "\n";
+  }
+  text += "  levels:\n";
+  for (const Outcome& one : levels) {
+    std::string keys;
+    for (const std::string& setting : settings(task.values, one.level)) keys += (keys.empty() ? "" : ", ") + in_quotes(setting);
+    text += "    - {level: " + std::to_string(one.level.mesh) + ", seconds: " + real_text(one.seconds) + ", settings: [" + keys + "]}\n";
+  }
+  return text;
+}
+
+/// Returns the summary of one run without its statement about errors, which the sections of the ladder replace.
+std::string without_statement(std::string summary) {
+  const std::size_t begin = summary.find("\nestimated errors:\n");
+  if (begin == std::string::npos) return summary;
+  std::size_t end = summary.find('\n', begin + 1);
+  while (end != std::string::npos && summary.compare(end, 3, "\n  ") == 0) end = summary.find('\n', end + 1);
+  return summary.erase(begin, end == std::string::npos ? end : end - begin);
+}
+
+/// Returns the text of the summary with the section `expect` replaced.
+std::string with_expect(const std::string& summary, const std::string& section) {
+  const std::size_t at = summary.find("\nexpect: []\n");
+  if (at == std::string::npos) return summary + section;
+  return summary.substr(0, at + 1) + section + summary.substr(at + std::string("\nexpect: []\n").size());
+}
+
+}  // namespace
+
+std::string sentence(const Answer& one) {
+  const std::string name = one.request.text();
+  if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
+  const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
+  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (1.4 times the estimate must be allowed)");
+}
+
+std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
+                    const std::string& why, double seconds) {
+  const Outcome& finest = levels.back();
+  output::start_results(task.directory);
+  link_files(finest.directory, task.directory);
+  if (levels.size() > 1) {
+    const Outcome& before = levels[levels.size() - 2];
+    const double fine = expected_error(finest.level), coarse = expected_error(before.level);
+    write_position_errors(finest.directory, before.directory, task.directory, 1.2 * fine / (coarse - fine));
+  }
+  output::RunRecord record = finest.record;
+  deck::SeriesTable table;
+  for (const output::Series& series : record.series()) table[series.name] = series.values;
+  for (const SeriesError& one : errors)
+    record.add_error({one.name, one.unit,
+                      one.untrusted.empty() ? "estimated error of the series" : "no error: it cannot be estimated, because " + one.untrusted,
+                      one.values, one.si});
+  record.move(task.directory / "run.h5");
+  record.write(output::Durable::yes);
+
+  const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
+  std::string missed, text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
+  for (const deck::Verdict& one : verdicts)
+    if (!one.passed && one.not_binding.empty()) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + one.name + ": " + one.reason;
+  text = with_expect(without_statement(text), expect_text(verdicts, task.expect, errors));
+  text += "error:\n";
+  for (const SeriesError& one : errors)
+    text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
+  text += accuracy_text(task, levels, answers, why, seconds);
+  output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
+  return missed;
+}
+
+}  // namespace tanktread::accuracy

@@ -1,0 +1,51 @@
+#pragma once
+// Requested accuracy of results: section `Accuracy` of the deck.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "deck/forward.hpp"
+
+namespace tanktread::accuracy {
+
+/// Part of a series whose error a request limits.
+enum class Of { run, end, mean };
+
+/// A request: `[<particle>/]<series>[@end|@mean]=<value>[%]`.
+struct Request {
+  std::string series;     ///< name of the series in `run.h5`, for example `taylor_inertia` or `left/velocity_x1`
+  Of of = Of::run;        ///< largest error over the run, error of the last value, or error of the time average
+  double value = 0;       ///< largest allowed error, in the unit of the series, or relative
+  bool relative = false;  ///< true if `value` is relative to the largest magnitude of the series over the run
+
+  /// Returns the request as text, as a deck gives it.
+  std::string text() const;
+};
+
+/// Reads one request. Throws UserError if the text has another form or the value is not positive.
+Request request_of(const std::string& text);
+
+/// Options `Accuracy/*` of the deck.
+struct Options {
+  bool present = false;  ///< true if the deck has this section, which then gives at least one request
+  std::vector<Request> requests;
+  std::optional<double> wall_clock_limit;  ///< seconds that all levels together may take; no limit if not set
+  int levels = 7;                          ///< largest number of levels
+
+  /// Declares the keys. Throws UserError if no request is given or a request is malformed.
+  void declare(deck::Section& section);
+};
+
+/// Returns the key and value of a deck, `Accuracy/requests=...`, that request what the arguments of the command line request. `texts` is not empty.
+std::string setting_of(const std::vector<std::string>& texts);
+
+/// Throws UserError, with the name that was probably meant, if a requested series is not among `names`, or has no error to estimate (see
+/// `has_error`).
+void check_series(const std::vector<Request>& requests, const std::vector<std::string>& names);
+
+/// Returns whether an error of the series is estimated. Series of the work of a run, for example `wall_seconds`, of the time, of indices, and of
+/// errors themselves have none.
+bool has_error(const std::string& series);
+
+}  // namespace tanktread::accuracy

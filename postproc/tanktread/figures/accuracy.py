@@ -1,0 +1,105 @@
+"""Figure of the work of a scene against its accuracy."""
+
+import pathlib
+import tempfile
+
+import numpy
+
+from ..interpolation import difference
+from ..mistakes import expect, log
+from ..results import Run
+from ..runs import Study, settings_of
+from . import style
+from .register import figure
+
+PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
+         "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
+
+
+class Levels:
+    """The levels of a run with requested accuracy, coarse to fine: their settings, seconds and runs."""
+
+    def __init__(self, run):
+        found = (run.summary or {}).get("accuracy")
+        expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
+        self.requests = found["requests"]
+        self.settings = [settings_of(one["settings"]) for one in found["levels"]]
+        self.seconds = numpy.array([one["seconds"] for one in found["levels"]])
+        self.runs = [Run(run.directory / f"level_{one['level']}") for one in found["levels"]]
+
+    def values(self, run, request):
+        """Returns times and values of which a request limits the error."""
+        series = run.series[request["series"]]
+        if request["of"] == "run":
+            return run.series["time"], series
+        value = series[-1] if request["of"] == "end" else average(run.series["time"], series)
+        return numpy.zeros(1), numpy.array([value])
+
+    def errors(self, request):
+        """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
+        finest = self.values(self.runs[-1], request)
+        found = [largest(self.values(one, request), finest) for one in self.runs[:-1]]
+        return numpy.array([*found, request["estimated error"]])
+
+    def parts(self, request, study):
+        """Returns {part: change of the result if only this part is refined}, at the second last level but one."""
+        k = max(0, len(self.runs) - 3)
+        base, found = self.values(self.runs[k], request), {}
+        with tempfile.TemporaryDirectory() as folder:
+            deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
+            deck.write_text(self.runs[k].deck_text, encoding="utf-8")
+            for part, keys in PARTS.items():
+                finer = {key: value for key, value in self.settings[k + 1].items() if key.startswith(keys)}
+                if finer == {key: value for key, value in self.settings[k].items() if key.startswith(keys)}:
+                    continue
+                outcome = study.run(deck, finer)
+                expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
+                found[part] = largest(self.values(outcome.run, request), base)
+        return found
+
+
+def average(times, values):
+    """Returns the time average of a series, by the trapezoidal rule."""
+    if len(times) == 1:
+        return values[0]
+    return numpy.sum(numpy.diff(times) * (values[1:] + values[:-1]) / 2) / (times[-1] - times[0])
+
+
+def largest(one, other):
+    """Returns the largest difference of two series at the times that both have; by interpolation if these are few."""
+    _, mine, theirs = numpy.intersect1d(one[0].round(9), other[0].round(9), return_indices=True)
+    if len(mine) >= min(5, len(one[0]), len(other[0])):
+        return float(numpy.nanmax(abs(one[1][mine] - other[1][theirs])))
+    return difference(*one, *other)
+
+
+@figure
+def work(run, axes=None, *, parts: bool = True):
+    """Estimated error against seconds, for each series whose accuracy was requested, with the part that dominates.
+
+    Each point is a level of the run. The error of a level is its difference from the finest one, whose own error is
+    estimated. The dominant part, mesh, time or quadrature, is the one whose refinement changes the result most.
+
+    parts: also make the runs that tell the dominant part"""
+    levels = Levels(run)
+    study = Study(directory=run.directory / "parts")
+    figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
+    for request, color in zip(levels.requests, style.RUNS * len(levels.requests)):
+        errors = levels.errors(request)
+        known = numpy.isfinite(errors) & (errors > 0)
+        if known.sum() < 2:
+            log.info(f"{request['request']}: {request.get('untrusted', 'the error is unknown')}")
+            continue
+        slope = numpy.polyfit(numpy.log(levels.seconds[known]), numpy.log(errors[known]), 1)[0]
+        found = levels.parts(request, study) if parts else {}
+        dominant = max(found, key=found.get) if found else None
+        words = f"{request['request']}: slope {slope:.1f}" + (f", mostly {dominant}" if dominant else "")
+        axis.loglog(levels.seconds[known], errors[known], "o-", ms=4, color=color, label=words)
+        axis.axhline(request["allowed"], color=color, linewidth=0.8, linestyle=(0, (4, 3)))
+        changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
+        log.info(words + (f"; change by refinement of {changes}" if changes else ""))
+    axis.set_xlabel("seconds of the level")
+    axis.set_ylabel("estimated error")
+    axis.set_title("dashed: requested accuracy")
+    axis.legend(loc="best")
+    return figure

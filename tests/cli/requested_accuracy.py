@@ -1,0 +1,212 @@
+#!/usr/bin/python3
+# ranks: 2
+"""Accuracy on request: levels, estimated errors, their files, resumption, and what is said if a request is not met."""
+import math
+import os
+import pathlib
+import signal
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "postproc"))
+os.environ["TANKTREAD"] = str(pathlib.Path(sys.argv[1]).resolve())
+
+from harness import check, close, deck, main, refused, run, series, start, summary
+
+DROP = """Tanktread:
+  Flow: {type: uniaxial extension, shear rate: 1.0}
+  Particle: {shape: sphere, radius: 1.0, viscosity ratio: 1.0}
+  Membrane: {law: surface tension, capillary number: 0.05}
+  Time: {final time: 1.0}
+  Output: {interval: 0.1}
+"""
+
+
+def _run_file(results):
+    import h5py
+
+    return h5py.File(pathlib.Path(results) / "run.h5", "r")
+
+
+def _same(a, b, tolerance):
+    """Fails the test unless the series and errors of two runs agree, except those of the work."""
+    import numpy
+
+    with _run_file(a) as one, _run_file(b) as other:
+        for group in ("series", "error"):
+            check(set(one[group]) == set(other[group]), f"other names in /{group}")
+            for name in one[group]:
+                if name in ("wall_seconds", "iterations", "evaluations", "solver_iterations", "step_error", "assemblies"):
+                    continue
+                x, y = one[group][name][:], other[group][name][:]
+                check(x.shape == y.shape, f"{group}/{name}: other rows")
+                largest = numpy.nanmax(abs(one["series"][name][:]), initial=1e-3)
+                check(numpy.nanmax(abs(x - y), initial=0) <= tolerance * largest, f"{group}/{name}: {x} and {y}")
+
+
+def a_request_is_met_and_every_series_has_an_error():
+    import numpy
+    import tanktread
+
+    deck(DROP)
+    run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--accuracy", "area@end=1e-3", "--quiet", "--output", "met")
+    found = summary("met")["accuracy"]
+    check(found["met"], found)
+    for one in found["requests"]:
+        check(one["met"] and one["estimated error"] <= one["allowed"], one)
+    run("deck.yaml", "--set", "Surface/elements per side=12", "--set", "Time/tolerance=1e-6", "--set", "Quadrature/tolerance=1e-6", "--quiet",
+        "--output", "fine")
+    with _run_file("met") as file, _run_file("fine") as fine:
+        for name in ("taylor_inertia", "area", "energy", "stresslet_11", "velocity_x1"):
+            error, values = file["error"][name], file["series"][name]
+            check(error.shape == values.shape, f"{name}: another shape")
+            check(error.attrs["unit"] == values.attrs["unit"], f"{name}: another unit")
+        check("wall_seconds" not in file["error"] and "time" not in file["error"], "the work has an error")
+        at = numpy.isin(file["series/time"][:].round(9), fine["series/time"][:].round(9))
+        reference = numpy.interp(file["series/time"][at], fine["series/time"][:], fine["series/taylor_inertia"][:])
+        true = abs(file["series/taylor_inertia"][at] - reference)
+        check(true.max() <= 0.01 * reference.max(), f"the request is not met: {true.max()}")
+        factor = numpy.nanmax(file["error/taylor_inertia"][:]) / true.max()
+        check(1 / 4 < factor < 4, f"the estimate is {factor} times the error")
+    check(summary("met")["error"]["taylor_inertia"] > 0, "no error in the summary")
+    errors = [shot.fields["position error"].max() for shot in tanktread.run("met").snapshots()]
+    check(len(errors) > 5 and 0 < max(errors) < 0.02, errors)  # of the radius
+
+
+def a_looser_request_takes_fewer_levels():
+    deck(DROP)
+    levels = []
+    for request in ("taylor_inertia=5%", "taylor_inertia=0.05%"):
+        run("deck.yaml", "--accuracy", request, "--quiet", "--overwrite", "--output", "some")
+        levels.append(len(summary("some")["accuracy"]["levels"]))
+    check(levels[0] < levels[1], levels)
+    check(not pathlib.Path("some/level_7").exists(), "a level too many")
+
+
+def the_requests_of_a_deck_bind_like_those_of_the_command_line():
+    deck(DROP + "  Accuracy: {requests: 'taylor_inertia=1%, area=1e-4'}\n  Expect: {area: {value: 12.6, tolerance: 0.5}}\n")
+    run("deck.yaml", "--quiet", "--output", "deck")
+    found = summary("deck")
+    check(found["accuracy"]["met"], found)
+    check(found["expect"][0]["passed"] and found["expect"][0]["estimated error"] > 0, found["expect"])
+    run("deck.yaml", "--set", "Expect/area/value=20", "--quiet", "--output", "missed", code=1)
+
+
+def what_is_not_met_is_said():
+    deck(DROP)
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-12", "--set", "Accuracy/levels=3", "--quiet", "--output", "few", code=1)
+    lines = result.stderr.splitlines()
+    check(len(lines) == 1 and "not reached" in lines[0] and "taylor_inertia=1e-12: estimated error" in lines[0], result.stderr)
+    check(not summary("few")["accuracy"]["met"], "said to be met")
+
+
+def the_wall_clock_limit_is_honoured_and_said():
+    deck(DROP)
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
+                 code=4, timeout=60)
+    check("wall-clock limit" in result.stderr or "was stopped" in result.stderr, result.stderr)
+    check("--resume short goes on" in result.stderr, result.stderr)
+
+
+def a_ladder_that_was_killed_gives_the_same_result():
+    deck(DROP)
+    request = ("--accuracy", "taylor_inertia=0.1%", "--quiet")
+    run("deck.yaml", *request, "--output", "whole")
+    for seconds in (0.1, 0.4):
+        process = start("deck.yaml", *request, "--overwrite", "--output", "killed")
+        while not pathlib.Path("killed/level_1").exists() and process.poll() is None:
+            time.sleep(0.01)
+        time.sleep(seconds)
+        if process.poll() is None:
+            os.kill(process.pid, signal.SIGKILL)
+        process.communicate()
+        run("--resume", "killed", "--quiet")
+        _same("whole", "killed", 1e-13)
+    kept = os.stat("killed/level_0/run.h5").st_mtime_ns
+    run("--resume", "killed", "--quiet", "--set", "Accuracy/requests=taylor_inertia=0.05%")
+    check(os.stat("killed/level_0/run.h5").st_mtime_ns == kept, "a finished level was run again")
+    check(summary("killed")["accuracy"]["requests"][0]["request"] == "taylor_inertia=0.05%", summary("killed")["accuracy"])
+
+
+def two_ranks_agree():
+    deck(DROP)
+    for ranks in (1, 2):
+        run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--quiet", "--output", f"of_{ranks}", ranks=ranks)
+    _same("of_1", "of_2", 1e-9)  # errors are differences of series, which agree to 1e-10
+
+
+def resistance_has_errors():
+    deck("""Tanktread:
+  Flow: {type: simple shear}
+  Particle: {shape: sphere, radius: 1.0, motion: prescribed, velocity: [0.0, 0.0, 1.0]}
+""")
+    run("deck.yaml", "--accuracy", "drag_x3=0.1%", "--quiet", "--output", "drag")
+    found = summary("drag")
+    exact = -6 * math.pi
+    close(series("drag", "drag_x3")[-1], exact, 1e-3 * abs(exact), "drag")
+    check(found["accuracy"]["met"] and found["error"]["drag_x3"] > 0, found["accuracy"])
+
+
+def tables_reports_and_bands_have_errors():
+    import numpy
+    from tanktread import report
+    from tanktread.studies import sweep
+    from tanktread.studies.fit_data import SeriesData
+
+    deck(DROP + "  Accuracy: {requests: 'taylor_inertia=1%'}\n")
+    deck("deck: deck.yaml\ngrid: {Particle/viscosity ratio: [1.0, 2.0]}\nrecord: {D: taylor_inertia}\n", "study.yaml")
+    made = sweep.run("study.yaml", "table", jobs=1)
+    columns, _ = sweep.table(pathlib.Path("table"))
+    check((columns["D error"] > 0).all() and (columns["D error"] < 0.01 * columns["D"]).all(), columns)
+    one = made.outcomes[0].run
+    low, high = one.band("taylor_inertia")
+    check((low <= high).all() and numpy.nanmax(high - low) > 0, "the band")
+    found = report.of_run(one.directory, None)
+    check(found["curves"]["errors"]["taylor_inertia"] and any(title == "Accuracy" and rows for title, _, rows in found["sections"]), "the report")
+    datum = SeriesData({"series": "taylor_inertia", "value": 0.1, "error": 1e-9}, "data", pathlib.Path())
+    prediction = datum.prediction(one)
+    weighted = datum.residuals(prediction, [])[0] * numpy.nanmax(one.errors["taylor_inertia"])
+    close(weighted, 0.1 - one.series["taylor_inertia"][-1], 1e-6, "residual divided by the discretisation error")
+
+
+def a_run_without_a_request_states_what_it_knows():
+    deck(DROP)
+    run("deck.yaml", "--quiet", "--output", "plain")
+    known = summary("plain")["estimated errors"]
+    check("unknown" in known["mesh"] and float(known["time integration"].split()[0]) > 0 and "quadrature" in known, known)
+    run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--quiet", "--output", "asked")
+    check("estimated errors" not in summary("asked"), "the mesh is said to be unknown")
+
+
+def the_check_predicts_levels_and_seconds():
+    deck(DROP)
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=0.1%", "--check")
+    check("is predicted to meet it" in result.stdout and "s in all, from a pilot run" in result.stdout, result.stdout[-400:])
+    check(not pathlib.Path("results").exists(), "results were written")
+
+
+def wrinkles_are_reported_instead_of_an_error():
+    import math
+
+    deck("""Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {law: neo-Hookean, capillary number: 0.1}
+  Time: {final time: 5.0}
+  Output: {interval: 1.0}
+""")
+    result = run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "wrinkled", code=1)
+    check("wrinkles" in result.stderr.splitlines()[-1], result.stderr)
+    check(math.isnan(summary("wrinkled")["accuracy"]["requests"][0]["estimated error"]), "an error in spite of wrinkles")
+
+
+def wrong_requests_are_refused():
+    deck(DROP)
+    for request, words in (("taylor_inertai=1e-3", ["taylor_inertia meant"]), ("taylor_inertia", ["no value"]),
+                           ("taylor_inertia=-1", ["positive"]), ("taylor_inertia@start=1", ["@end"]), ("wall_seconds=1", ["no error"]),
+                           ("=1", ["no series"])):
+        refused(words, "deck.yaml", "--accuracy", request)
+    refused(["initial shape/run"], "deck.yaml", "--accuracy", "area=1%", "--set", "Particle/initial shape/run=results/other")
+    refused(["is missing"], "deck.yaml", "--set", "Accuracy/levels=4")
+
+
+main()

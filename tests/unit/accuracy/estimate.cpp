@@ -1,0 +1,123 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "accuracy/estimate.hpp"
+
+namespace tanktread::accuracy {
+namespace {
+
+const double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Expected sizes of the errors of the levels 0 to `last`, and the differences of successive levels of a quantity with errors factor x size^power.
+struct Sequence {
+  std::vector<double> expected, differences;
+
+  Sequence(double factor, double power, int last) {
+    const std::vector<double> sizes{1, 0.28, 0.09, 0.023, 0.007, 0.002};
+    expected.assign(sizes.begin(), sizes.begin() + last + 1);
+    for (int k = 1; k <= last; ++k) differences.push_back(factor * (std::pow(sizes[k - 1], power) - std::pow(sizes[k], power)));
+  }
+};
+
+Estimate of(const std::vector<double>& differences) {
+  std::vector<double> expected{1};
+  while (expected.size() <= differences.size()) expected.push_back(expected.back() / 3);
+  return estimated(differences, 1, expected);
+}
+
+TEST(Estimate, IsAFifthAboveTheErrorIfErrorsAreProportionalToTheExpectedOnes) {
+  for (int last = 2; last <= 5; ++last) {
+    const Sequence sequence(0.1, 1, last);
+    const Estimate found = estimated(sequence.differences, 1, sequence.expected);
+    EXPECT_TRUE(found.trusted()) << found.untrusted;
+    EXPECT_NEAR(found.error, 1.2 * 0.1 * sequence.expected.back(), 1e-15);
+    EXPECT_NEAR(found.ratio, sequence.expected[last - 1] / sequence.expected[last], 1e-12);
+  }
+}
+
+TEST(Estimate, IsWithinAFactorOfThreeIfErrorsHaveAnotherOrder) {
+  for (const double power : {0.7, 0.85, 1.2, 1.3})
+    for (int last = 2; last <= 5; ++last) {
+      const Sequence sequence(0.1, power, last);
+      const Estimate found = estimated(sequence.differences, 1, sequence.expected);
+      const double factor = found.error / (0.1 * std::pow(sequence.expected.back(), power));
+      EXPECT_TRUE(found.trusted()) << found.untrusted;
+      EXPECT_GT(factor, 1. / 3) << power;
+      EXPECT_LT(factor, 3.) << power;
+    }
+}
+
+TEST(Estimate, NeedsThreeLevels) {
+  EXPECT_FALSE(of({}).trusted());
+  EXPECT_FALSE(of({1e-2}).trusted());
+  EXPECT_TRUE(of({1e-2, 3e-3}).trusted());
+}
+
+TEST(Estimate, IsNotTrustedIfDifferencesDoNotFallRegularly) {
+  EXPECT_FALSE(of({1e-2, 9e-3}).trusted());          // hardly fall
+  EXPECT_FALSE(of({1e-3, 3e-3}).trusted());          // grow
+  EXPECT_FALSE(of({1e-2, 1e-4}).trusted());          // fall by chance
+  EXPECT_FALSE(of({1e-2, 3e-3, 3.3e-3}).trusted());  // stagnate
+  EXPECT_FALSE(of({1e-2, nan}).trusted());
+  EXPECT_TRUE(std::isnan(of({1e-2, nan}).error));
+}
+
+TEST(Estimate, TakesTwoRatiosIfTheLastOneIsUnusual) {
+  EXPECT_TRUE(of({1.6e-2, 1.3e-3, 1e-3}).trusted());  // 16 in two levels
+}
+
+TEST(Estimate, IsNotSmallIfOneDifferenceIsSmallByChance) {
+  EXPECT_GT(of({1e-2, 4e-3, 4e-4}).error, 0.4 * of({1e-2, 4e-3, 1.3e-3}).error);
+}
+
+TEST(Estimate, OfRoundOffIsRoundOff) {
+  const Estimate found = of({3e-13, 4e-13});
+  EXPECT_TRUE(found.trusted());
+  EXPECT_DOUBLE_EQ(found.error, 4e-13);
+}
+
+TEST(Difference, IsTakenAtTimesThatBothCurvesHave) {
+  Curve a, b;
+  for (int k = 0; k <= 12; ++k) a.at.push_back(k / 12.), a.values.push_back(std::exp(k / 12.));
+  for (int k = 0; k <= 18; ++k) b.at.push_back(k / 18.), b.values.push_back(std::exp(k / 18.) + 0.1);
+  const Curve found = difference(a, b);
+  ASSERT_EQ(found.at.size(), 7u);
+  for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-14);  // no error of interpolation
+}
+
+TEST(Difference, InterpolatesIfThereAreTooFewSuchTimes) {
+  Curve a, b;
+  for (int k = 0; k <= 10; ++k) a.at.push_back(k / 10. + 1e-3), a.values.push_back(std::pow(a.at.back(), 3));
+  for (int k = 0; k <= 13; ++k) b.at.push_back(k / 12.), b.values.push_back(std::pow(b.at.back(), 3) + 0.1);
+  const Curve found = difference(a, b);
+  ASSERT_EQ(found.at.size(), 11u);
+  for (const double value : found.values) EXPECT_NEAR(value, 0.1, 1e-12);  // cubics are exact
+}
+
+TEST(Difference, IsNanWhereACurveIs) {
+  const Curve a{{0, 1, 2}, {1, nan, 3}}, b{{0, 1, 2}, {1, 2, 3.5}};
+  EXPECT_DOUBLE_EQ(largest(difference(a, b).values), 0.5);
+  EXPECT_TRUE(std::isnan(largest({nan, nan})));
+}
+
+TEST(Mean, IsTheIntegralDividedByTheTime) {
+  EXPECT_DOUBLE_EQ(mean({{0, 1, 4}, {0, 2, 2}}), 7. / 4);
+  EXPECT_DOUBLE_EQ(mean({{3}, {5}}), 5);
+}
+
+TEST(StatisticalError, IsTheStandardErrorOfIndependentParts) {
+  Curve curve;
+  for (int k = 0; k <= 800; ++k) curve.at.push_back(k), curve.values.push_back(k / 100 % 2 ? 1. : -1.);
+  EXPECT_NEAR(statistical_error(curve), std::sqrt(1. / 7), 1e-2);  // eight averages of 1 or -1
+  EXPECT_TRUE(std::isnan(statistical_error({{0, 1}, {0, 1}})));
+}
+
+TEST(Envelope, HasNoZerosBetweenLargerValues) {
+  const std::vector<double> found = envelope({{0, 1, 2, 3}, {1, 0, 2, 4}}, {0, 0.5, 1, 2.5, 3, 3.5});
+  EXPECT_EQ(found, (std::vector<double>{1, 2, 2, 4, 4, 4}));
+}
+
+}  // namespace
+}  // namespace tanktread::accuracy

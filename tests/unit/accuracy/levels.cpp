@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "accuracy/ladder.hpp"
+#include "accuracy/levels.hpp"
+#include "base/errors.hpp"
+
+namespace tanktread::accuracy {
+namespace {
+
+const Values plain{{"Surface/mesh", "cube"}, {"Surface/elements per side", "6"}, {"Time/tolerance", "1e-4"}, {"Quadrature/rule", "adaptive"},
+                   {"Solvers/tolerance", "1e-8"}};
+
+bool sets(const Values& deck, const Level& level, const std::string& setting) {
+  const std::vector<std::string> all = settings(deck, level);
+  return std::ranges::find(all, setting) != all.end();
+}
+
+Values with(Values deck, const Values& more) {
+  for (const auto& [path, value] : more) deck[path] = value;
+  return deck;
+}
+
+TEST(Levels, RefineMeshAndTolerancesTogether) {
+  EXPECT_TRUE(sets(plain, {0, 0, 0}, "Surface/elements per side=3"));
+  EXPECT_TRUE(sets(plain, {0, 0, 0}, "Time/tolerance=0.002"));
+  EXPECT_TRUE(sets(plain, {5, 5, 5}, "Surface/elements per side=12"));
+  EXPECT_TRUE(sets(plain, {1, 1, 1}, "Quadrature/tolerance=5e-04"));
+  EXPECT_TRUE(sets(plain, {9, 9, 9}, "Quadrature/tolerance=1e-06"));
+  EXPECT_FALSE(sets(plain, {0, 0, 0}, "Solvers/tolerance=1e-08"));  // tight enough
+}
+
+TEST(Levels, ChangeOnePartAlone) {
+  EXPECT_TRUE(sets(plain, {1, 3, 1}, "Surface/elements per side=4"));
+  EXPECT_TRUE(sets(plain, {1, 3, 1}, "Time/tolerance=3.125e-05"));
+  EXPECT_TRUE(sets(plain, {1, 3, 1}, "Quadrature/tolerance=5e-04"));
+}
+
+TEST(Levels, KeepTheRatiosOfSeveralMeshes) {
+  const Values deck{{"Particles/a/Surface/mesh", "cube"},       {"Particles/a/Surface/elements per side", "12"},
+                    {"Particles/b/Surface/mesh", "cube"},       {"Particles/b/Surface/elements per side", "6"},
+                    {"Quadrature/rule", "adaptive"}};
+  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/a/Surface/elements per side=9"));
+  EXPECT_TRUE(sets(deck, {4, 4, 4}, "Particles/b/Surface/elements per side=5"));
+  EXPECT_TRUE(sets(deck, {0, 0, 0}, "Particles/b/Surface/elements per side=3"));
+}
+
+TEST(Levels, RefinePolarMeshes) {
+  const Values deck{{"Surface/mesh", "polar"}, {"Surface/azimuthal elements", "32"}, {"Surface/meridional elements", "16"}};
+  EXPECT_TRUE(sets(deck, {5, 5, 5}, "Surface/meridional elements=24"));
+  EXPECT_TRUE(sets(deck, {5, 5, 5}, "Surface/azimuthal elements=48"));
+}
+
+TEST(Levels, ScaleTheTolerancesOfAdaptiveMeshesAsTheErrorOfAMesh) {
+  const Values deck = with(plain, {{"Adaptation/enabled", "true"}, {"Adaptation/surface tolerance", "4e-4"}});
+  EXPECT_TRUE(sets(deck, {5, 5, 5}, "Adaptation/surface tolerance=2.5e-05"));
+  EXPECT_FALSE(sets(plain, {5, 5, 5}, "Adaptation/surface tolerance=2.5e-05"));
+}
+
+TEST(Levels, RefineWalls) {
+  const Values deck = with(plain, {{"Tube/azimuthal elements", "24"}});
+  EXPECT_TRUE(sets(deck, {5, 5, 5}, "Tube/azimuthal elements=48"));
+}
+
+TEST(Levels, HalveFixedSteps) {
+  const Values deck = with(plain, {{"Time/fixed step", "0.01"}});
+  EXPECT_TRUE(sets(deck, {3, 3, 3}, "Time/fixed step=0.005"));
+  EXPECT_FALSE(sets(deck, {3, 3, 3}, "Time/tolerance=3.125e-05"));
+}
+
+TEST(Levels, KeepMeshesOfFiles) {
+  const Values deck = with(plain, {{"Particle/shape", "file"}});
+  EXPECT_FALSE(sets(deck, {5, 5, 5}, "Surface/elements per side=12"));
+  EXPECT_EQ(fixed_meshes(deck), std::vector<std::string>{"Particle"});
+  EXPECT_TRUE(fixed_meshes(plain).empty());
+}
+
+TEST(Levels, RefuseShapesOfOneMesh) {
+  EXPECT_NO_THROW(check_levels(plain));
+  EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
+}
+
+TEST(Levels, AreBalancedByTheSharesOfTheirParts) {
+  EXPECT_EQ(balanced(2, 0.25, 0.25), (Level{2, 2, 2}));
+  EXPECT_EQ(balanced(2, 0.25 / time_ratio, 0.25 / quadrature_ratio), (Level{2, 1, 1}));
+  EXPECT_EQ(balanced(4, 0, 1e-6), (Level{4, 2, 2}));
+  EXPECT_EQ(balanced(4, 1, 1), (Level{4, 6, 5}));  // the error of time falls more slowly than that of the mesh
+}
+
+TEST(Levels, LeaveOutASectionOfADeck) {
+  const std::string deck = "Tanktread:\n  Flow:\n    type: duct\n  Expect:\n    a:\n      value: 1\n  Output:\n    interval: 1\n";
+  EXPECT_EQ(without_section(deck, "Expect"), "Tanktread:\n  Flow:\n    type: duct\n  Output:\n    interval: 1\n");
+}
+
+TEST(Ladder, PredictsTheNextLevelFromTheGrowth) {
+  EXPECT_DOUBLE_EQ(predicted_seconds({}), 0);
+  EXPECT_DOUBLE_EQ(predicted_seconds({2}), 5);
+  EXPECT_DOUBLE_EQ(predicted_seconds({2, 6}), 18);
+  EXPECT_DOUBLE_EQ(predicted_seconds({1, 100}), 500);  // limited growth
+}
+
+}  // namespace
+}  // namespace tanktread::accuracy
