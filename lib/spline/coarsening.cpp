@@ -9,8 +9,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge is one of the mesh lines that must surround the extraordinary point at `corner` if the mesh there is uniform with
-/// spacing h, 2 h, 4 h and so on.
+/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`: it is within 3 H of the point and
+/// on the lattice of spacing H, for H = h, 2 h, 4 h or a larger spacing.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
@@ -195,7 +195,7 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     for (int k : {1, 2}) {  // right and upper edge of each cell; edges between two macro faces are excluded below
       const bool vertical = k == 1;
       const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
-      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // lines of the base mesh include the sides of macro faces
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // keeps initial mesh lines, also macro face sides
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;

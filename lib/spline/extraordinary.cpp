@@ -99,7 +99,8 @@ Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
   return biquartic;
 }
 
-/// Conditions G x = g for continuous tangent planes (G1) across the spokes, with x the changes of the Bezier points; three conditions per spoke.
+/// Conditions G x = g for continuous tangent planes (G1) across the three mesh lines from the extraordinary point (spokes), with x the
+/// changes of the Bezier points; three conditions per spoke.
 struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };

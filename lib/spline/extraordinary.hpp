@@ -22,9 +22,9 @@ Eigen::MatrixXd averaged_bicubic();
 
 /// Returns the bi-quartic Bezier points of face 0, row 5 v + u. Shape (25, 19). Rows sum to 1.
 ///
-/// c0 .. c3 are the control points of the cubic along a spoke. c0, c2, c3 and all points that determine the tangent planes on the outer sides of
-/// the faces keep their values, so the surface stays C1 there. c1 and the four inner points of each face change such that across the spoke t ->
-/// c(t)
+/// c0 .. c3 are the control points of the cubic c(t) along a spoke (mesh line from the extraordinary point). c0, c2, c3 and all points that determine
+/// the tangent planes on the outer sides of the faces keep their values, so the surface stays C1 there. c1 and the four inner points of each face
+/// change such that across the spoke
 ///
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///

@@ -47,7 +47,7 @@ struct Mark {
 /// off to show this.
 struct RepairRules {
   bool no_overlaps = true;        ///< no lattice vertex is on the face extensions of two T-junctions that point at each other
-  bool nested_extensions = true;  ///< the extended mesh contains the extended mesh before the refinement
+  bool nested_extensions = true;  ///< the mesh with its extensions contains the mesh with its extensions before refinement
   int rings = 3;                  ///< number of rings of equal elements required around each extraordinary point
   std::vector<LatticeMap> images = {};  ///< symmetries of the mesh to keep, a group without the identity; bisections are applied to all images
 };

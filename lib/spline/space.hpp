@@ -38,7 +38,7 @@ struct Space {
   std::vector<Element> elements;
   /// For each collocation point, the sites on all elements whose closure contains it. The first one is used for evaluation.
   std::vector<std::vector<Site>> collocation;
-  std::string description;  ///< one line for the plan: mesh, degree, extraordinary points or poles
+  std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };
 
 /// Index ranges of one of several spaces in the stacked space, which numbers the spaces' control points and elements consecutively: control points

@@ -21,19 +21,19 @@ Knots knots(const TMesh& mesh, int anchor);
 /// Bezier coefficients of one spline function on one element of the Bezier mesh.
 struct Contribution {
   int tile, anchor;
-  std::array<double, 16> row;  ///< coefficients in the order 4 j + i
+  std::array<double, 16> row;  ///< entry 4 j + i is the coefficient of B_i(s) B_j(t)
 };
 
 struct TileFunctions {
   Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
   std::vector<int> irregular;         ///< for each element: index of its corner that is an extraordinary point, or -1
-  std::vector<Contribution> entries;  ///< by ascending anchor; none on elements at extraordinary points
+  std::vector<Contribution> entries;  ///< coefficients by ascending anchor; none on elements at extraordinary points
   std::vector<Knots> knots;           ///< knots of each anchor
 };
 TileFunctions tile_functions(const TMesh& mesh);
 
-/// A point of a cell in thirds of a unit, 0 <= x, y <= 3. All generalised Greville points have this form.
+/// A point of a lattice cell with coordinates in thirds of the cell, 0 <= x, y <= 3. All generalised Greville points have this form.
 struct CellPoint {
   int cell, x, y;
 };

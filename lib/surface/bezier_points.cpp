@@ -8,7 +8,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Buffer for n numbers that does not allocate memory for usual sizes.
+/// Buffer for n numbers. It allocates memory only if n is above 3 * 64.
 struct Room {
   explicit Room(int n) {
     if (n <= most) return;

@@ -31,7 +31,7 @@ inline std::vector<double> block_sums(std::span<const double> of_elements) {
   return sums;
 }
 
-/// All elements of one degree, ascending.
+/// Indices of all elements of one degree, ascending.
 struct Block {
   int degree = 3;
   std::vector<int> elements;

@@ -327,7 +327,7 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  // a smooth spline keeps the control points of the transverse wall apart, where an interpolant would fold the elements' sides
+  // With triple knots at a step, the sides of the elements on its transverse wall would be folded. A smooth spline keeps its control points apart.
   if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);

@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// The closest points of two surfaces and their distance, which is 0 if the surfaces meet.
+/// The closest points of two surfaces and their distance, which is 0 if the surfaces touch or intersect.
 struct ClosestPoints {
   Vec3 first, second;
   double gap = 0;
@@ -23,7 +23,7 @@ class ElementBoxes {
  public:
   struct Box {
     Eigen::Array3d low, high;
-    int first, last;    ///< elements in the box: element(first) .. element(last - 1)
+    int first, last;    ///< the box contains element(first) .. element(last - 1)
     int child[2] = {};  ///< children of a box with several elements
   };
 

@@ -102,7 +102,7 @@ struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
   std::optional<double> depth;           ///< d, largest deviation of the factor from 1; not set for the profiles `straight` and `file`
   std::optional<double> half_length;     ///< w, distance along the centre line from the middle of the profile to where the factor is 1
-  std::optional<double> corner_radius;   ///< radius of the rounded edges of a `step`
+  std::optional<double> corner_radius;   ///< radius of the rounded edges of the profile `step`
   std::string directions = "x2 x3";      ///< directions in which the factor scales the cross-section
   std::optional<std::string> points;     ///< path of the file of factors; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line

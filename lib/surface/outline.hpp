@@ -36,7 +36,7 @@ struct CubicCurve {
 using PlaneCurve = std::variant<Ellipse, CubicCurve>;
 
 bool closed(const PlaneCurve& curve);
-std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter; a closed curve is periodic and accepts any u
+std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last value of u; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
 /// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:
@@ -57,7 +57,7 @@ struct Nearest {
   int side = 0;
   double u = 0;
   Vec2 x;               ///< nearest point
-  double distance = 0;  ///< distance to the nearest point; positive for a point inside the outline, negative outside
+  double distance = 0;  ///< distance from the given point to the nearest one; positive inside the outline, negative outside
 };
 
 /// Closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), traversed in the direction of rotation from x2 towards x3. The curve has either

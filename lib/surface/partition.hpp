@@ -8,7 +8,7 @@
 
 namespace tanktread::surface {
 
-/// One owner (0 .. parts - 1) for every element and every control point.
+/// The owner (part 0 .. parts - 1) of every element and of every control point.
 struct Partition {
   int parts = 1;
   std::vector<int> element_owner, point_owner;

@@ -46,9 +46,9 @@ struct TubeWall {
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// Returns the wall of a section over one period, approximately [-period/2, period/2), with `elements` elements along it and the grading of the
-/// options. The geometry is an open spline surface. Densities on it are periodic splines: their control values on the space are E times their own
-/// control values. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of an element
-/// lies on its ends.
+/// options. The geometry is an open spline surface. Densities on it are periodic splines: their control values on the space are the matrix E times
+/// their own control values. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of
+/// an element lies on its ends.
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
 
 /// Returns the wall of a channel (2.31): centre line C and scaled axes f2 N, f3 e3, interpolated by cubic splines at the channel's knots, in tensor
