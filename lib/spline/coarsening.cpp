@@ -195,8 +195,7 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     for (int k : {1, 2}) {  // right and upper edge of each cell; edges between two macro faces are excluded below
       const bool vertical = k == 1;
       const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
-      if (line % l.base == 0 || !mesh.edge_of_cell(c, k))
-        continue;  // keeps the lines of the initial mesh, which include the sides of macro faces
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // keeps initial mesh lines, also macro face sides
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;

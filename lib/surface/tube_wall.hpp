@@ -46,8 +46,8 @@ struct TubeWall {
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// Returns the wall of a section over one period, approximately [-period/2, period/2), with `elements` elements along it and the grading of the
-/// options. The geometry is an open spline surface. Densities on it are periodic splines: their control values on the space are those of the periodic
-/// splines times the matrix E. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of
+/// options. The geometry is an open spline surface. Densities on it are periodic splines: their control values on the space are the matrix E times
+/// their own control values. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of
 /// an element lies on its ends.
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
 
