@@ -44,7 +44,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  refuse(flow.type == "parabolic" || flow.type == "duct" || (flow.user && !flow.user->affine()), "Domain", flow.choice(),
+  refuse((flow.type == "parabolic" && !flow.plates) || flow.type == "duct" || (flow.user && !flow.user->affine()), "Domain", flow.choice(),
          "a lattice can follow no flow but one whose gradient is the same everywhere");
   refuse(flow.history.has_value(), "Domain", "Flow/history", "a lattice can follow no flow but one that stays as it is");
   if (side_lengths && side_lengths->size() != 3) throw UserError("Domain/side lengths needs three numbers, along x1, x2 and x3.");
@@ -74,9 +74,9 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
   to.pair(!scene.runs_in_time(), scene.sought(), "Domain", "the lattice moves along with the flow");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
-  to.pair(directions() < 3 && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
+  to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force), "Domain/periodic `" + periodic + "`",
           told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
-          "the velocity of a net force in every cell is known in a lattice of three directions only");
+          "the velocity of a net force in every cell is known in a lattice of three directions or beside walls only");
 }
 
 std::optional<stokes::PeriodicCell> DomainOptions::cell() const {

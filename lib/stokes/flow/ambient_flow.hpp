@@ -21,7 +21,11 @@ namespace tanktread::stokes {
 ///   linear               L as given;   uniform   v_0 as given;   quiescent   0
 ///   parabolic            maximum velocity (1 - (x2^2 + x3^2)/half width^2, 0, 0), or without x2
 ///
-/// or a registered flow (UserFlow). Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
+/// or a registered flow (UserFlow). Between plates at p and p + D n that move with V1 and V2, with a pressure gradient g along them, the flow is
+///
+///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d = V - v on each plate                               (2.48)
+///
+/// Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
 class AmbientFlow {
  public:
   AmbientFlow() = default;  ///< quiescent
@@ -68,6 +72,7 @@ class AmbientFlow {
     Mat3 curvature = Mat3::Zero();
   };
   static Field field(const FlowOptions& options);
+  static void fit_to_plates(const FlowOptions& options, Field& field);
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;

@@ -102,7 +102,23 @@ Net RigidTractions::images_of(const Net& f) {
   Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
   for (const Particle& body : particles_)
     body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
+  if (solids_) u -= viscosity_ * by_solids(at_, solids_->respond(f, {}));
   return u;
+}
+
+/// Returns the velocity of a flow of the solids at points on the bodies.
+Net RigidTractions::by_solids(const Net& at, const Solids::Flow& flow) {
+  return ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+    if (&at == &at_) solids_->velocities(flow, u);
+    else solids_->velocity_at(at, own, flow, u);
+  });
+}
+
+/// Returns the velocity without bodies: v_inf, and the flow that solids add to it.
+Net RigidTractions::flow_at(const Net& at, const stokes::AmbientFlow& flow) {
+  Net v = flow.velocities(at);
+  if (solids_) v += by_solids(at, solids_->empty());
+  return v;
 }
 
 void RigidTractions::factor() {
@@ -161,10 +177,12 @@ Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Ne
   between_layer_.place(x);
   const Net at = between_.values * x;
   const Tube::Response response = tube_ ? tube_->respond(f) : Tube::Response();
+  const Solids::Flow by_solids = solids_ ? solids_->respond(f, {}) : Solids::Flow();
   const Net u = ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& part) {
     between_layer_.apply(f, own, part);
     Net answer(part.rows(), 3);
     if (tube_) tube_->velocity_at(at, response, own, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
+    if (solids_) solids_->velocity_at(at, own, by_solids, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
   });
   return between_.weights * (between_.values * v - flow - u / viscosity_);
 }
@@ -172,14 +190,15 @@ Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Ne
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   layer_.place(x);
-  const Net at = sites_ * x;
+  const Net at = at_ = sites_ * x;
+  if (solids_) solids_->place(x, at_, own_points_);
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
   }
-  velocities.col(m) = flat(flow.velocities(at));
+  velocities.col(m) = flat(flow_at(at_, flow));
   make_regular(x, at);
   factor();
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
@@ -190,7 +209,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd f = z * motion - of_all.col(m);
-  const Net between = flow.velocities(between_.values * x);
+  const Net between = flow_at(between_.values * x, flow);
   const Eigen::VectorXd v = fields * motion;
   left_ = flat(left_over(x, as_net(f), as_net(v), between));
   const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
@@ -207,7 +226,6 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
     bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
                   block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
   }
-  at_ = at;
   centres_.assign(centres.begin(), centres.end());
 }
 

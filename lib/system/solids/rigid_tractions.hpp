@@ -19,6 +19,7 @@
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/rigid_motion.hpp"
+#include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solvers/krylov.hpp"
 #include "system/solvers/options.hpp"
@@ -36,7 +37,7 @@ namespace tanktread::coupling {
 /// errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which limits the
 /// number of control points to a few thousand.
 ///
-/// On a lattice, A includes all images. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. These additions are
+/// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. These additions are
 /// smooth. Each density is therefore found by a few iterations, and the preconditioner is the factored operator without these additions. The pressure
 /// drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
@@ -49,6 +50,9 @@ class RigidTractions {
 
   /// Sets the lattice on which the bodies repeat, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
+
+  /// Sets the solids in the lattice, which must outlive this object.
+  void put_among(SolidResponse& solids) { solids_ = &solids; }
 
   struct Body {
     RigidMotion motion;
@@ -76,12 +80,15 @@ class RigidTractions {
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
   void make_regular(const Net& x, const Net& at);
   Net images_of(const Net& f);
+  Net flow_at(const Net& at, const stokes::AmbientFlow& flow);
+  Net by_solids(const Net& at, const Solids::Flow& flow);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
   Net left_over(const Net& x, const Net& f, const Net& v, const Net& flow);
 
   std::span<const Particle> particles_;
   double viscosity_;
   Tube* tube_;
+  SolidResponse* solids_ = nullptr;
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;
