@@ -36,7 +36,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
 
   clock.emplace(phases, "output");
   Body body;
-  body.space = all.surface().space, body.rest = all.surface().net;
+  body.space = all.surface().space, body.rest = body.initial = body.unstressed = all.surface().net;
   const Net force = all.on_space(flow.force);
   Results results(scene, request, body, surface::BezierMap(body.space), ranks);
   results.record(row);

@@ -33,8 +33,8 @@ Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vecto
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes())
-    all.push_back({surface::plate(wall.normal().dot(wall.point()) * wall.normal(), lattice_vector(cell, 0), lattice_vector(cell, 1), scene.wall.elements(cell, scene.radius())),
-                   flow.velocity(wall.point())});
+    all.push_back({surface::plate(wall.normal().dot(wall.point()) * wall.normal(), lattice_vector(cell, 0), lattice_vector(cell, 1), scene.wall.elements(cell, scene.least_radius())),
+                   flow.velocity(wall.point()), {}});
   return all;
 }
 
@@ -57,7 +57,9 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
   std::vector<Solids::Solid> all = plates(scene, cell, flow);
   for (const Post& post : scene.posts) {
     const Vec3 period = period_of(post, cell);
-    all.push_back({surface::cylinder(post.center - cell.shift(post.center), period, post.radius, post.around, elements_along(post, period))});
+    const Vec3 center = post.center - cell.shift(post.center);
+    all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
+                   coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
   }
   return coupling::SolidScene{std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
                               scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(),
@@ -69,7 +71,7 @@ std::string solids_line(const Scene& scene, int ranks) {
   double points = 0;
   std::string line;
   if (scene.wall.solid) {
-    const auto [first, second] = scene.wall.elements(cell, scene.radius());
+    const auto [first, second] = scene.wall.elements(cell, scene.least_radius());
     const int plates = scene.wall.distance ? 2 : 1;
     points += plates * first * second;
     line = formatted("%d plate%s of %d x %d elements", plates, plates > 1 ? "s" : "", first, second);
@@ -92,10 +94,12 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
       to.add(second_wall_force, "x1 x2 x3", {"second_wall_force_", "force", "force of the fluid on one period of the second wall, component #", {},
              walls});
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k)
-    to.add(k < post_forces.size() ? post_forces[k] : Vec3(Vec3::Zero()), "x1 x2 x3",
-           {(scene.posts[k].name.empty() ? "" : scene.posts[k].name + "/") + "post_force_", "force",
-            "force of the fluid on one period of the post, component #", {}, posts});
+  const auto add_force = [&](const std::string& name, const Vec3& force) {
+    to.add(force, "x1 x2 x3", {(name.empty() ? "" : name + "/") + "post_force_", "force", "force of the fluid on one period of the post, component #", {},
+                               posts});
+  };
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) add_force(scene.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
+  if (scene.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
   if (!to.when(scene.wall.distance.has_value() || !scene.posts.empty())) return;
   to.add(mean_velocity, "x1 x2 x3", {"mean_velocity_", "length/time", "mean velocity over the cell between the walls, or over the whole cell, "
          "particles and posts included: flow rate per area of the cross-section, component #", {}, both});

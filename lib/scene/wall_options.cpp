@@ -24,7 +24,7 @@ void WallOptions::declare(deck::Section& section) {
               "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
               "number of elements of each wall along the longer period of Domain; along the shorter one elements are about as long. If not given, "
-              "elements are as long as a third of Wall/distance, but at most 32 per period");
+              "elements are as long as a twelfth of Wall/distance, or of R_C beside a single wall, but at most 48 per period");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
               "run stops with a checkpoint");
@@ -99,9 +99,9 @@ std::optional<stokes::Plates> WallOptions::plates() const {
 }
 
 std::array<int, 2> WallOptions::elements(const stokes::PeriodicCell& cell, double radius) const {
-  constexpr double most = 32;
+  constexpr double most = 48;
   const double first = cell.vectors().col(0).norm(), second = cell.vectors().col(1).norm(), longer = std::max(first, second);
-  const double along = elements_per_period ? *elements_per_period : std::min(most, std::ceil(3 * longer / distance.value_or(radius)));
+  const double along = elements_per_period ? *elements_per_period : std::min(most, std::ceil(12 * longer / distance.value_or(radius)));
   const auto number = [&](double length) { return std::max(4, static_cast<int>(std::lround(along * length / longer))); };
   return {number(first), number(second)};
 }

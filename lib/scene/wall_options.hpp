@@ -40,8 +40,8 @@ struct WallOptions {
   std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls, one or two
   std::optional<stokes::Plates> plates() const;    ///< returns the walls as plates, if they are solids
 
-  /// Returns the numbers of elements of a plate along the two periods. By default elements are as long as a third of the distance of the plates, or beside
-  /// a single plate as a third of `radius`, but at most 32 per period.
+  /// Returns the numbers of elements of a plate along the two periods. By default elements are as long as a twelfth of the distance of the plates, or
+  /// beside a single plate of `radius`, but at most 48 per period.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
 
  private:

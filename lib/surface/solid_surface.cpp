@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "base/formatted.hpp"
 #include "surface/outline.hpp"
 #include "surface/spline_lines.hpp"
@@ -46,7 +48,7 @@ Eigen::SparseMatrix<double> product(const Eigen::MatrixXd& a, const Eigen::Matri
 SolidSurface plate(const Vec3& middle, const Vec3& first, const Vec3& second, const std::array<int, 2>& elements) {
   const Unit s = unit_period(elements[0]), t = unit_period(elements[1]);
   SolidSurface plate{product(s.line.open, t.line.open), {}, sites_of(s.line.open, t.line.open),
-                     product(s.line.open_from_periodic, t.line.open_from_periodic)};
+                     product(s.line.open_from_periodic, t.line.open_from_periodic), elements};
   plate.space.description = formatted("plate of %d x %d cubic elements", elements[0], elements[1]);
   plate.net.resize(plate.space.n_points, 3);
   Eigen::Index row = 0;
@@ -64,7 +66,7 @@ SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int
   add(ring, curve.breaks, true, false);
   const Unit t = unit_period(along);
   SolidSurface cylinder{product(ring, t.line.open), {}, sites_of(ring, t.line.open),
-                        product(Eigen::MatrixXd::Identity(ring.n, ring.n), t.line.open_from_periodic)};
+                        product(Eigen::MatrixXd::Identity(ring.n, ring.n), t.line.open_from_periodic), {0, 0}};
   cylinder.space.description = formatted("cylinder of %d x %d cubic elements", around, along);
   cylinder.net.resize(cylinder.space.n_points, 3);
   Eigen::Index row = 0;
@@ -76,7 +78,7 @@ SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int
 SolidSurface stacked(const std::vector<SolidSurface>& surfaces) {
   std::vector<const spline::Space*> spaces;
   for (const SolidSurface& one : surfaces) spaces.push_back(&one.space);
-  SolidSurface all{spline::stacked(spaces), {}, {}, {}};
+  SolidSurface all{spline::stacked(spaces), {}, {}, {}, {0, 0}};
   all.net.resize(all.space.n_points, 3);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index row = 0, column = 0;

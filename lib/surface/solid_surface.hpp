@@ -18,6 +18,7 @@ struct SolidSurface {
   Net net;
   std::vector<std::vector<spline::Site>> sites;
   Eigen::SparseMatrix<double> open_from_periodic;
+  std::array<int, 2> grid{0, 0};  ///< numbers of equal elements of a plate, whose point i grid[1] + j has the indices i, j; 0 for other surfaces
 
   int n_points() const { return static_cast<int>(sites.size()); }  ///< number of control values of a density
 };

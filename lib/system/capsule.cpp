@@ -495,7 +495,7 @@ stokes::Evaluations Capsule::kernel_evaluations() const {
     if (*other) sum += (*other)->evaluations();
   if (tube_) sum += tube_->kernel_evaluations();
   if (tractions_) sum += tractions_->kernel_evaluations();
-  if (solids()) sum += lattice_.solids->evaluations();
+  if (lattice_.solids) sum += lattice_.solids->evaluations();
   return sum;
 }
 

@@ -61,6 +61,7 @@ void SolidResponse::place(const Net& x, const Net& at, std::span<const int> own)
   single_.place(x, measure_);
   areas_ = single_.moments(single_.weights());
   Solids& solids = *scene_.solids;
+  solids.reach(x);
   solids_on_particles_ = solids.layer().near(at_, own_);
   if (!double_) return;
   double_->place(x);

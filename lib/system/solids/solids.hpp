@@ -1,8 +1,11 @@
 #pragma once
 // Solids with a prescribed velocity that repeat on a lattice: plates and posts.
 
+#include <array>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "base/dense_factors.hpp"
@@ -12,8 +15,15 @@
 #include "stokes/layer.hpp"
 #include "surface/solid_surface.hpp"
 #include "system/ranks.hpp"
+#include "system/solids/plate_factors.hpp"
 
 namespace tanktread::coupling {
+
+/// Fixed cylinder in a cell: a point on its axis, the direction of the axis, and its radius.
+struct Rod {
+  Vec3 point, axis;
+  double radius;
+};
 
 /// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid, and U is a uniform
 /// velocity:
@@ -24,7 +34,8 @@ namespace tanktread::coupling {
 /// where the mean velocity follows from the pressure gradient, and along a single plate, on the other side of which the fluid is unbounded. Otherwise
 /// there is no free direction, and U = 0.
 ///
-/// Control values of f are those of periodic splines, one per collocation point. Nets are replicated on all ranks. All calls except queries are
+/// Control values of f are those of periodic splines, one per collocation point. If all solids are plates, the operator is inverted by Fourier series
+/// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
 /// collective.
 class Solids {
  public:
@@ -32,6 +43,7 @@ class Solids {
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
+    std::optional<Rod> rod;  ///< the cylinder, if it is one
   };
 
   /// `free`: unit vectors along which U is free. References need not outlive this object.
@@ -45,6 +57,12 @@ class Solids {
 
     Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
   };
+
+  /// Makes velocity_at accurate at these points, which may be far from a single plate. Must be called before velocity_at and `layer`. Collective.
+  void reach(const Net& x);
+
+  /// Returns whether points are outside of all cylinders.
+  bool outside(const Net& at) const;
 
   /// Returns the solution for the velocity u at the collocation points and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
@@ -67,14 +85,16 @@ class Solids {
   const std::vector<Vec3>& free() const { return free_; }
   double viscosity() const { return viscosity_; }
   const Ranks& ranks() const { return ranks_; }
-  stokes::Layer& layer() { return layer_; }
+  stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values on the space of the layer
   const surface::SolidSurface& surface() const { return surface_; }
-  std::array<Vec3, 2> across() const;  ///< lowest and highest coordinates of the solids, in the axes of the cell
-  stokes::Evaluations evaluations() const { return on_itself_evaluations_ + layer_.evaluations(); }
+  const std::array<Vec3, 2>& across() const { return reached_; }  ///< lowest and highest coordinates of solids and targets, in the axes of the cell
+  stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
-  Eigen::MatrixXd assembled(const quadrature::Options& quadrature);
+  void factor(stokes::Layer& on_itself);
+  Eigen::MatrixXd rows(stokes::Layer& on_itself, std::span<const int> sites) const;
+  void make_layer();
 
   surface::SolidSurface surface_;
   stokes::PeriodicCell cell_;
@@ -82,12 +102,18 @@ class Solids {
   double viscosity_;
   Ranks ranks_;
   std::vector<int> own_;
-  stokes::Layer layer_;  // at points off the solids
+  quadrature::Options quadrature_;
+  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets, in the axes of the cell
+  std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dG
   std::vector<int> first_;  // first collocation point of each solid, and their number
-  DenseFactors factors_;
-  stokes::Evaluations on_itself_evaluations_;
+  Net normals_;                        // at the collocation points
+  Net flux_;                           // int N_A n dG
+  std::vector<Rod> rods_;
+  std::optional<PlateFactors> plates_;  // set if all solids are plates
+  DenseFactors factors_;                // of the whole operator, or between plates of its part for uniform densities
+  stokes::Evaluations evaluations_;     // of the assembly and of earlier layers
 };
 
 }  // namespace tanktread::coupling
