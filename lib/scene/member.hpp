@@ -52,7 +52,8 @@ void arrange(std::vector<Member>& members);
 /// Returns all members as one body, whose nets are stacked and whose measures refer to all of them together; null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
-/// Builds the coupled system of all members, in a tube or among plates and posts if there are any, with only the operators that they need. `all`: their common space and nets.
+/// Builds the coupled system of all members, in a tube or among plates and posts if there are any, with only the operators that they need. `all`:
+/// their common space and nets.
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);

@@ -66,6 +66,10 @@ std::string Post::path(const std::string& key) const {
 }
 
 void take_posts(Scene& scene) {
+  scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
+  scene.flow.plates = scene.wall.plates();
+  const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
+  if (films && scene.name.empty() && !scene.adaptation.film_resolution) scene.adaptation.film_resolution = 0.7;
   if (is_post(scene)) {
     scene.posts.push_back(post_of(scene));
     scene.only_solids = true;
@@ -105,7 +109,8 @@ void check_posts(const Scene& scene) {
     bool along = false;
     for (int d = 0; d < cell->n(); ++d)
       along = along || std::abs(std::abs(cell->vectors().col(d)[post.axis]) - cell->vectors().col(d).norm()) < 1e-9 * cell->vectors().col(d).norm();
-    if (!along) throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), post.axis + 1, post.axis + 1));
+    const int axis = post.axis + 1;
+    if (!along) throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), axis, axis));
     for (std::size_t q = 0; q <= p; ++q)
       if (distance(post, scene.posts[q], *cell, p == q) <= post.radius + scene.posts[q].radius)
         throw UserError(p == q ? post.path() + " touches its own image: its radius must be smaller than half the period across its axis."

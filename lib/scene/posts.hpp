@@ -24,7 +24,8 @@ struct Post {
   std::string path(const std::string& key = {}) const;  ///< returns the path of its section or of a key in it, for messages
 };
 
-/// Removes the cylinders from the kinds of a scene and adds them to its posts. Throws UserError if a cylinder has keys that only particles have.
+/// Removes the cylinders from the kinds of a scene and adds them to its posts. Sets whether its walls are plates, also for its flow, and the default
+/// of Adaptation/film resolution where there are films. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 
 /// Throws UserError if posts do not fit into the scene.

@@ -265,8 +265,6 @@ void Scene::declare(deck::Section& root) {
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
-  wall.solid = wall.present && domain.present && !tube.present;
-  if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
   if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "quadrature of the boundary integrals of the fluid");
   root.section("Time", time, "integration in time");
@@ -286,9 +284,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   root.section("Output", results, "results");
   root.section("Expect", expect, "expected results");
-  if (root.documenting()) return;
-  flow.plates = wall.plates();
-  take_posts(*this);
+  if (!root.documenting()) take_posts(*this);
 }
 
 std::vector<Scene> Scene::alone() const {

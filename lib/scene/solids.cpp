@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "quadrature/gauss.hpp"
 #include "scene/posts.hpp"
@@ -32,9 +33,11 @@ Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vecto
 /// Returns the plates, each with the velocity of the ambient flow on it, which is fitted to them.
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
-  for (const stokes::PlaneWall& wall : scene.wall.planes())
-    all.push_back({surface::plate(wall.normal().dot(wall.point()) * wall.normal(), lattice_vector(cell, 0), lattice_vector(cell, 1), scene.wall.elements(cell, scene.least_radius())),
-                   flow.velocity(wall.point()), {}});
+  for (const stokes::PlaneWall& wall : scene.wall.planes()) {
+    const Vec3 middle = wall.normal().dot(wall.point()) * wall.normal();
+    const std::array<int, 2> elements = scene.wall.elements(cell, scene.least_radius());
+    all.push_back({surface::plate(middle, lattice_vector(cell, 0), lattice_vector(cell, 1), elements), flow.velocity(wall.point()), {}});
+  }
   return all;
 }
 
@@ -66,6 +69,11 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
                               scene.flow.pressure_gradient.value_or(Vec3::Zero()), scene.quadrature};
 }
 
+void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {
+  for (const Member& member : members)
+    if (!solids.solids->outside(member.body->initial)) throw UserError(member.spoken() + " crosses a post at the start: give it another center.");
+}
+
 std::string solids_line(const Scene& scene, int ranks) {
   const stokes::PeriodicCell cell = *scene.domain.cell();
   double points = 0;
@@ -81,8 +89,9 @@ std::string solids_line(const Scene& scene, int ranks) {
     points += post.around * along;
     line += (line.empty() ? "" : ", ") + formatted("a post of %d x %d elements", post.around, along);
   }
-  return line + formatted(": %.0f unknowns of their traction, factored once: %.1f MB on each of %d rank%s", 3 * points, 72e-6 * points * points, ranks,
-                          ranks > 1 ? "s" : "");
+  line += formatted(": %.0f unknowns of their traction, ", 3 * points);
+  if (scene.posts.empty()) return line + "inverted once by Fourier series";
+  return line + formatted("factored once: %.1f MB on each of %d rank%s", 72e-6 * points * points, ranks, ranks > 1 ? "s" : "");
 }
 
 void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
@@ -95,8 +104,8 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
              walls});
   }
   const auto add_force = [&](const std::string& name, const Vec3& force) {
-    to.add(force, "x1 x2 x3", {(name.empty() ? "" : name + "/") + "post_force_", "force", "force of the fluid on one period of the post, component #", {},
-                               posts});
+    const std::string prefix = name.empty() ? "" : name + "/";
+    to.add(force, "x1 x2 x3", {prefix + "post_force_", "force", "force of the fluid on one period of the post, component #", {}, posts});
   };
   for (std::size_t k = 0; k < scene.posts.size(); ++k) add_force(scene.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
   if (scene.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());

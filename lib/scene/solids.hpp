@@ -8,6 +8,7 @@
 
 #include "base/columns.hpp"
 #include "base/timing.hpp"
+#include "scene/member.hpp"
 #include "scene/scene.hpp"
 #include "system/solids/solid_response.hpp"
 
@@ -15,6 +16,9 @@ namespace tanktread {
 
 /// Returns the plates and posts of a scene with factored operators; none if there are none. Collective.
 std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
+
+/// Throws UserError if a particle crosses a post at the start.
+void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members);
 
 /// Returns the line of the plan that describes the plates and posts.
 std::string solids_line(const Scene& scene, int ranks);

@@ -21,7 +21,8 @@ void WallOptions::declare(deck::Section& section) {
   section.key("velocity", velocity, deck::any(), "length/time",
               "velocity of a wall in a Domain, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
   section.key("second velocity", second_velocity, deck::any(), "length/time",
-              "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
+              "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of "
+              "Flow/type");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
               "number of elements of each wall along the longer period of Domain; along the shorter one elements are about as long. If not given, "
               "elements are as long as a twelfth of Wall/distance, or of R_C beside a single wall, but at most 48 per period");
@@ -35,7 +36,8 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
   refuse(flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
   if (!solid) {
     if (distance)
-      throw UserError("Wall/distance needs a Domain that is periodic along both directions in the plates: give Domain/periodic and Domain/side lengths.");
+      throw UserError("Wall/distance needs a Domain that is periodic along both directions in the plates: give Domain/periodic and "
+                      "Domain/side lengths.");
     for (const auto& [name, given] : {std::pair("velocity", velocity.has_value()), {"elements per period", elements_per_period.has_value()}})
       if (given) throw UserError(std::string("Wall/") + name + " needs a Domain: without one the wall is an image plane, which moves with the flow.");
   }

@@ -30,8 +30,8 @@ struct WallOptions {
 
   void declare(deck::Section& section);
 
-  /// Throws UserError, with one sentence, if the normal is zero, if the flow does not fit the walls, on which it must be tangential and uniform, or if
-  /// the cell does not repeat along both directions in the walls. `cell`: of the scene, if it repeats.
+  /// Throws UserError, with one sentence, if the normal is zero, if the flow is not tangential to the walls and uniform on them, or
+  /// if the cell does not repeat along both directions in the walls. `cell`: of the scene, if it repeats.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes

@@ -411,8 +411,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     project(v);
     const Net load = load_of(v);
     Net bv = without_wall(v, load);
-    if (tube_) bv -= collocation_.solve(tube_->respond(load, v).velocity);
-    if (solids()) bv -= velocity_by_solids(x, load, v);
+    if (tube_ || solids()) bv -= velocity_by_walls(x, load, v);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };

@@ -220,10 +220,11 @@ class Capsule : public Dynamics {
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  bool repeats() const { return lattice_.cell && !tube_; }  // returns whether the layers are periodic; in a duct the tube's response contains the images
+  bool repeats() const { return lattice_.cell && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
   bool by_sites() const { return tube_ || parameters_.solids || !flow_.affine(); }
   void place_among_solids(const Net& x);
-  Net velocity_by_solids(const Net& x, const Net& f, const Net& v);
+  void put_among_solids();
+  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;

@@ -1,5 +1,6 @@
 // Particles in a periodic cell, among solids in it, and in a tube.
 
+#include <memory>
 #include <vector>
 
 #include "base/small_matrices.hpp"
@@ -61,11 +62,21 @@ void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with
   u += part;
 }
 
-/// Returns the control values of the velocity by which the solids respond to a load f and a velocity v.
-Net Capsule::velocity_by_solids(const Net& x, const Net& f, const Net& v) {
+/// Returns the control values of the velocity by which a tube or solids respond to a load f and a velocity v.
+Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
+  if (tube_) return collocation_.solve(tube_->respond(f, v).velocity);
   Net u = zero_at_targets();
   add_solids(x, f, v, false, u);
   return projection_ ? projection_->control_values(u) : collocation_.solve(u);
+}
+
+/// Constructs the response of plates and posts, if there are any.
+void Capsule::put_among_solids() {
+  if (!parameters_.solids) return;
+  lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_);
+  lattice_.solids->set_reference(unstressed_, measure(), measured_on_present(particles()));
+  if (tractions_) tractions_->put_among(*lattice_.solids);
+  else lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {

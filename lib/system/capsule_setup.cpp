@@ -89,12 +89,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   loads_ = Loads(particles(), own_elements_);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
-  if (parameters_.solids) {
-    lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space, flow_);
-    lattice_.solids->set_reference(unstressed, measure(), measured_on_present(particles()));
-    if (tractions_) tractions_->put_among(*lattice_.solids);
-    else lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
-  }
+  put_among_solids();
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     tube_->set_reference(unstressed, measure(), measured_on_present(particles()));

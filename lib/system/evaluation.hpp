@@ -37,8 +37,8 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// Flow of the solids, and the integral over the cell of the velocity that solids and particles add to the ambient flow (2.49); zero beside a single
-  /// plate. `caused`: the parts that particles cause.
+  /// Flow of the solids, and the integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), which is zero
+  /// beside a single plate. `caused`: the parts that particles cause.
   struct SolidFlow {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();

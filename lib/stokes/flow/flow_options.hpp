@@ -47,9 +47,9 @@ struct FlowOptions {
   void check() const;
 
   /// Returns the rate in Ca: the shear rate, the largest singular value of the gradient for `linear`, or the maximum velocity over the half width for
-  /// `parabolic`. If the type has no gradient, plates set it: the difference of their velocities divided by their distance or, if that is 0, half of
-  /// the shear rate on them due to the pressure gradient. Otherwise it is 0 for a flow without gradient, and for a duct, for which the speed is used instead. For a flow that changes in time it refers
-  /// to amplitude 1. Units 1/time.
+  /// `parabolic`. If the type is `quiescent`, two plates set it: the difference of their velocities divided by their distance or, if that is 0, half
+  /// of the shear rate on them due to the pressure gradient. Otherwise it is 0 for a flow without gradient, and for a duct, for which the speed is
+  /// used instead. For a flow that changes in time it refers to amplitude 1. Units 1/time.
   double rate() const;
 
   /// Returns the velocity in Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.

@@ -37,9 +37,10 @@ namespace tanktread::coupling {
 /// errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which limits the
 /// number of control points to a few thousand.
 ///
-/// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. These additions are
-/// smooth. Each density is therefore found by a few iterations, and the preconditioner is the factored operator without these additions. The pressure
-/// drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
+/// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu
+/// times the response of the wall and the pressure drop is subtracted from A. These additions are smooth. Each density is therefore found by a few
+/// iterations, and the preconditioner is the factored operator without these additions. The pressure drop of a duct flow is corrected like a force;
+/// this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
@@ -52,7 +53,7 @@ class RigidTractions {
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the solids in the lattice, which must outlive this object.
-  void put_among(SolidResponse& solids) { solids_ = &solids; }
+  void put_among(SolidResponse& solids) { around_.solids = &solids; }
 
   struct Body {
     RigidMotion motion;
@@ -75,6 +76,11 @@ class RigidTractions {
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
+  /// Tube around the bodies, and solids among which they are; null if there are none.
+  struct Surroundings {
+    Tube* tube = nullptr;
+    SolidResponse* solids = nullptr;
+  };
   Eigen::MatrixXd system();
   void factor();
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
@@ -87,8 +93,7 @@ class RigidTractions {
 
   std::span<const Particle> particles_;
   double viscosity_;
-  Tube* tube_;
-  SolidResponse* solids_ = nullptr;
+  Surroundings around_;
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;

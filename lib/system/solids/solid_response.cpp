@@ -21,7 +21,9 @@ Vec3 along(const stokes::PlaneWall& wall, const Vec3& v) { return v - wall.norma
 
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow) {
   const Solids& solids = *scene.solids;
-  return solids.solve(solids.velocities() - flow.velocities(solids.sites()), scene.planes.empty() ? Vec3(solids.cell().volume() * scene.driving_gradient) : Vec3::Zero());
+  Vec3 force = Vec3::Zero();
+  if (scene.planes.empty()) force = solids.cell().volume() * scene.driving_gradient;
+  return solids.solve(solids.velocities() - flow.velocities(solids.sites()), force);
 }
 
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow) {

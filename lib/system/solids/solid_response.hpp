@@ -62,7 +62,8 @@ class SolidResponse {
   void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
 
   /// Returns the integral over the cell of the velocity that a flow of the solids, a load and a velocity cause. With three periods it is the volume
-  /// times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along them. By the reciprocal theorem, with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
+  /// times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along them. By the reciprocal theorem,
+  /// with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
   ///
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) - int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);

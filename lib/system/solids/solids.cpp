@@ -49,8 +49,7 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
       normals_(surface_.n_points(), 3) {
   const auto clock = phases.time("wall assembly");
   ranks_.measure(phases);
-  own_ = ranks_.share(surface_.n_points());
-  ranks_.own(own_, surface_.n_points());
+  own_ = ranks_.divide_in_order(surface::Symmetry(surface_.n_points()));
   for (int i = 0; i < surface_.n_points(); ++i) {
     const surface::Point at = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front());
     sites_.row(i) = at.x.transpose(), normals_.row(i) = at.n.transpose();

@@ -73,7 +73,8 @@ TEST(SolidSurface, DensitiesArePeriodic) {
 }
 
 TEST(SolidSurface, ConstantsAreDensities) {
-  const SolidSurface surface = stacked({plate(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), {4, 6}), cylinder(Vec3(0, 0, 2), Vec3::UnitX(), 0.3, 8, 4)});
+  const SolidSurface one = plate(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), {4, 6}), other = cylinder(Vec3(0, 0, 2), Vec3::UnitX(), 0.3, 8, 4);
+  const SolidSurface surface = stacked({one, other});
   const Eigen::VectorXd ones = surface.open_from_periodic * Eigen::VectorXd::Ones(surface.n_points());
   EXPECT_LT((ones.array() - 1).abs().maxCoeff(), 1e-12);
   EXPECT_EQ(surface.n_points(), 24 + 32);

@@ -52,7 +52,8 @@ TEST(Solids, PlatesThatMoveFeelUniformForces) {
 TEST(Solids, ForcesBalanceThePressureGradient) {
   Phases phases;
   const stokes::PeriodicCell cell(Mat3(Vec3(1, 1.2, 0.8).asDiagonal()), 3);
-  const auto posts = std::make_shared<Solids>(std::vector<Solids::Solid>{{surface::cylinder(Vec3(0.1, 0.2, 0), Vec3(0, 0, 0.8), 0.25, 12, 6)}}, cell, directions(), 2, fine(), phases);
+  const std::vector<Solids::Solid> post{{surface::cylinder(Vec3(0.1, 0.2, 0), Vec3(0, 0, 0.8), 0.25, 12, 6), Vec3::Zero(), {}}};
+  const auto posts = std::make_shared<Solids>(post, cell, directions(), 2, fine(), phases);
   const Vec3 gradient(-1, 0.5, 0.3);
   const SolidScene scene{posts, {}, gradient, fine()};
   const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
@@ -61,17 +62,16 @@ TEST(Solids, ForcesBalanceThePressureGradient) {
   EXPECT_LT(flow.drift[1], 0);
 }
 
-/// Square array: F/(mu U) = 4 pi/(ln c^(-1/2) - 0.738 + c - 0.887 c^2 + 2.038 c^3), c the area fraction (Sangani & Acrivos 1982).
+/// Square array, F/(mu U) by the table of Sangani & Acrivos (1982). Their series to the third power of the area fraction errs by 1.5e-2 at 0.2.
 TEST(Solids, PostsInASquareArrayTakeTheKnownForce) {
   Phases phases;
-  for (const double c : {0.05, 0.2}) {
+  for (const auto& [c, expected] : {std::pair(0.05, 15.56), {0.2, 51.53}, {0.4, 217.89}}) {
     const stokes::PeriodicCell cell(Mat3(Vec3(1, 1, 0.5).asDiagonal()), 3);
-    const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), std::sqrt(c / std::numbers::pi), 16, 4)}};
+    const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), std::sqrt(c / std::numbers::pi), 20, 4), {}, {}}};
     const auto posts = std::make_shared<Solids>(post, cell, directions(), 1, fine(), phases);
     const SolidScene scene{posts, {}, -Vec3::UnitX(), fine()};
     const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
-    const double expected = 4 * std::numbers::pi / (std::log(1 / std::sqrt(c)) - 0.738 + c - 0.887 * c * c + 2.038 * c * c * c);
-    EXPECT_NEAR(1 / flow.drift[0] / expected, 1, 1.5e-3) << "area fraction " << c;
+    EXPECT_NEAR(1 / flow.drift[0] / expected, 1, 2e-4) << "area fraction " << c;
   }
 }
 
