@@ -66,7 +66,7 @@ int resist(const Scene& scene, const RunRequest& request) {
                 body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);
   if (around) tube_row(*around, solution.density, solution.pressure_drop).add_columns(scene, row);
-  if (const auto wall = scene.wall.plane()) wall_row(*wall, body, body.rest).add_columns(scene, row);
+  if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
   finish(row);
 
   clock.emplace(phases, "output");

@@ -20,4 +20,8 @@ int find_steady(const Scene& scene, const RunRequest& request);
 /// Solves for the traction on a body with prescribed motion, and records one row and one snapshot. Returns the exit code like `simulate`. Collective.
 int resist(const Scene& scene, const RunRequest& request);
 
+/// Solves for the flow in a cell with plates and posts and without particles, and records one row and one snapshot. Returns the exit code like
+/// `simulate`. Collective.
+int flow_past_solids(const Scene& scene, const RunRequest& request);
+
 }  // namespace tanktread

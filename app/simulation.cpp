@@ -387,6 +387,7 @@ class Run {
 
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
+  if (scene.only_solids) return flow_past_solids(scene, request);
   if (!scene.in_system() && scene.particle.motion == Motion::prescribed) return resist(scene, request);
   if (!scene.runs_in_time()) return find_steady(scene, request);
   return Run(scene, request).go();

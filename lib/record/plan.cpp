@@ -12,6 +12,7 @@
 #include "membrane/strain_energy.hpp"
 #include "scene/member.hpp"
 #include "scene/particles/gaps.hpp"
+#include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "stokes/layer_surface.hpp"
 #include "surface/geometry.hpp"
@@ -111,6 +112,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
       lines.emplace_back("flow", scene.flow.type + history + ", in a lattice that repeats along " + scene.domain.periodic +
                                      formatted(": cell of %s %.6g, near images as sources, the rest between Chebyshev nodes", of[cell->n() - 1],
                                                cell->volume()));
+      if (scene.wall.solid || !scene.posts.empty()) lines.emplace_back("solids", solids_line(scene, ranks));
       return;
     }
     if (scene.wall.present) {
@@ -339,6 +341,12 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
 }
 
 output::Entries<std::string> plan(const Scene& scene, int ranks) {
+  if (scene.only_solids) {
+    Lines lines;
+    add_fluid(lines, scene, Body(), ranks);
+    lines.emplace_back("time", "steady: nothing moves");
+    return lines;
+  }
   std::vector<Member> all = members(scene);
   check_apart(all, scene.domain.cell());
   arrange(all);

@@ -360,7 +360,7 @@ std::vector<std::string> names_of_series(const Scene& scene) {
 std::vector<std::string> check_expectations(const Scene& scene) {
   deck::check_series(scene.expect.all, names_of_series(scene));
   const double last = scene.continuation.present ? scene.continuation.points : 0;
-  const bool timeless = (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
+  const bool timeless = scene.only_solids || (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
   return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
 }
 

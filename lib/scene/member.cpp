@@ -123,7 +123,7 @@ std::unique_ptr<Body> stacked_body(const std::vector<Member>& members) {
 }
 
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube) {
+                                           std::unique_ptr<coupling::Tube> tube, const std::optional<coupling::SolidScene>& solids) {
   const Scene& scene = members.front().scene;
   coupling::CapsuleParameters parameters;
   parameters.viscosity = scene.flow.viscosity;
@@ -154,6 +154,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
   parameters.symmetry = all.symmetry;
   parameters.cell = scene.domain.cell();
   parameters.wall = scene.wall.plane();
+  parameters.solids = solids;
   return std::make_unique<coupling::Capsule>(all.space, all.unstressed, all.rest, all.flow, parameters, ranks, phases, std::move(tube));
 }
 

@@ -54,9 +54,11 @@ void arrange(std::vector<Member>& members);
 /// volume is the total volume. Returns null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
-/// Builds the coupled system of all members, in a tube if there is one, with only the operators that they need. `all`: their common space and nets.
+/// Builds the coupled system of all members, in a tube or among plates and posts if there are any, with only the operators that they need. `all`:
+/// their common space and nets.
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
-                                           std::unique_ptr<coupling::Tube> tube);
+                                           std::unique_ptr<coupling::Tube> tube,
+                                           const std::optional<coupling::SolidScene>& solids);
 
 /// Returns the particles for registered series, at the shape x and the fluid velocity v. Empty if the deck asks for no such series.
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);

@@ -17,17 +17,20 @@ Vec3 nearest(const stokes::PlaneWall& wall, const spline::Space& space, const Ne
   return wall.point() + wall.axes().transpose() * surface::lowest(surface::Patches(map, own), 2);
 }
 
-WallRow row_of(const stokes::PlaneWall& wall, const spline::Space& space, const Net& x, int number) {
-  const Vec3 place = nearest(wall, space, x);
-  return {wall.height(place), number, place};
+/// Returns the row of the particle with this number for the wall that is nearest to it.
+WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& space, const Net& x, int number) {
+  WallRow row;
+  for (const stokes::PlaneWall& wall : walls)
+    if (const Vec3 place = nearest(wall, space, x); wall.height(place) < row.gap) row = {wall.height(place), number, place};
+  return row;
 }
 
 }  // namespace
 
 void check_in_front(const Scene& scene, const Body& body) {
-  const stokes::PlaneWall wall = *scene.wall.plane();
-  const Vec3 place = nearest(wall, body.space, body.initial);
-  const double gap = wall.height(place), least = scene.wall.contact_gap * scene.radius();
+  const WallRow row = row_of(scene.wall.planes(), body.space, body.initial, 1);
+  const Vec3& place = row.place;
+  const double gap = row.gap, least = scene.wall.contact_gap * scene.radius();
   if (gap >= least) return;
   const std::string name = scene.name.empty() ? "The particle" : "Particles/" + scene.name;
   const std::string where = formatted(" at [%.4g, %.4g, %.4g] ", place[0], place[1], place[2]);
@@ -45,13 +48,13 @@ void WallRow::add_columns(const Scene& scene, Columns& to) const {
     to.add(particle, {"particle_at_wall", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", {}, wall});
 }
 
-WallRow wall_row(const stokes::PlaneWall& wall, const std::vector<Member>& members, const Net& x) {
+WallRow wall_row(std::span<const stokes::PlaneWall> walls, const std::vector<Member>& members, const Net& x) {
   WallRow nearest;
   for (std::size_t p = 0; p < members.size(); ++p)
-    if (const WallRow one = row_of(wall, members[p].body->space, members[p].own(x), static_cast<int>(p) + 1); one.gap < nearest.gap) nearest = one;
+    if (const WallRow one = row_of(walls, members[p].body->space, members[p].own(x), static_cast<int>(p) + 1); one.gap < nearest.gap) nearest = one;
   return nearest;
 }
 
-WallRow wall_row(const stokes::PlaneWall& wall, const Body& body, const Net& x) { return row_of(wall, body.space, x, 1); }
+WallRow wall_row(std::span<const stokes::PlaneWall> walls, const Body& body, const Net& x) { return row_of(walls, body.space, x, 1); }
 
 }  // namespace tanktread

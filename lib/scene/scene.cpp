@@ -161,7 +161,7 @@ void check_motion(const Scene& scene) {
   if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
     throw UserError("Adaptation/film resolution is for several particles, in a lattice, or beside a wall: there are no films between others.");
-  if (std::isnan(scene.time.final_time) && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
+  if (std::isnan(scene.time.final_time) && !scene.only_solids && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
     throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: the expected one, in the deck's unit of time.");
@@ -251,8 +251,7 @@ void Scene::declare(deck::Section& root) {
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
-  wall.present = root.optional_section("Wall", wall, "a plane no-slip wall; none without this section");
-  if ((wall.present || tube.present || domain.present) && name.empty() && !adaptation.film_resolution) adaptation.film_resolution = 0.7;
+  wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "quadrature of the boundary integrals of the fluid");
   root.section("Time", time, "integration in time");
@@ -271,6 +270,7 @@ void Scene::declare(deck::Section& root) {
   root.section("Symmetry", symmetry, "use of the symmetries of the scene");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
+  if (!root.documenting()) take_posts(*this);
 }
 
 std::vector<Scene> Scene::alone() const {
@@ -307,7 +307,9 @@ void Scene::check() const {
   check_motion(*this);
   if (tube.present) tube.check();
   if (domain.present) domain.check(flow, tube.present ? tube.list() : "");
-  if (wall.present) wall.check(flow);
+  if (wall.present) wall.check(flow, domain.cell());
+  check_posts(*this);
+  if (only_solids) return;
   particle.shape.check();
   surface.check();
   check_viscosity_ratio(*this);

@@ -11,6 +11,7 @@
 #include "base/rejections.hpp"
 #include "scene/copies.hpp"
 #include "scene/domain.hpp"
+#include "scene/posts.hpp"
 #include "scene/registry.hpp"
 #include "scene/wall_options.hpp"
 #include "system/solvers/options.hpp"
@@ -100,6 +101,8 @@ struct Scene : ParticleKind {
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
+  std::vector<Post> posts;    ///< cylinders among the particles of the deck, in their order
+  bool only_solids = false;   ///< true if all particles of the deck are posts, so that nothing moves
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
@@ -134,6 +137,7 @@ struct Scene : ParticleKind {
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does
   /// not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
   bool in_system() const {
+    if (only_solids) return false;
     return !particles.empty() || !name.empty() || !particle.rigid() || (domain.present && !tube.present) || output.power_balance || !runs_in_time() ||
            tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
   }

@@ -1,5 +1,7 @@
 #include "scene/wall_options.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "base/errors.hpp"
@@ -18,25 +20,61 @@ void WallOptions::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"plane"}, "shape of the wall. `plane`: an infinite plane");
   section.key("point", point, deck::any(), "length", "position of any point on the plane wall");
   section.key("normal", normal, deck::any(), "1", "normal vector of the plane wall, pointing into the fluid; its length has no effect");
+  section.key("distance", distance, deck::positive(), "length",
+              "distance of a second wall along Wall/normal, so that the fluid is between two plates. It needs a Domain that is periodic along both "
+              "directions in the plates");
+  section.key("velocity", velocity, deck::any(), "length/time",
+              "velocity of a wall in a Domain, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
+  section.key("second velocity", second_velocity, deck::any(), "length/time",
+              "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of "
+              "Flow/type");
+  section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
+              "number of elements of each wall along the longer period of Domain; along the shorter one elements are about as long. If not given, "
+              "elements are as long as a twelfth of Wall/distance, or of R_C beside a single wall, but at most 48 per period");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
               "run ends with a checkpoint");
 }
 
-void WallOptions::check(const stokes::FlowOptions& flow) const {
+void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const {
   if (!(normal.norm() > 0)) throw UserError("Wall/normal must have a direction, but is [0, 0, 0].");
   if (flow.type == "duct") return;  // rejected with the other combinations
-  const stokes::PlaneWall wall = *plane();
-  const Vec3 along = wall.axes().row(0).transpose(), across = wall.axes().row(1).transpose();
+  if (!solid) {
+    if (distance)
+      throw UserError("Wall/distance needs a Domain that is periodic along both directions in the plates: give Domain/periodic and "
+                      "Domain/side lengths.");
+    for (const auto& [name, given] : {std::pair("velocity", velocity.has_value()), {"elements per period", elements_per_period.has_value()}})
+      if (given) throw UserError(std::string("Wall/") + name + " needs a Domain: without one the wall is an image plane, which moves with the flow.");
+  }
+  if (second_velocity && !distance) throw UserError("Wall/second velocity needs Wall/distance, the distance of the second wall.");
+  const Vec3 n = normal.normalized();
+  for (const auto& [name, given] : {std::pair("velocity", &velocity), {"second velocity", &second_velocity}})
+    if (*given && std::abs(n.dot(**given)) > 1e-9 * (*given)->norm())
+      throw UserError(std::string("Wall/") + name + " must be along the wall, whose place in a Domain stays, but has a component along Wall/normal.");
+  if (solid && cell)
+    for (int d = 0; d < 3; ++d)
+      if (cell->n() != 2 || (d < 2 && std::abs(cell->vectors().col(d).dot(n)) > 1e-9 * cell->vectors().col(d).norm()))
+        throw UserError("Wall and Domain must fit each other: walls end the fluid along Wall/normal, so that the scene must be periodic along both "
+                        "directions in them and along no other. Give these two as Domain/periodic.");
+  for (const stokes::PlaneWall& wall : planes()) check_flow(flow, wall);
+  if (!flow.pressure_gradient || !solid) return;
+  if (!distance) throw UserError("Flow/pressure gradient needs a second wall, at Wall/distance: beside one wall nothing holds the fluid back.");
+  refuse(flow.type == "parabolic", "Flow/pressure gradient", "Flow/type `parabolic`", "that flow has a pressure gradient already");
+  if (std::abs(n.dot(*flow.pressure_gradient)) > 1e-9 * flow.pressure_gradient->norm())
+    throw UserError("Flow/pressure gradient must be along the walls, because across them it moves nothing, but has a component along Wall/normal.");
+}
+
+void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::PlaneWall& wall) const {
+  const Vec3 along = wall.axes().row(0).transpose(), across = wall.axes().row(1).transpose(), &on_wall = wall.point();
   for (const stokes::AmbientFlow& ambient : stokes::AmbientFlow(flow).directions()) {
-    const Vec3 here = ambient.velocity(point);
-    const double size = here.norm() + ambient.velocity(point + wall.normal()).norm() + ambient.rate();
+    const Vec3 here = ambient.velocity(on_wall);
+    const double size = here.norm() + ambient.velocity(on_wall + wall.normal()).norm() + ambient.rate();
     for (const auto& [a, b] : {std::pair(0, 0), {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}}) {
-      const Vec3 place = point + a * along + b * across, there = ambient.velocity(place);
+      const Vec3 place = on_wall + a * along + b * across, there = ambient.velocity(place);
       if ((there - here).norm() + std::abs(there.dot(wall.normal())) <= 1e-9 * size) continue;
       throw UserError("Wall and Flow/type `" + flow.type +
                       "` contradict each other: " + std::string(along_the_wall) + ", but at " +
-                      formatted("[%.4g, %.4g, %.4g] it is [%.4g, %.4g, %.4g], and at Wall/point [%.4g, %.4g, %.4g].", place[0], place[1], place[2],
+                      formatted("[%.4g, %.4g, %.4g] it is [%.4g, %.4g, %.4g], and at [%.4g, %.4g, %.4g] on the wall.", place[0], place[1], place[2],
                                 there[0], there[1], there[2], here[0], here[1], here[2]));
     }
   }
@@ -47,7 +85,6 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // `check` tells where the flow is not
   to.pair(scene.flow.type == "duct", "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
   to.pair(scene.tube.present, "Wall", {scene.tube.list(), "Tube or Channel"}, "images are of one plane in a fluid that is unbounded otherwise");
-  to.pair(scene.domain.present, "Wall", "Domain", "images in a wall of a scene that repeats are not there");
   to.pair(scene.quadrature.rule != "adaptive", "Wall",
           {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "a film at a wall takes rules by tolerance, `adaptive`");
@@ -56,8 +93,28 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
 }
 
 std::optional<stokes::PlaneWall> WallOptions::plane() const {
-  if (!present) return {};
+  if (!present || solid) return {};
   return stokes::PlaneWall(point, normal);
+}
+
+std::vector<stokes::PlaneWall> WallOptions::planes() const {
+  if (!present) return {};
+  std::vector<stokes::PlaneWall> all{{point, normal}};
+  if (distance) all.emplace_back(point + *distance * normal.normalized(), -normal);
+  return all;
+}
+
+std::optional<stokes::Plates> WallOptions::plates() const {
+  if (!solid) return {};
+  return stokes::Plates{point, normal.normalized(), distance, velocity, second_velocity};
+}
+
+std::array<int, 2> WallOptions::elements(const stokes::PeriodicCell& cell, double radius) const {
+  constexpr double most = 48;
+  const double first = cell.vectors().col(0).norm(), second = cell.vectors().col(1).norm(), longer = std::max(first, second);
+  const double along = elements_per_period ? *elements_per_period : std::min(most, std::ceil(12 * longer / distance.value_or(radius)));
+  const auto number = [&](double length) { return std::max(4, static_cast<int>(std::lround(along * length / longer))); };
+  return {number(first), number(second)};
 }
 
 }  // namespace tanktread

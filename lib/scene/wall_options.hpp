@@ -1,12 +1,15 @@
 #pragma once
-// The plane wall of a scene: `Wall/*` of the deck.
+// The plane wall or plates of a scene: `Wall/*` of the deck.
 
+#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
 #include "deck/forward.hpp"
 #include "stokes/flow/flow_options.hpp"
+#include "stokes/medium/periodic_images.hpp"
 #include "stokes/medium/plane_wall.hpp"
 
 namespace tanktread {
@@ -18,17 +21,30 @@ struct WallOptions {
 
   std::string shape = "plane";
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+  std::optional<double> distance;                 ///< distance of a second plate along the normal
+  std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the flow
+  std::optional<int> elements_per_period;         ///< number of elements of a plate along the longest period
+  bool solid = false;         ///< true if the walls are plates in a periodic cell, whose tractions are solved for, and no image plane
   double contact_gap = 1e-3;  ///< gap divided by R_C; the run ends if the gap is smaller
 
   void declare(deck::Section& section);
 
-  /// Throws UserError, with one sentence, if the normal is zero, or if the flow does not fit the wall: it must be parallel to the wall and uniform on
-  /// it.
-  void check(const stokes::FlowOptions& flow) const;
+  /// Throws UserError, with one sentence, if the normal is zero, if the flow is not tangential to the walls and uniform on them, or
+  /// if the cell does not repeat along both directions in the walls. `cell`: of the scene, if it repeats.
+  void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
 
-  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one
+  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one that is an image plane
+  std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls, one or two
+  std::optional<stokes::Plates> plates() const;    ///< returns the walls as plates, if they are solids
+
+  /// Returns the numbers of elements of a plate along the two periods. By default elements are as long as a twelfth of the distance of the plates, or
+  /// beside a single plate of `radius`, but at most 48 per period.
+  std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
+
+ private:
+  void check_flow(const stokes::FlowOptions& flow, const stokes::PlaneWall& wall) const;
 };
 
 }  // namespace tanktread

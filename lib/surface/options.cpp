@@ -24,6 +24,7 @@ void MeshOptions::declare(deck::Section& section) {
   } else {
     elements_per_side = 6, extraordinary_points = "g1";
   }
+  if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
               "n: number of elements along each side of the cube mesh, which has 6n^2 elements");
   section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
@@ -31,7 +32,9 @@ void MeshOptions::declare(deck::Section& section) {
               "continuous tangent planes, with elements of degree 4 around the point (the paper's constrained extraction). `catmull-clark`: limit "
               "surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
   section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
-              "m: number of elements around the pole axis of the polar mesh; 32 if not given");
+              "m: number of elements around the pole axis of the polar mesh, 32 if not given; or around a `cylinder`, 24 if not given");
+  section.key("axial elements", axial_elements, deck::between(4, 400), "1",
+              "number of elements along one period of a `cylinder`; if not given, elements are about as long as wide");
   section.key("meridional elements", meridional_elements, deck::between(4, 200), "1",
               "r: number of elements from pole to pole of the polar mesh; 16 if not given");
   section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"},
@@ -51,6 +54,7 @@ void MeshOptions::check() const {
   };
   misplaced(polar() && elements_per_side, "elements per side");
   misplaced(polar() && extraordinary_points, "extraordinary points");
+  misplaced(axial_elements.has_value(), "axial elements");
   misplaced(!polar() && azimuthal_elements, "azimuthal elements");
   misplaced(!polar() && meridional_elements, "meridional elements");
   misplaced(!polar() && pole_axis, "pole axis");
@@ -77,17 +81,20 @@ double MeshOptions::n_elements() const {
 }
 
 void ParticleShape::declare(deck::Section& section) {
-  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "file"},
-              "resting shape of the particle. `red cell`: the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `file`: the "
-              "closed surface in Particle/file");
+  section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "cylinder", "file"},
+              "resting shape of the particle. `red cell`: the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `cylinder`: "
+              "a post in a Domain, one period of a circular cylinder along Particle/axis, which does not move. `file`: the closed surface in "
+              "Particle/file");
   section.key("file", file, deck::Choice{},
               "path of a Bezier-extraction text (.iga) with the resting shape in the deck's unit of length. The run uses its surface and spline "
               "space. The path is relative to the working directory or to the deck");
-  const bool round = shape == "sphere" || shape == "red cell";
+  const bool round = shape == "sphere" || shape == "red cell" || shape == "cylinder";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length",
-              "radius of the `sphere` or of the disc of the `red cell`; 1 if not given. R_C, which other keys refer to, is the radius of the sphere "
-              "of equal volume: for a red cell 0.7224 times the radius of the disc");
+              "radius of the `sphere` or `cylinder`, or of the disc of the `red cell`; 1 if not given. R_C, which other keys refer to, is the radius "
+              "of the sphere of equal volume: for a red cell 0.7224 times the radius of the disc");
+  section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
+              "direction of a `cylinder`, along which the Domain must be periodic");
   section.key("semi-axes", semi_axes, deck::positive(), "length",
               "semi-axes of the `spheroid` (two of them equal) or `ellipsoid`, three numbers along the particle's body-fixed x1, x2, x3");
   section.key("center", center, deck::any(), "length", "position of the centroid of the resting shape");
@@ -145,6 +152,7 @@ void ParticleShape::read() {
 void ParticleShape::check() const {
   if (initial) initial->check();
   const bool round = shape == "sphere" || shape == "red cell";
+  refuse(axis.has_value(), "Particle/axis", "Particle/shape `" + shape + "`", "it belongs to `cylinder`");
   refuse(shape != "file" && file, "Particle/file", "Particle/shape `" + shape + "`", "it belongs to `file`");
   if (shape == "file") {
     if (!file) throw UserError("Particle/shape `file` needs Particle/file, the name of a Bezier-extraction text.");
@@ -184,7 +192,7 @@ double ParticleShape::circumscribed_radius() const {
 }
 
 double ParticleShape::equivalent_radius() const {
-  if (shape == "sphere") return radius.value();
+  if (shape == "sphere" || shape == "cylinder") return radius.value();
   if (shape == "red cell") {
     // Volume of a red cell divided by R^3: V = 2 pi R^3 int_0^1 r sqrt(1 - r^2) (0.21 + 2.0 r^2 - 1.12 r^4) dr
     const double volume = 2.0 * std::numbers::pi * (0.21 / 3.0 + 2.0 * 2.0 / 15.0 - 1.12 * 8.0 / 105.0);

@@ -22,6 +22,8 @@ struct MeshOptions {
   std::optional<int> azimuthal_elements, meridional_elements;  ///< numbers of elements of the polar mesh: m around the axis, r from pole to pole
   std::optional<std::string> pole_axis;                        ///< body-fixed axis of the particle on which the poles lie
   std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
+  bool of_cylinder = false;  ///< true if the surface is a cylinder (Particle/shape `cylinder`); it then has `azimuthal_elements` and `axial_elements`
+  std::optional<int> axial_elements;                           ///< number of elements along the period of a cylinder
   std::optional<int> pole_subdivisions;                        ///< number of bisections in azimuth of the elements at the poles before the transform
 
   void declare(deck::Section& section);
@@ -61,8 +63,9 @@ struct InitialShape {
 
 /// Options `Particle/*` of the deck that give the resting shape and the initial shape of the particle.
 struct ParticleShape {
-  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, file
-  std::optional<double> radius;     ///< radius of the sphere, or of the disc of a red cell; not set for other shapes
+  std::string shape = "sphere";     ///< sphere, spheroid, ellipsoid, red cell, cylinder, file
+  std::optional<double> radius;     ///< radius of the sphere or cylinder, or of the disc of a red cell; not set for other shapes
+  std::optional<std::string> axis;  ///< periodic direction along which a cylinder lies; not set for other shapes
   std::optional<Vec3> semi_axes;    ///< semi-axes of a spheroid or ellipsoid along its body-fixed x1, x2, x3; not set for other shapes
   std::optional<std::string> file;  ///< path of the Bezier-extraction text with surface and spline space; set for the shape `file`
   Vec3 center = Vec3::Zero();       ///< centre of the resting shape

@@ -1,7 +1,6 @@
 #include "surface/tube_wall.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,84 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/LU>
-
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "spline/bernstein.hpp"
+#include "surface/spline_lines.hpp"
 
 namespace tanktread::surface {
 namespace {
 
-/// Cubic splines in one variable: intervals between knots (pieces) with four functions each, and collocation points, each with all pieces that
-/// contain it.
-struct Line {
-  struct Piece {
-    std::array<int, 4> functions;
-    Eigen::Matrix4d extraction;  ///< row: function; column: Bernstein polynomial
-  };
-  int n = 0;
-  std::vector<Piece> pieces;
-  std::vector<std::vector<std::pair<int, double>>> sites;
-
-  /// Adds a collocation point at u, given the knots of the pieces from index `first` on.
-  void add_site(double u, const std::vector<double>& knots, int first, bool closed) {
-    const int m = static_cast<int>(knots.size()) - 1;
-    const double tiny = 1e-9 * (knots[m] - knots[0]);
-    std::vector<std::pair<int, double>> at;
-    int piece = first;
-    for (int e = 0; e < m; ++e) {
-      if (knots[e] == knots[e + 1]) continue;
-      if (u > knots[e] - tiny && u < knots[e + 1] + tiny) at.emplace_back(piece, std::clamp((u - knots[e]) / (knots[e + 1] - knots[e]), 0., 1.));
-      ++piece;
-    }
-    if (closed && std::abs(u - knots[0]) <= tiny) at.emplace_back(first + m - 1, 1.);
-    for (auto& [e, s] : at)
-      for (const double end : {0., 1.})
-        if (std::abs(s - end) < 1e-9) s = end;
-    sites.push_back(std::move(at));
-  }
-
-  /// Adds the pieces between the knots. The function that begins at knot j of `extended` has the index number(j).
-  template <class Number>
-  void add_pieces(const std::vector<double>& extended, int m, const Number& number) {
-    for (int e = 0; e < m; ++e) {
-      if (extended[e + 3] == extended[e + 4]) continue;
-      Piece piece;
-      for (int a = 0; a < 4; ++a) {
-        std::array<double, 5> k;
-        std::copy_n(extended.begin() + e + a, 5, k.begin());
-        const std::array<double, 4> values = spline::b_spline_on(k, extended[e + 3], extended[e + 4]);
-        for (int b = 0; b < 4; ++b) piece.extraction(a, b) = values[b];
-        piece.functions[a] = number(e + a);
-      }
-      pieces.push_back(piece);
-    }
-  }
-};
-
-/// Adds the splines with the given knots. If `closed`, they are periodic, and the middle knot of function i is knots[i]. Otherwise the end knots
-/// have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
-void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards) {
-  const int m = static_cast<int>(knots.size()) - 1, n = closed ? m : m + 3, first = static_cast<int>(line.pieces.size()), offset = line.n;
-  const double period = knots[m] - knots[0];
-  std::vector<double> extended, greville;
-  for (int k = -3; k <= m + 3; ++k)
-    extended.push_back(closed ? knots[(k + m) % m] + period * std::floor(static_cast<double>(k) / m) : knots[std::clamp(k, 0, m)]);
-  line.add_pieces(extended, m, [&](int j) { return offset + (closed ? (j - 1 + m) % m : j); });
-  for (int i = closed ? 1 : 0; i < n + closed; ++i) {
-    const double u = (extended[i + 1] + extended[i + 2] + extended[i + 3]) / 3;
-    greville.push_back(closed && u < knots[0] - 1e-9 * period ? u + period : u);
-  }
-  if (inwards) {
-    greville[0] = (greville[0] + greville[1]) / 2;
-    greville[n - 1] = (greville[n - 1] + greville[n - 2]) / 2;
-  }
-  for (const double u : greville) line.add_site(u, knots, first, closed);
-  line.n += n;
-}
-
-/// Returns the integral of the element density 1 + (g - 1)/(1 + x^4) from 0 to x, where g is `grading`.
+/// Returns the integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x, g = `grading`.
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -107,84 +36,25 @@ std::vector<double> graded_knots(double length, int elements, double grading, do
   return knots;
 }
 
-std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around) {
-  std::vector<std::vector<spline::Site>> all;
-  for (const auto& in_s : along.sites)
-    for (const auto& in_t : around.sites) {
-      std::vector<spline::Site>& sites = all.emplace_back();
-      for (const auto& [i, s] : in_s)
-        for (const auto& [k, t] : in_t) sites.push_back({i * static_cast<int>(around.pieces.size()) + k, s, t});
-    }
-  return all;
-}
-
-spline::Space product(const Line& along, const Line& around) {
-  spline::Space space;
-  space.n_points = along.n * around.n;
-  const int m = static_cast<int>(around.pieces.size());
-  for (std::size_t i = 0; i < along.pieces.size(); ++i)
+/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. The elements along the wall are those between these knots, but the
+/// seam cuts the last one in two.
+void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots) {
+  const RepeatingLine along = repeating(knots, {wall.start, wall.end});
+  wall.sites = sites_of(along.open, around);
+  const int elements = static_cast<int>(along.middles.size()), m = static_cast<int>(around.pieces.size());
+  for (int piece = 0; piece <= elements; ++piece)
     for (int k = 0; k < m; ++k) {
-      const Line::Piece &s = along.pieces[i], &t = around.pieces[k];
-      spline::Element element;
-      Eigen::MatrixXd extraction(16, 16);
-      element.origin = {static_cast<double>(i), static_cast<double>(k)};
-      for (int b = 0; b < 4; ++b)
-        for (int a = 0; a < 4; ++a) {
-          element.points.push_back(s.functions[a] * around.n + t.functions[b]);
-          for (int q = 0; q < 4; ++q)
-            for (int p = 0; p < 4; ++p) extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
-        }
-      element.extraction = std::make_shared<const Eigen::MatrixXd>(std::move(extraction));
-      space.elements.push_back(std::move(element));
+      wall.middle_of.push_back(piece % elements * m + k);
+      if (piece < elements) wall.middles.push_back({piece * m + k, along.middles[static_cast<std::size_t>(piece)], 0.5});
     }
-  space.collocation = sites_of(along, around);
-  spline::share_extraction(std::array{&space});
-  return space;
-}
-
-/// Makes the densities on a wall periodic along x1. `knots`: knots of the periodic splines along x1, except the last one. `open`: the open splines
-/// of the wall's geometry, with the same elements, except that the seam between the end and the start of the period divides the last element into
-/// two; open.pieces[0] is its second part.
-void repeat(TubeWall& wall, Line open, const Line& around, const std::vector<double>& knots) {
-  const double period = wall.end - wall.start;
-  std::vector<double> ends{wall.start}, cycle = knots;
-  ends.insert(ends.end(), knots.begin(), knots.end());
-  ends.push_back(wall.end), cycle.push_back(knots.front() + period);
-  Line closed;
-  add(closed, cycle, true, false);
-  open.sites.clear();
-  for (int i = 0; i < closed.n; ++i) {  // Greville points, as in add()
-    const auto knot = [&](int k) { return cycle[static_cast<std::size_t>((k + closed.n) % closed.n)] + period * std::floor(1. * k / closed.n); };
-    const double u = (knot(i - 1) + knot(i) + knot(i + 1)) / 3;
-    open.add_site(u < wall.start ? u + period : u >= wall.end ? u - period : u, ends, 0, false);
-  }
-  wall.sites = sites_of(open, around);
-  const int last = static_cast<int>(closed.pieces.size()) - 1, m = static_cast<int>(around.pieces.size());
-  // fraction of the last periodic element that lies before the end of the wall
-  const double seam = (wall.end - knots.back()) / (cycle.back() - knots.back());
-  const auto fill = [&](int piece, int of_closed, double from, double to) {
-    const Line::Piece &here = open.pieces[static_cast<std::size_t>(piece)], &there = closed.pieces[static_cast<std::size_t>(of_closed)];
-    const Eigen::Matrix4d values = there.extraction * spline::restriction(3, from, to).transpose();
-    return std::pair(here, Eigen::Matrix4d(here.extraction.transpose().inverse() * values.transpose()));
-  };
-  Eigen::MatrixXd e = Eigen::MatrixXd::Zero(open.n, closed.n);
-  for (int piece = 0; piece <= last + 1; ++piece) {
-    const int of_closed = piece == 0 ? last : piece - 1;
-    const auto [here, part] = piece == 0 ? fill(piece, last, seam, 1) : fill(piece, of_closed, 0, piece == last + 1 ? seam : 1);
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) e(here.functions[a], closed.pieces[static_cast<std::size_t>(of_closed)].functions[b]) = part(a, b);
-    for (int k = 0; k < m; ++k) wall.middle_of.push_back((piece == last + 1 ? 0 : piece) * m + k);
-    if (piece > last) continue;
-    const double middle = piece == 0 ? (0.5 - seam) / (1 - seam) : 0.5;
-    for (int k = 0; k < m; ++k) wall.middles.push_back({piece * m + k, middle, 0.5});
-  }
   std::vector<Eigen::Triplet<double>> entries;
-  for (int i = 0; i < open.n; ++i)
-    for (int j = 0; j < closed.n; ++j)
+  const Eigen::MatrixXd& e = along.open_from_periodic;
+  for (Eigen::Index i = 0; i < e.rows(); ++i)
+    for (Eigen::Index j = 0; j < e.cols(); ++j)
       for (int k = 0; k < around.n && std::abs(e(i, j)) > 1e-15; ++k) entries.emplace_back(i * around.n + k, j * around.n + k, e(i, j));
-  wall.open_from_periodic.resize(open.n * around.n, closed.n * around.n);
+  wall.open_from_periodic.resize(e.rows() * around.n, e.cols() * around.n);
   wall.open_from_periodic.setFromTriplets(entries.begin(), entries.end());
-  wall.period = period;
+  wall.period = wall.end - wall.start;
 }
 
 /// Returns a wall without its control points, and the control points of the outline. `periodic`: knots of the periodic splines for densities, all
@@ -207,7 +77,7 @@ std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::
                                      static_cast<int>(along.pieces.size()), wall.space.n_points);
   wall.net.resize(wall.space.n_points, 3);
   if (!periodic.empty()) {
-    repeat(wall, std::move(along), around, periodic);
+    repeat(wall, around, periodic);
   } else {
     wall.sites = wall.space.collocation;
     for (int e = 0; e < static_cast<int>(wall.space.elements.size()); ++e) wall.middles.push_back({e, 0.5, 0.5}), wall.middle_of.push_back(e);

@@ -287,6 +287,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
     const bool known = tube_ && flow_.duct();
     const Eigen::SparseMatrix<double>& values = projection_ ? projection_->values() : sites_;
     u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(values * x)) - u / parameters_.viscosity;
+    if (solids()) add_solids(x, f, moves, true, u);
     if (tube_ && schur()) {
       Tube::Response response = tube_->respond(f, moves);
       u += response.velocity;
@@ -314,13 +315,10 @@ bool Capsule::enter_tube(const Net& x) {
   return !ranks_.any(outside);
 }
 
-/// Returns true if all collocation sites are in front of the plane wall, or if there is none.
+/// Returns true if all collocation sites are in front of the plane walls, or if there are none.
 bool Capsule::in_front_of_wall(const Net& x) {
-  if (!parameters_.wall) return true;
-  const Net at = sites_ * x;
-  for (Eigen::Index i = 0; i < at.rows(); ++i)
-    if (!(parameters_.wall->height(at.row(i).transpose()) > 0)) return false;
-  return true;
+  if (solids()) return solids()->inside(sites_ * x);
+  return !parameters_.wall || stokes::in_front({&*parameters_.wall, 1}, sites_ * x);
 }
 
 /// Returns the load whose virtual work on the surface x is d (one row per control point): per unstressed area (3.7), or per current area (3.6).
@@ -413,7 +411,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     project(v);
     const Net load = load_of(v);
     Net bv = without_wall(v, load);
-    if (tube_) bv -= collocation_.solve(tube_->respond(load, v).velocity);
+    if (tube_ || solids()) bv -= velocity_by_walls(x, load, v);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
@@ -496,6 +494,7 @@ stokes::Evaluations Capsule::kernel_evaluations() const {
     if (*other) sum += (*other)->evaluations();
   if (tube_) sum += tube_->kernel_evaluations();
   if (tractions_) sum += tractions_->kernel_evaluations();
+  if (lattice_.solids) sum += lattice_.solids->evaluations();
   return sum;
 }
 

@@ -18,6 +18,7 @@
 #include "system/solids/one_body.hpp"
 #include "system/solids/rigid_particles.hpp"
 #include "system/solids/rigid_tractions.hpp"
+#include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solvers/frozen_operator.hpp"
 #include "system/solvers/krylov.hpp"
@@ -64,6 +65,7 @@ struct CapsuleParameters {
   quadrature::Options quadrature;
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
+  std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; a symmetry without points: no
                                ///< symmetry
 };
@@ -92,6 +94,8 @@ struct CapsuleParameters {
 /// images.
 ///
 /// In front of a plane wall the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
+///
+/// Between plates or posts the velocity (2.47) of these solids is added in the same way as the response of a tube. The Jacobian omits it.
 ///
 /// In a tube the response of wall and pressure drop (2.5)-(2.7) is added. This response is linear in the load and, for lambda != 1, in v. Its parts
 /// are added to the right-hand side and to B, both here and in the Jacobian. Alternatively all blocks are solved for at once (BlockSystem).
@@ -187,8 +191,9 @@ class Capsule : public Dynamics {
   double volume_error(const Net& x) const;  ///< V/V0 - 1 of the total volume
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
   Tube* tube() { return tube_.get(); }      ///< null if there is no tube
+  SolidResponse* solids() { return lattice_.solids.get(); }  ///< null if there are no plates or posts
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set by `at`
-  const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }  ///< cell at the time set by `at`
+  const std::optional<stokes::PeriodicCell>& cell() const { return lattice_.cell; }  ///< cell at the time set by `at`
 
   /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The middle of the cell is the origin.
   /// In a channel it is the middle of the channel, and in a straight tube, whose wall moves with the particles, the mean of the particles.
@@ -218,9 +223,17 @@ class Capsule : public Dynamics {
     Net net;
     std::optional<double> origin, origin_of_net;
   };
-  bool repeats() const { return cell_ && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
-                                                    // instead
-  bool by_sites() const { return tube_ || !flow_.affine(); }
+  /// Current cell, and the plates and posts in it. Unset without a lattice.
+  struct Lattice {
+    std::optional<stokes::PeriodicCell> cell;
+    std::unique_ptr<SolidResponse> solids;
+  };
+  bool repeats() const { return lattice_.cell && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
+  bool by_sites() const { return tube_ || parameters_.solids || !flow_.affine(); }
+  void place_among_solids(const Net& x);
+  void put_among_solids();
+  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
+  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
   Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net in_cell(Evaluation& e, const Net& guess);
@@ -315,7 +328,7 @@ class Capsule : public Dynamics {
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
   Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); empty unless the flow is not affine or there is a tube or a wall
-  std::optional<stokes::PeriodicCell> cell_;  // current cell
+  Lattice lattice_;
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift of the implicit system solved last
   Net flux_, flux_response_;            // b and c of the volume projection P (2.8) in the Jacobian; empty if the Jacobian has no P

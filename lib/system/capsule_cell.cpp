@@ -1,20 +1,21 @@
-// Particles in a periodic cell, and in a tube.
+// Particles in a periodic cell, among solids in it, and in a tube.
 
+#include <memory>
 #include <vector>
 
 #include "system/capsule.hpp"
 
 namespace tanktread::coupling {
 
-/// Deforms the cell to this time (2.46). Returns whether it has changed. The cell of a duct is constant.
+/// Deforms the cell to this time (2.50). Returns whether it has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (tube_) {
-    cell_ = tube_->cell();
+    lattice_.cell = tube_->cell();
     return false;
   }
   const stokes::PeriodicCell now(flow_.deformation(time) * parameters_.cell->vectors(), parameters_.cell->n());
-  if (cell_ && *cell_ == now) return false;
-  cell_ = now;
+  if (lattice_.cell && *lattice_.cell == now) return false;
+  lattice_.cell = now;
   layer_.repeat(now);
   if (double_layer_) double_layer_->repeat(now);
   if (tractions_) tractions_->repeat(now);
@@ -27,7 +28,7 @@ std::vector<Vec3> Capsule::put_into_cell(Net& x) {
   if (tube_ && !tube_->fixed()) tube_place_.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    shifts.push_back(cell_->shift(rows.colwise().mean().transpose() - middle));
+    shifts.push_back(lattice_.cell->shift(rows.colwise().mean().transpose() - middle));
     rows.rowwise() -= shifts.back().transpose();
   }
   return shifts;
@@ -47,9 +48,43 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
+/// Adds the velocity (2.47) of solids to u at the targets, in the rows of this rank: due to a load f and a velocity `moves`, and without particles if
+/// `with_empty`.
+void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
+  const auto clock = phases_.time("wall");
+  place_among_solids(x);
+  Solids::Flow flow = lattice_.solids->respond(f, moves);
+  if (with_empty) flow = flow + lattice_.solids->empty();
+  Net part = zero_at_targets();
+  lattice_.solids->velocities(flow, part);
+  gather_targets(false, part);
+  u += part;
+}
+
+/// Returns the control values of the velocity by which a tube or solids respond to a load f and a velocity v.
+Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
+  if (tube_) return collocation_.solve(tube_->respond(f, v).velocity);
+  Net u = zero_at_targets();
+  add_solids(x, f, v, false, u);
+  return projection_ ? projection_->control_values(u) : collocation_.solve(u);
+}
+
+/// Constructs the response of plates and posts, if there are any.
+void Capsule::put_among_solids() {
+  if (!parameters_.solids) return;
+  lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_);
+  lattice_.solids->set_reference(unstressed_, measure(), measured_on_present(particles()));
+  if (tractions_) tractions_->put_among(*lattice_.solids);
+  else lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
+}
+
+void Capsule::place_among_solids(const Net& x) {
+  lattice_.solids->place(x, (projection_ ? projection_->values() : sites_) * x, own_targets());
+}
+
 /// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell, and transfers the velocities back.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!cell_ || !e.x().allFinite()) return solve(e, e.x(), guess);
+  if (!lattice_.cell || !e.x().allFinite()) return solve(e, e.x(), guess);
   Net x = e.x();
   const std::vector<Vec3> shifts = put_into_cell(x);
   rigid_.enter(shifts, tube_ ? Mat3::Zero() : flow_.cell_gradient());

@@ -21,7 +21,7 @@ bool keeps_area(const Particle& one) {
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  if (cell_) put_into_cell(x);
+  if (lattice_.cell) put_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
   frozen_at_ = at;
@@ -189,7 +189,7 @@ bool Capsule::defect_without_system() const { return flows_by_system() && schur(
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_without_system()) return velocity(x) - u;
   ++work_.evaluations;
-  if (!cell_ || !x.allFinite()) return defect_here(x, u);
+  if (!lattice_.cell || !x.allFinite()) return defect_here(x, u);
   Net in_cell = x, slower = u;
   const std::vector<Vec3> shifts = put_into_cell(in_cell);
   for (std::size_t p = 0; p < shifts.size(); ++p)

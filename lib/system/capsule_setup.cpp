@@ -90,6 +90,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   loads_ = Loads(particles(), own_elements_);
   if (by_sites() || parameters_.wall) sites_ = collocation_matrix(space);
   if (parameters_.cell) deform_cell(0);
+  put_among_solids();
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     tube_->set_reference(unstressed, measure(), measured_on_present(particles()));

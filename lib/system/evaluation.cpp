@@ -59,18 +59,35 @@ const RigidParticles& Evaluation::rigid() {
   return rigid_ ? *rigid_ : system_->rigid_;
 }
 
+/// Computes load and unknowns from the known velocity, or solves for them.
+void Evaluation::find_unknowns() {
+  if (known_.size() == 0 || !system_->unknowns_follow()) solve();
+  if (solved_) return;
+  unknowns_ = known_;
+  load_ = system_->membrane_load(*this, x_, nullptr);
+  if (system_->viscous()) load_ += system_->measured_load(x_, viscous_work());
+}
+
 const Tube::Response& Evaluation::response() {
-  if (!response_ && (known_.size() == 0 || !system_->unknowns_follow())) solve();
+  if (!response_) find_unknowns();
   Net inside = x_;
   if (system_->cell()) system_->put_into_cell(inside);
   system_->place(inside);
-  if (!response_ && !solved_) {
-    unknowns_ = known_;
-    load_ = system_->membrane_load(*this, x_, nullptr);
-    if (system_->viscous()) load_ += system_->measured_load(x_, viscous_work());
-  }
   if (!response_) response_ = system_->tube_->respond(load_, unknowns_);
   return *response_;
+}
+
+Evaluation::SolidFlow Evaluation::solid_flow() {
+  find_unknowns();
+  Net inside = x_;
+  system_->put_into_cell(inside);
+  system_->place_among_solids(inside);
+  SolidResponse& solids = *system_->solids();
+  SolidFlow found{.flow = {}, .caused = solids.respond(load_, unknowns_)};
+  found.flow = found.caused + solids.empty();
+  found.caused_carried = solids.carried(found.caused, load_, unknowns_);
+  found.carried = found.caused_carried + carried(solids.scene(), solids.empty());
+  return found;
 }
 
 Tube::Checks Evaluation::checks() {

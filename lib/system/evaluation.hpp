@@ -7,6 +7,7 @@
 
 #include "base/types.hpp"
 #include "system/solids/rigid_particles.hpp"
+#include "system/solids/solids.hpp"
 #include "system/solids/tube.hpp"
 
 namespace tanktread::coupling {
@@ -35,6 +36,15 @@ class Evaluation {
 
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
+
+  /// Flow of the solids, and the integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), which is zero
+  /// beside a single plate. `caused`: the parts that particles cause.
+  struct SolidFlow {
+    Solids::Flow flow, caused;
+    Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
+  };
+  SolidFlow solid_flow();  ///< returns the flow of the solids, which are then set to this shape
+
   Tube::Checks checks();                                 ///< returns the checks of the tube's response
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
@@ -52,6 +62,7 @@ class Evaluation {
 
  private:
   friend class Capsule;
+  void find_unknowns();
   const Net& moving();  // fluid velocity solved at this shape, never taken from `near_`
   const Net& viscous_work();
 

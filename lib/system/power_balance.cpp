@@ -78,14 +78,19 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   return powers;
 }
 
-/// Returns the power input of the flow. In a duct flow it is the flow rate times the additional pressure drop due to the particles (2.7). Other flows
-/// have a uniform gradient, and (6.11) applies; the walls of their tube move with the flow.
+/// Returns the power input of the flow. In a duct flow it is the flow rate times the additional pressure drop due to the particles (2.7). Between two
+/// plates or among posts it is the power of the force that particles add to their motion, and of the pressure gradient g for the flow that is lost:
+/// sum_s V_s.F_s + g.int u dV. Other flows have a uniform gradient, and (6.11) applies; the walls of their tube move with the flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
     const double drop = e.response().pressure_drop;
     return flow.amplitude() * tube.flow_rate(drop) * drop;
+  }
+  if (SolidResponse* const solids = capsule_.solids(); solids && solids->scene().planes.size() != 1) {
+    const Evaluation::SolidFlow found = e.solid_flow();
+    return solids->scene().solids->power(found.caused.force) + solids->scene().driving_gradient.dot(found.caused_carried);
   }
   const Net& x = e.x();
   const Net flux = capsule_.geometry().volume_gradient(x);
@@ -144,6 +149,7 @@ Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
       if (!particle.rigid) particle.block.rows(density).rowwise() -= slower.transpose();
     }
   }
+  const Solids::Flow by_solids = capsule_.solids() ? e.solid_flow().flow : Solids::Flow();
   const Net at = values_ * x;
   single_.place(x, capsule_.measure());
   if (double_) double_->place(x);
@@ -152,6 +158,7 @@ Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
     single_.apply(load, own, u);
     u /= -viscosity_;
     if (double_) double_->apply(density, own, part), u += part;
+    if (SolidResponse* solids = capsule_.solids()) solids->velocity_at(at, own, by_solids, part), u(own, Eigen::all) += part(own, Eigen::all);
     if (Tube* tube = capsule_.tube()) tube->velocity_at(at, e.response(), own, part), u(own, Eigen::all) += part(own, Eigen::all);
   });
 }

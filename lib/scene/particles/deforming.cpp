@@ -15,8 +15,9 @@
 #include "scene/particles/gaps.hpp"
 #include "scene/particles/limiter.hpp"
 #include "scene/particles/particle_system.hpp"
-#include "scene/plane_wall.hpp"
+#include "scene/particles/surroundings.hpp"
 #include "scene/series/surface_fields.hpp"
+#include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "spline/locate.hpp"
 #include "surface/geometry.hpp"
@@ -32,8 +33,9 @@ namespace {
 class Deforming : public ParticleSystem {
  public:
   Deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
-      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)) {
+      : scene_(scene), ranks_(ranks), phases_(phases), members_(members(scene)), solids_(solids(scene, phases)) {
     check_apart(members_, scene.domain.cell());
+    if (solids_) check_outside_of_posts(*solids_, members_);
     set_up();
     for (Member& member : members_) {
       const Body& body = *member.body;
@@ -146,7 +148,7 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if (body().wall && !accurate(state)) here->solve();  // the flow in a tube depends on the velocity, so an inaccurate velocity is solved for again
+    if ((body().wall || solids_) && !accurate(state)) here->solve();  // the flow of tubes and solids depends on the velocity
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -169,19 +171,7 @@ class Deforming : public ParticleSystem {
     for (const coupling::Contact& contact : contacts_.all) whole.stresslet += stresslet_between(contact, state.x);
     progress.add_columns(scene_, row);
     whole.add_columns(scene_, row);
-    if (body().wall) {
-      check_spread(scene_, *body().wall, capsule_->geometry(), state.x);
-      tube_row(*capsule_->tube(), *here).add_columns(scene_, row);
-    }
-    if (const auto& cell = capsule_->cell()) {
-      DomainRow now{.cell = cell->vectors()};
-      if (cell->n() == 3)
-        now.set_stress(scene_.flow.viscosity, capsule_->flow().cell_gradient(), *cell, body().plane.axes,
-                       capsule_->geometry().volume(state.x), whole.stresslet, force_on_fluid(*here));
-      now.add_columns(scene_, row);
-    }
-    if (scene_.has_gaps()) smallest_gap(members_, state.x, ranks_, capsule_->cell()).add_columns(row);
-    if (scene_.wall.present) wall_row(*scene_.wall.plane(), members_, state.x).add_columns(scene_, row);
+    add_surroundings(scene_, members_, body(), *capsule_, *here, whole.stresslet, ranks_, row);
     if (scene_.output.power_balance) powers(state).add_columns(row);
     if (scene_.has_gaps() && scene_.contact.limiter) contacts_.add_columns(row);
     add_series(scene_, state.time, recorded, row);
@@ -249,23 +239,13 @@ class Deforming : public ParticleSystem {
     else
       around = tube(scene_, body(), phases_);
     power_.reset(), fields_.reset(), capsule_.reset();
-    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around));
+    capsule_ = tanktread::capsule(members_, body(), ranks_, phases_, std::move(around), solids_);
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
   /// Returns true if the error of the slope (the velocity of the control points) does not exceed the tolerance.
   bool accurate(const motion::State& state) const {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
-  }
-
-  /// Returns the force of all particles on the fluid.
-  Vec3 force_on_fluid(coupling::Evaluation& here) {
-    Vec3 force = Vec3::Zero();
-    for (std::size_t p = 0; p < members_.size(); ++p)
-      force += members_[p].scene.particle.rigid() ? here.rigid().force(p)
-                                                  : Vec3(members_[p].body->volume * members_[p].scene.body_force() +
-                                                         members_[p].scene.membrane.forces.total());
-    return force;
   }
 
   /// Returns the data of particle p for a row, except tank-treading. Adds the columns of its fields.
@@ -377,6 +357,7 @@ class Deforming : public ParticleSystem {
   coupling::Ranks& ranks_;
   Phases& phases_;
   std::vector<Member> members_;
+  std::optional<coupling::SolidScene> solids_;
   std::unique_ptr<Body> all_;  // body that stands for all particles (stacked nets) if there are several, or null
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;

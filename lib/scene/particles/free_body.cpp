@@ -66,7 +66,7 @@ class Free : public ParticleSystem {
       const double pressure_drop = free_->pressure_drop(state.x);
       tube_row(*tube_, free_->force_density(state.x), pressure_drop).add_columns(scene_, row);
     }
-    if (const auto wall = scene_.wall.plane()) wall_row(*wall, body_, free_->surface(state.x)).add_columns(scene_, row);
+    if (const auto walls = scene_.wall.planes(); !walls.empty()) wall_row(walls, body_, free_->surface(state.x)).add_columns(scene_, row);
     turn_to(state.x, progress.step.step, now);
     now.add_columns(scene_, row);
     progress.time = state.time, progress.work = work();

@@ -265,7 +265,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   std::vector<const surface::Patches*> others;
   for (const surface::Patches& other : placed) others.push_back(&other);
   std::vector<double> widths = surface::film_widths(own, others, reach);
-  if (const auto plane = members[p].scene.wall.plane()) narrow(own, *plane, reach, widths);
+  for (const stokes::PlaneWall& plane : members[p].scene.wall.planes()) narrow(own, plane, reach, widths);
   return widths;
 }
 

@@ -8,6 +8,7 @@
 #include "scene/plane_wall.hpp"
 #include "scene/series/diagnostics.hpp"
 #include "scene/series/surface_fields.hpp"
+#include "scene/solids.hpp"
 #include "scene/tube.hpp"
 #include "system/contact.hpp"
 #include "system/power_balance.hpp"
@@ -23,6 +24,7 @@ constexpr const char* order =
     "n_control_points step_error rejected_steps iterations evaluations assemblies solver_iterations velocity_iterations wall_seconds centroid_ "
     "center_ velocity_ angular_velocity_ quaternion_ axis_ axis_1_ tank_treading_velocity tank_treading_frequency phase intrinsic_viscosity "
     "migration_velocity disturbed_pressure_drop gap flow_rate channel_pressure_drop channel_extra_pressure_drop nearest_to_wall_ particle_at_wall "
+    "wall_force_ second_wall_force_ post_force_ mean_velocity_ permeability "
     "smallest_gap first_of_gap second_of_gap gap_ contact_force contact_impulse volume_fraction cell_1_ cell_2_ cell_3_ particle_stress_ "
     "relative_viscosity normal_stress_difference_ pressure_gradient_ disturbance_flux force_imbalance cap_velocity pressure_drop_by_flux "
     "pressure_drop_by_force drag_ torque_ drag_error drag_error_of_traction torque_error pressure_l2_error normal_l2_error surfactant_mass "
@@ -64,7 +66,7 @@ void add_series(const Scene& scene, double time, std::span<const RecordedParticl
 }
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
-  const bool prescribed = !scene.in_system() && scene.particle.motion == Motion::prescribed;
+  const bool prescribed = scene.only_solids || (!scene.in_system() && scene.particle.motion == Motion::prescribed);
   to.add(time, {"time", "time", "simulated time; 0 of a steady problem"});
   to.add(wall_seconds, {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"});
   if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
@@ -85,7 +87,13 @@ Columns run_columns(const Scene& scene, bool every) {
   Columns all(every);
   ProgressRow().add_columns(scene, all);
   TubeRow().add_columns(scene, all);
+  if (scene.only_solids) {
+    SolidsRow().add_columns(scene, all), DomainRow().add_columns(scene, all);
+    put_in_order(all);
+    return all;
+  }
   WallRow().add_columns(scene, all);
+  SolidsRow().add_columns(scene, all);
   if (!scene.in_system()) {
     scene.particle.motion == Motion::free ? RigidRow().add_columns(scene, all) : PrescribedRow().add_columns(scene, all);
   } else {

@@ -37,7 +37,31 @@ AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
     const double bend = -options.maximum_velocity.value() / (options.half_width.value() * options.half_width.value());
     field.curvature.diagonal() << 0, options.profile == "round" ? bend : 0, bend;
   }
+  if (options.plates) fit_to_plates(options, field);
   return field;
+}
+
+/// Adds the part of (2.48) due to plates.
+void AmbientFlow::fit_to_plates(const FlowOptions& options, Field& field) {
+  const Plates& plates = *options.plates;
+  const Vec3& n = plates.normal;
+  const auto at = [&](const Vec3& x) -> Vec3 { return field.velocity + field.gradient * x + x.dot(field.curvature * x) * field.direction; };
+  const auto missing = [&](const std::optional<Vec3>& velocity, const Vec3& x) -> Vec3 { return velocity ? Vec3(*velocity - at(x)) : Vec3::Zero(); };
+  const Vec3 first = missing(plates.velocity, plates.point);
+  if (!plates.distance) {
+    field.velocity += first;
+    return;
+  }
+  const double d = *plates.distance, bottom = n.dot(plates.point);
+  const Vec3 slope = (missing(plates.second_velocity, plates.point + d * n) - first) / d;
+  field.velocity += first - bottom * slope;
+  field.gradient += slope * n.transpose();
+  if (!options.pressure_gradient) return;
+  const Vec3 bend = *options.pressure_gradient / (2 * options.viscosity);
+  field.velocity += bottom * (bottom + d) * bend;
+  field.gradient -= (2 * bottom + d) * bend * n.transpose();
+  field.direction = bend;
+  field.curvature = n * n.transpose();
 }
 
 AmbientFlow::AmbientFlow(const FlowOptions& options, std::shared_ptr<const DuctFlow> duct)

@@ -21,7 +21,11 @@ namespace tanktread::stokes {
 ///   linear               L as given;   uniform   v_0 as given;   quiescent   0
 ///   parabolic            maximum velocity (1 - (x2^2 + x3^2)/half width^2, 0, 0), or without x2
 ///
-/// or a registered flow (UserFlow). Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
+/// or a registered flow (UserFlow). Between plates at p and p + D n that move with V1 and V2, with a pressure gradient g along them, the flow is
+///
+///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d = V - v on each plate                               (2.48)
+///
+/// Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
 class AmbientFlow {
  public:
   AmbientFlow() = default;  ///< quiescent
@@ -51,7 +55,7 @@ class AmbientFlow {
   /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.
   Mat3 cell_gradient() const { return affine() ? gradient(Vec3::Zero()) : Mat3(Mat3::Zero()); }
 
-  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.46).
+  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.50).
   Mat3 deformation(double time) const;
 
   /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.
@@ -74,6 +78,7 @@ class AmbientFlow {
     Mat3 curvature = Mat3::Zero();
   };
   static Field field(const FlowOptions& options);
+  static void fit_to_plates(const FlowOptions& options, Field& field);
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;

@@ -37,6 +37,9 @@ void FlowOptions::declare(deck::Section& section) {
               "quantity of the `duct` flow that particles do not change: `flow rate`, or `pressure drop` over the computed part. The prescribed "
               "pressure drop is the one that gives the mean velocity in the empty tube or channel");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
+  section.key("pressure gradient", pressure_gradient, deck::any(), "force/length^3",
+              "gradient of the mean pressure in a Domain with plates or posts, three numbers; the fluid is driven in the opposite direction. With "
+              "posts in three periodic directions it is 0 if not given, and the mean velocity follows from the balance of forces");
   section.key("profile", profile, deck::Choice{"round", "plane"},
               "velocity profile of the `parabolic` flow. `round`: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2). `plane`: v1 = maximum "
               "velocity (1 - x3^2/half width^2). `round` if not given");
@@ -98,8 +101,16 @@ void FlowOptions::check() const {
   refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient", "the gradient of a `linear` flow holds its rate already");
 }
 
+double FlowOptions::rate_between_plates() const {
+  if (!plates || !plates->distance) return 0.0;
+  const double d = *plates->distance;
+  if (plates->velocity && plates->second_velocity && *plates->velocity != *plates->second_velocity)
+    return (*plates->second_velocity - *plates->velocity).norm() / d;
+  return pressure_gradient ? pressure_gradient->norm() * d / (4 * viscosity) : 0.0;
+}
+
 double FlowOptions::rate() const {
-  if (type == "quiescent" || type == "uniform" || type == "duct") return 0.0;
+  if (type == "quiescent" || type == "uniform" || type == "duct") return type == "quiescent" ? rate_between_plates() : 0.0;
   if (user) return user->rate();
   if (type == "linear") return largest_stretch(gradient.value());
   if (type == "parabolic") return *maximum_velocity / half_width.value();

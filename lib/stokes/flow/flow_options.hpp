@@ -11,6 +11,13 @@
 
 namespace tanktread::stokes {
 
+/// Plates that enclose a flow: one, or two a distance apart.
+struct Plates {
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
+  std::optional<double> distance;                     ///< distance of the second plate; none if not set
+  std::optional<Vec3> velocity, second_velocity;      ///< velocities of the plates; if not set, a plate moves with the flow of the deck
+};
+
 /// Options `Flow/*` of the deck: the ambient flow and the outer fluid. The plane of the flow is the x1 x3 plane.
 struct FlowOptions {
   std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear,
@@ -26,6 +33,8 @@ struct FlowOptions {
   std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< distance at which the velocity of `parabolic` vanishes, units length
+  std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
+  std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
   const UserFlows* registered = nullptr;   ///< further types, with keys in `Flow/<type>`; null if there are none
   std::shared_ptr<const UserFlow> user;    ///< set for a registered type
@@ -39,8 +48,9 @@ struct FlowOptions {
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
   /// Returns the rate in Ca: the shear rate, the largest singular value of the gradient for `linear`, or the maximum velocity over the half width for
-  /// `parabolic`. It is 0 for a flow without gradient, and for a duct, for which the speed is used instead. For a flow that changes in time the rate
-  /// refers to amplitude 1. Units 1/time.
+  /// `parabolic`. If the type is `quiescent`, two plates set it: the difference of their velocities divided by their distance or, if that is 0, half
+  /// of the shear rate on them due to the pressure gradient. Otherwise it is 0 for a flow without gradient, and for a duct, for which the speed is
+  /// used instead. For a flow that changes in time it refers to amplitude 1. Units 1/time.
   double rate() const;
 
   /// Returns the velocity in Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.
@@ -48,6 +58,7 @@ struct FlowOptions {
 
  private:
   void declare_registered(deck::Section& section);
+  double rate_between_plates() const;
 };
 
 }  // namespace tanktread::stokes

@@ -177,7 +177,8 @@ void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const Vec3 e = cell_.vectors().col(2);
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());
   if (kind_ == Kind::stokeslet) {
-    for (int c = 0; c < 6; ++c) values[c] -= scale * z * z * (delta(pairs[c][0], pairs[c][1]) - e[pairs[c][0]] * e[pairs[c][1]]);
+    const double mode = scale * (z * z + periods_.col(2).squaredNorm() / 6);
+    for (int c = 0; c < 6; ++c) values[c] -= mode * (delta(pairs[c][0], pairs[c][1]) - e[pairs[c][0]] * e[pairs[c][1]]);
     return;
   }
   for (int i = 0; i < 3; ++i)

@@ -1,6 +1,8 @@
 #pragma once
 // A plane no-slip wall.
 
+#include <span>
+
 #include <Eigen/Geometry>
 
 #include "base/types.hpp"
@@ -26,5 +28,13 @@ class PlaneWall {
   Vec3 point_, normal_;
   Mat3 axes_;
 };
+
+/// Returns whether all points are in front of all walls.
+inline bool in_front(std::span<const PlaneWall> walls, const Net& at) {
+  for (const PlaneWall& wall : walls)
+    for (Eigen::Index i = 0; i < at.rows(); ++i)
+      if (!(wall.height(at.row(i).transpose()) > 0)) return false;
+  return true;
+}
 
 }  // namespace tanktread::stokes

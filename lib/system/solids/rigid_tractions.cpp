@@ -48,7 +48,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std:
                                Tube* tube, Ranks& ranks)
     : particles_(particles),
       viscosity_(viscosity),
-      tube_(tube),
+      around_{tube},
       ranks_(ranks),
       own_points_(ranks.share(space.n_points)),
       between_(between_sites(space, rest)),
@@ -102,13 +102,29 @@ Net RigidTractions::images_of(const Net& f) {
   Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
   for (const Particle& body : particles_)
     body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
+  if (around_.solids) u -= viscosity_ * by_solids(at_, around_.solids->respond(f, {}));
   return u;
+}
+
+/// Returns the velocity of a flow of the solids at points on the bodies.
+Net RigidTractions::by_solids(const Net& at, const Solids::Flow& flow) {
+  return ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+    if (&at == &at_) around_.solids->velocities(flow, u);
+    else around_.solids->velocity_at(at, own, flow, u);
+  });
+}
+
+/// Returns the velocity without bodies: v_inf, and the flow that solids add to it.
+Net RigidTractions::flow_at(const Net& at, const stokes::AmbientFlow& flow) {
+  Net v = flow.velocities(at);
+  if (around_.solids) v += by_solids(at, around_.solids->empty());
+  return v;
 }
 
 void RigidTractions::factor() {
   factors_.reset();  // frees the old factors before the new matrix is allocated
   alone_ = system();
-  if (tube_)
+  if (around_.tube)
     factors_.emplace(alone_);
   else
     factors_.emplace(std::exchange(alone_, {}));
@@ -117,7 +133,7 @@ void RigidTractions::factor() {
 /// Returns the force densities that produce the given velocities at the sites, one per column, for the viscosity 1.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
-  if (!repeats_ && !tube_) return factors_->solve(velocities);
+  if (!repeats_ && !around_.tube) return factors_->solve(velocities);
   const Eigen::Index n = velocities.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net f = Eigen::Map<const Net>(in, n / 3, 3);
@@ -125,7 +141,7 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
     if (repeats_)
       u = images_of(f);
     else
-      u = as_net(alone_ * flat(f)) - viscosity_ * tube_->respond(f).velocity;
+      u = as_net(alone_ * flat(f)) - viscosity_ * around_.tube->respond(f).velocity;
   };
   const auto precondition = [&](const double* in, double* out) {
     Eigen::Map<Eigen::VectorXd>(out, n) = factors_->solve(Eigen::Map<const Eigen::VectorXd>(in, n));
@@ -160,11 +176,13 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
 Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
   between_layer_.place(x);
   const Net at = between_.values * x;
-  const Tube::Response response = tube_ ? tube_->respond(f) : Tube::Response();
+  const Tube::Response response = around_.tube ? around_.tube->respond(f) : Tube::Response();
+  const Solids::Flow by_solids = around_.solids ? around_.solids->respond(f, {}) : Solids::Flow();
   const Net u = ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& part) {
     between_layer_.apply(f, own, part);
     Net answer(part.rows(), 3);
-    if (tube_) tube_->velocity_at(at, response, own, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
+    if (around_.tube) around_.tube->velocity_at(at, response, own, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
+    if (around_.solids) around_.solids->velocity_at(at, own, by_solids, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
   });
   return between_.weights * (between_.values * v - flow - u / viscosity_);
 }
@@ -172,14 +190,15 @@ Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Ne
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
   layer_.place(x);
-  const Net at = sites_ * x;
+  const Net at = at_ = sites_ * x;
+  if (around_.solids) around_.solids->place(x, at_, own_points_);
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
     set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
   }
-  velocities.col(m) = flat(flow.velocities(at));
+  velocities.col(m) = flat(flow_at(at_, flow));
   make_regular(x, at);
   factor();
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
@@ -190,7 +209,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd f = z * motion - of_all.col(m);
-  const Net between = flow.velocities(between_.values * x);
+  const Net between = flow_at(between_.values * x, flow);
   const Eigen::VectorXd v = fields * motion;
   left_ = flat(left_over(x, as_net(f), as_net(v), between));
   const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
@@ -199,7 +218,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   f += z * change;
   const Eigen::VectorXd integrals = work.transpose() * f + lacking;
   density_ = as_net(f);
-  if (tube_ && flow.duct()) lacking_pressure_ = tube_->lacking_pressure(between_, between, flow.amplitude(), density_, lacks[m]);
+  if (around_.tube && flow.duct()) lacking_pressure_ = around_.tube->lacking_pressure(between_, between, flow.amplitude(), density_, lacks[m]);
   const Net weighted = mass * density_;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
@@ -207,12 +226,11 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
     bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
                   block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
   }
-  at_ = at;
   centres_.assign(centres.begin(), centres.end());
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
-  if (tube_) return bodies_[p].moment;
+  if (around_.tube) return bodies_[p].moment;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
   set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
   return bodies_[p].moment + strain_of_products(viscosity_ * densities(velocities).transpose() * left_);

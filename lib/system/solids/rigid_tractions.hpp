@@ -19,6 +19,7 @@
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/rigid_motion.hpp"
+#include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solvers/krylov.hpp"
 #include "system/solvers/options.hpp"
@@ -36,9 +37,10 @@ namespace tanktread::coupling {
 /// remaining errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which
 /// limits the number of control points to a few thousand.
 ///
-/// On a lattice, A includes all images. In a tube, mu times the response of the wall and the pressure drop is subtracted from A. Each density is then
-/// found by iteration, preconditioned by the factored operator without the images or the response; a few iterations suffice, because both are smooth.
-/// The pressure drop of a duct flow is corrected like a force; this correction includes the interpolation error of v_inf (2.41).
+/// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu
+/// times the response of the wall and the pressure drop is subtracted from A. These additions are smooth. Each density is therefore found by a few
+/// iterations, and the preconditioner is the factored operator without these additions. The pressure drop of a duct flow is corrected like a force;
+/// this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
@@ -49,6 +51,9 @@ class RigidTractions {
 
   /// Sets the lattice on which the bodies repeat, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
+
+  /// Sets the solids in the lattice, which must outlive this object.
+  void put_among(SolidResponse& solids) { around_.solids = &solids; }
 
   struct Body {
     RigidMotion motion;
@@ -72,17 +77,24 @@ class RigidTractions {
   stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
 
  private:
+  /// Tube around the bodies, and solids among which they are; null if there are none.
+  struct Surroundings {
+    Tube* tube = nullptr;
+    SolidResponse* solids = nullptr;
+  };
   Eigen::MatrixXd system();
   void factor();
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
   void make_regular(const Net& x, const Net& at);
   Net images_of(const Net& f);
+  Net flow_at(const Net& at, const stokes::AmbientFlow& flow);
+  Net by_solids(const Net& at, const Solids::Flow& flow);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
   Net left_over(const Net& x, const Net& f, const Net& v, const Net& flow);
 
   std::span<const Particle> particles_;
   double viscosity_;
-  Tube* tube_;
+  Surroundings around_;
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;

@@ -1,0 +1,58 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "app/runs.hpp"
+#include "app/signals.hpp"
+#include "base/errors.hpp"
+#include "record/plan.hpp"
+#include "scene/series/series.hpp"
+#include "scene/solids.hpp"
+#include "surface/geometry.hpp"
+
+namespace tanktread {
+
+int flow_past_solids(const Scene& scene, const RunRequest& request) {
+  refuse(request.resume, "--resume", "Particle/shape `cylinder`", "a steady problem has nothing to go on with");
+  const auto start = std::chrono::steady_clock::now();
+  coupling::Ranks ranks;
+  Phases phases = started();
+  std::optional<Phases::Scope> clock(std::in_place, phases, "set-up");
+  const output::Entries<std::string> chosen = plan(scene, ranks.size());
+  if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
+  const coupling::SolidScene around = *solids(scene, phases);
+  coupling::Solids& all = *around.solids;
+  clock.reset();
+  stop_where_told();
+  const coupling::Solids::Flow flow = coupling::without_particles(around, stokes::AmbientFlow(scene.flow));
+  const Vec3 carried = coupling::carried(around, flow);
+  Columns row;
+  ProgressRow{.wall_seconds = ranks.seconds_since(start)}.add_columns(scene, row);
+  solids_row(scene, around, flow, Vec3::Zero(), carried).add_columns(scene, row);
+  DomainRow now{.cell = all.cell().vectors(), .pressure_gradient = around.driving_gradient};
+  now.add_columns(scene, row);
+  finish(row);
+
+  clock.emplace(phases, "output");
+  Body body;
+  body.space = all.surface().space, body.rest = body.initial = body.unstressed = all.surface().net;
+  const Net force = all.on_space(flow.force);
+  Results results(scene, request, body, surface::BezierMap(body.space), ranks);
+  results.record(row);
+  motion::State state;
+  state.x = body.rest;
+  const SurfacePicture picture{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
+  results.save({}, state, {}, results.sample(picture, state.time));
+  clock.reset();
+  const stokes::Evaluations kernel = ranks.of_all(all.evaluations());
+  Account account;
+  account.plan = chosen;
+  account.counts = {{"unknowns", 3L * all.surface().n_points()},
+                    {"kernel_evaluations_far", static_cast<long>(kernel.far)},
+                    {"kernel_evaluations_near", static_cast<long>(kernel.near)},
+                    {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
+  return results.close(account, phases);
+}
+
+}  // namespace tanktread

@@ -1,0 +1,47 @@
+#include "scene/particles/surroundings.hpp"
+
+#include "scene/particles/gaps.hpp"
+#include "scene/plane_wall.hpp"
+#include "scene/solids.hpp"
+#include "scene/tube.hpp"
+
+namespace tanktread {
+
+namespace {
+
+/// Returns the force of all particles on the fluid.
+Vec3 force_on_fluid(const std::vector<Member>& members, coupling::Evaluation& here) {
+  Vec3 force = Vec3::Zero();
+  for (std::size_t p = 0; p < members.size(); ++p) {
+    const Scene& one = members[p].scene;
+    force += one.particle.rigid() ? here.rigid().force(p) : Vec3(members[p].body->volume * one.body_force() + one.membrane.forces.total());
+  }
+  return force;
+}
+
+}  // namespace
+
+void add_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
+                      const Mat3& stresslet, const coupling::Ranks& ranks, Columns& row) {
+  const Net& x = here.x();
+  if (all.wall) {
+    check_spread(scene, *all.wall, capsule.geometry(), x);
+    tube_row(*capsule.tube(), here).add_columns(scene, row);
+  }
+  if (const auto& cell = capsule.cell()) {
+    DomainRow now{.cell = cell->vectors()};
+    const Vec3 force = force_on_fluid(members, here);
+    if (cell->n() == 3) now.set_stress(scene.flow.viscosity, capsule.flow().cell_gradient(), *cell, all.plane.axes, capsule.geometry().volume(x),
+                                       stresslet, force);
+    if (coupling::SolidResponse* solids = capsule.solids()) {
+      const coupling::Evaluation::SolidFlow flow = here.solid_flow();
+      now.pressure_gradient = solids->scene().driving_gradient;
+      solids_row(scene, solids->scene(), flow.flow, force, flow.carried).add_columns(scene, row);
+    }
+    now.add_columns(scene, row);
+  }
+  if (scene.has_gaps()) smallest_gap(members, x, ranks, capsule.cell()).add_columns(row);
+  if (scene.wall.present) wall_row(scene.wall.planes(), members, x).add_columns(scene, row);
+}
+
+}  // namespace tanktread

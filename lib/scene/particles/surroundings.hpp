@@ -1,0 +1,18 @@
+#pragma once
+// Data of what surrounds the particles of a coupled system, for a row: tube, cell, walls, posts, gaps.
+
+#include <vector>
+
+#include "base/columns.hpp"
+#include "scene/member.hpp"
+#include "system/capsule.hpp"
+#include "system/evaluation.hpp"
+
+namespace tanktread {
+
+/// Adds the columns of the surroundings at the shape of `here`. `all`: body of all members. `stresslet`: sum of their stresslets. Throws RunFailure
+/// if the particles have spread too far in a tube. Collective.
+void add_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
+                      const Mat3& stresslet, const coupling::Ranks& ranks, Columns& row);
+
+}  // namespace tanktread

@@ -1,0 +1,123 @@
+#include "scene/posts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "scene/scene.hpp"
+
+namespace tanktread {
+
+namespace {
+
+bool is_post(const ParticleKind& kind) { return kind.particle.shape.shape == "cylinder"; }
+
+/// Throws UserError if a key has no meaning for a post.
+void check_keys(const ParticleKind& kind, const Post& post) {
+  const ParticleOptions& particle = kind.particle;
+  const auto refuse_key = [&](const char* key, bool given) {
+    refuse(given, post.path(key), "Particle/shape `cylinder`", "a cylinder is a post at rest, which nothing moves or deforms");
+  };
+  refuse_key("motion", particle.motion != Motion::deforming);
+  refuse_key("velocity", particle.velocity.has_value());
+  refuse_key("angular velocity", particle.angular_velocity.has_value());
+  refuse_key("force", particle.force.has_value());
+  refuse_key("torque", particle.torque.has_value());
+  refuse_key("density difference", particle.density_difference.has_value());
+  refuse_key("viscosity ratio", particle.viscosity_ratio != 1);
+  refuse_key("initial shape", particle.shape.initial.has_value());
+  refuse_key("orientation", !particle.shape.orientation.isZero(0));
+  refuse_key("copies", kind.copies.present);
+  refuse_key("Membrane", kind.membrane_given);
+  refuse_key("Adaptation/enabled", kind.adaptation.enabled);
+}
+
+Post post_of(const ParticleKind& kind) {
+  const surface::ParticleShape& shape = kind.particle.shape;
+  Post post{kind.name, shape.radius.value(), 0, shape.center, kind.surface.azimuthal_elements.value_or(24), kind.surface.axial_elements};
+  if (!shape.axis) throw UserError("Particle/shape `cylinder` needs " + post.path("axis") + ": x1, x2 or x3.");
+  post.axis = shape.axis->at(1) - '1';
+  check_keys(kind, post);
+  return post;
+}
+
+/// Returns the distance of two parallel posts, of all their images: between their axes if `other` is another post, or to the nearest own image.
+double distance(const Post& post, const Post& other, const stokes::PeriodicCell& cell, bool same) {
+  double least = 1e300;
+  for (const Vec3& image : cell.around({2, 2, 2})) {
+    Vec3 apart = other.center + image - post.center;
+    if (post.axis == other.axis) {
+      apart[post.axis] = 0;
+      if (!same || apart.norm() > 1e-9) least = std::min(least, apart.norm());
+    } else {  // axes at right angles
+      least = std::min(least, std::abs(apart[3 - post.axis - other.axis]));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+std::string Post::path(const std::string& key) const {
+  const std::string list = name.empty() ? "Particle" : "Particles/" + name;
+  return key.empty() ? list : (name.empty() && (key == "Membrane" || key == "Adaptation/enabled") ? "" : list + "/") + key;
+}
+
+void take_posts(Scene& scene) {
+  scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
+  scene.flow.plates = scene.wall.plates();
+  const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
+  if (films && scene.name.empty() && !scene.adaptation.film_resolution) scene.adaptation.film_resolution = 0.7;
+  if (is_post(scene)) {
+    scene.posts.push_back(post_of(scene));
+    scene.only_solids = true;
+    scene.particle.shape = surface::ParticleShape();
+    scene.particle.shape.radius = scene.posts.front().radius;
+    return;
+  }
+  std::vector<ParticleKind> others;
+  for (const ParticleKind& kind : scene.particles) {
+    if (is_post(kind)) scene.posts.push_back(post_of(kind));
+    else others.push_back(kind);
+  }
+  scene.only_solids = !scene.particles.empty() && others.empty();
+  scene.particles = std::move(others);
+  if (scene.only_solids) scene.particle.shape.radius = scene.posts.front().radius;
+}
+
+void check_posts(const Scene& scene) {
+  const std::optional<stokes::PeriodicCell> cell = scene.domain.cell();
+  if (scene.posts.empty()) {
+    if (scene.flow.pressure_gradient && !scene.wall.solid)
+      throw UserError("Flow/pressure gradient needs walls, by Wall/distance, or posts, by Particle/shape `cylinder`, in a Domain: nothing else holds "
+                      "back the fluid that it drives.");
+    return;
+  }
+  refuse(scene.tube.present, "Particle/shape `cylinder`", scene.tube.list(), "a post goes through a whole period, and would go through the wall");
+  if (!cell) throw UserError("Particle/shape `cylinder` needs a Domain: a post is one period of a cylinder along a periodic direction.");
+  if (!scene.wall.solid && cell->n() < 3)
+    throw UserError("Particle/shape `cylinder` needs a Domain that is periodic in three directions, or walls: give Domain/periodic `x1 x2 x3` or "
+                    "Wall/distance. Otherwise the forces of posts on the fluid would drive it without limit far from them.");
+  refuse(scene.wall.solid && !scene.wall.distance, "Particle/shape `cylinder`", "Wall without Wall/distance",
+         "the forces of posts on the fluid would drive it without limit far from the wall");
+  refuse(!scene.wall.solid && scene.flow.type != "quiescent", "Particle/shape `cylinder`", scene.flow.choice(),
+         "posts hold back any flow but the one that a pressure gradient drives: give Flow/type `quiescent` and Flow/pressure gradient");
+  for (std::size_t p = 0; p < scene.posts.size(); ++p) {
+    const Post& post = scene.posts[p];
+    bool along = false;
+    for (int d = 0; d < cell->n(); ++d)
+      along = along || std::abs(std::abs(cell->vectors().col(d)[post.axis]) - cell->vectors().col(d).norm()) < 1e-9 * cell->vectors().col(d).norm();
+    const int axis = post.axis + 1;
+    if (!along) throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), axis, axis));
+    for (std::size_t q = 0; q <= p; ++q)
+      if (distance(post, scene.posts[q], *cell, p == q) <= post.radius + scene.posts[q].radius)
+        throw UserError(p == q ? post.path() + " touches its own image: its radius must be smaller than half the period across its axis."
+                               : post.path() + " and " + scene.posts[q].path() + " touch each other.");
+    for (const stokes::PlaneWall& wall : scene.wall.planes())
+      if (wall.height(post.center) <= post.radius) throw UserError(post.path() + " touches the wall.");
+  }
+}
+
+}  // namespace tanktread

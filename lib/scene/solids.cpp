@@ -1,0 +1,159 @@
+#include "scene/solids.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "quadrature/gauss.hpp"
+#include "scene/posts.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+
+namespace tanktread {
+
+namespace {
+
+using coupling::Solids;
+
+/// Returns the lattice vector along the axis of a post.
+Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
+  for (int d = 0; d < cell.n(); ++d) {
+    const Vec3 vector = cell.vectors().col(d);
+    if (std::abs(std::abs(vector[post.axis]) - vector.norm()) < 1e-9 * vector.norm()) return std::abs(vector[post.axis]) * Vec3::Unit(post.axis);
+  }
+  return Vec3::Zero();
+}
+
+int elements_along(const Post& post, const Vec3& period) {
+  return post.along.value_or(std::max(4, static_cast<int>(std::ceil(period.norm() * post.around / (2 * std::numbers::pi * post.radius)))));
+}
+
+Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
+
+/// Returns the plates, each with the velocity of the ambient flow on it, which is fitted to them.
+std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
+  std::vector<Solids::Solid> all;
+  for (const stokes::PlaneWall& wall : scene.wall.planes()) {
+    const Vec3 middle = wall.normal().dot(wall.point()) * wall.normal();
+    const std::array<int, 2> elements = scene.wall.elements(cell, scene.least_radius());
+    all.push_back({surface::plate(middle, lattice_vector(cell, 0), lattice_vector(cell, 1), elements), flow.velocity(wall.point()), {}});
+  }
+  return all;
+}
+
+/// Returns the directions in which the mean velocity is free (2.46).
+std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
+  std::vector<Vec3> free;
+  if (cell.n() == 3)
+    for (int c = 0; c < 3; ++c) free.push_back(Vec3::Unit(c));
+  else if (!scene.wall.distance)
+    for (int c = 0; c < 2; ++c) free.emplace_back(scene.wall.planes().front().axes().row(c).transpose());
+  return free;
+}
+
+}  // namespace
+
+std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
+  if (!scene.wall.solid && scene.posts.empty()) return {};
+  const stokes::PeriodicCell cell = *scene.domain.cell();
+  const stokes::AmbientFlow flow(scene.flow);
+  std::vector<Solids::Solid> all = plates(scene, cell, flow);
+  for (const Post& post : scene.posts) {
+    const Vec3 period = period_of(post, cell);
+    const Vec3 center = post.center - cell.shift(post.center);
+    all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
+                   coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
+  }
+  return coupling::SolidScene{std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
+                              scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(),
+                              scene.flow.pressure_gradient.value_or(Vec3::Zero()), scene.quadrature};
+}
+
+void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {
+  for (const Member& member : members)
+    if (!solids.solids->outside(member.body->initial)) throw UserError(member.spoken() + " crosses a post at the start: give it another center.");
+}
+
+std::string solids_line(const Scene& scene, int ranks) {
+  const stokes::PeriodicCell cell = *scene.domain.cell();
+  double points = 0;
+  std::string line;
+  if (scene.wall.solid) {
+    const auto [first, second] = scene.wall.elements(cell, scene.least_radius());
+    const int plates = scene.wall.distance ? 2 : 1;
+    points += plates * first * second;
+    line = formatted("%d plate%s of %d x %d elements", plates, plates > 1 ? "s" : "", first, second);
+  }
+  for (const Post& post : scene.posts) {
+    const int along = elements_along(post, period_of(post, cell));
+    points += post.around * along;
+    line += (line.empty() ? "" : ", ") + formatted("a post of %d x %d elements", post.around, along);
+  }
+  line += formatted(": %.0f unknowns of their traction, ", 3 * points);
+  if (scene.posts.empty()) return line + "inverted once by Fourier series";
+  return line + formatted("factored once: %.1f MB on each of %d rank%s", 72e-6 * points * points, ranks, ranks > 1 ? "s" : "");
+}
+
+void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
+  constexpr const char *walls = "; with walls in a Domain", *posts = "; with posts", *both = "; with two walls or posts in a Domain";
+  if (to.when(scene.wall.solid)) {
+    to.add(wall_force, "x1 x2 x3", {"wall_force_", "force", "force of the fluid on one period of the wall, component #. A uniform pressure is left "
+           "out: between two walls it is chosen so that the fluid presses on both alike", {}, walls});
+    if (to.when(scene.wall.distance.has_value()))
+      to.add(second_wall_force, "x1 x2 x3", {"second_wall_force_", "force", "force of the fluid on one period of the second wall, component #", {},
+             walls});
+  }
+  const auto add_force = [&](const std::string& name, const Vec3& force) {
+    const std::string prefix = name.empty() ? "" : name + "/";
+    to.add(force, "x1 x2 x3", {prefix + "post_force_", "force", "force of the fluid on one period of the post, component #", {}, posts});
+  };
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) add_force(scene.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
+  if (scene.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
+  if (!to.when(scene.wall.distance.has_value() || !scene.posts.empty())) return;
+  to.add(mean_velocity, "x1 x2 x3", {"mean_velocity_", "length/time", "mean velocity over the cell between the walls, or over the whole cell, "
+         "particles and posts included: flow rate per area of the cross-section, component #", {}, both});
+  if (to.when(scene.flow.pressure_gradient.has_value()))
+    to.add(permeability, {"permeability", "length^2", "mu times the mean velocity against the pressure gradient, per pressure gradient", {}, both});
+}
+
+SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const Solids::Flow& flow, const Vec3& particle_force, const Vec3& carried) {
+  const stokes::AmbientFlow ambient(scene.flow);
+  const Solids& solids = *of.solids;
+  const Vec3 gradient = scene.flow.pressure_gradient.value_or(Vec3::Zero());
+  std::vector<Vec3> forces = solids.forces(flow.force);
+  SolidsRow row;
+  double volume = solids.cell().volume();
+  if (of.planes.empty()) {
+    row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
+  } else {
+    const Vec3& n = of.planes.front().normal();
+    Vec3 across = particle_force;  // force on the fluid along the normal
+    for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
+    const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
+    const auto on_wall = [&](std::size_t k) -> Vec3 {
+      const stokes::PlaneWall& wall = of.planes[k];
+      return scene.flow.viscosity * volume * (ambient.gradient(wall.point()) * wall.normal()) - (forces[k] - n.dot(forces[k]) * n) + each;
+    };
+    row.wall_force = on_wall(0);
+    if (of.planes.size() > 1) {
+      row.second_wall_force = on_wall(1);
+      const double distance = *scene.wall.distance;
+      volume *= distance;
+      const quadrature::GaussRule& rule = quadrature::gauss(2);
+      for (int q = 0; q < 2; ++q)
+        row.mean_velocity += rule.weights[q] * ambient.velocity(of.planes[0].point() + rule.nodes[q] * distance * n);
+      row.mean_velocity += carried / volume;
+    }
+  }
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the fluid in the post, which the pressure gradient drives along it
+    const Post& post = scene.posts[k];
+    const Vec3 along = Vec3::Unit(post.axis);
+    const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];
+    row.post_forces.push_back(-forces[of.planes.size() + k] + slope * section * length * along);
+    row.mean_velocity += slope * section * post.radius * post.radius / (8 * scene.flow.viscosity) * length / volume * along;
+  }
+  if (gradient.norm() > 0) row.permeability = -scene.flow.viscosity * row.mean_velocity.dot(gradient) / gradient.squaredNorm();
+  return row;
+}
+
+}  // namespace tanktread

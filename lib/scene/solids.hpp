@@ -1,0 +1,40 @@
+#pragma once
+// Plates and posts of a scene: their surfaces, and their data in the results.
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/columns.hpp"
+#include "base/timing.hpp"
+#include "scene/member.hpp"
+#include "scene/scene.hpp"
+#include "system/solids/solid_response.hpp"
+
+namespace tanktread {
+
+/// Returns the plates and posts of a scene with factored operators; none if there are none. Collective.
+std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases);
+
+/// Throws UserError if a particle crosses a post at the start.
+void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members);
+
+/// Returns the line of the plan that describes the plates and posts.
+std::string solids_line(const Scene& scene, int ranks);
+
+/// Data of plates and posts in one row.
+struct SolidsRow {
+  Vec3 wall_force = Vec3::Zero(), second_wall_force = Vec3::Zero();  ///< forces of the fluid on the plates
+  std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
+  Vec3 mean_velocity = Vec3::Zero();  ///< mean velocity over the cell, particles and posts included
+  double permeability = 0;
+  void add_columns(const Scene& scene, Columns& to) const;
+};
+
+/// Returns the row for a flow of the solids. `particle_force`: force of the particles on the fluid. `carried`: integral over the cell of the velocity
+/// that solids and particles add to the ambient flow (SolidResponse::carried), only between two plates.
+SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const coupling::Solids::Flow& flow, const Vec3& particle_force,
+                     const Vec3& carried);
+
+}  // namespace tanktread

@@ -1,0 +1,50 @@
+#pragma once
+// Cubic splines in one variable, and surfaces that are tensor products of two of them.
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/types.hpp"
+#include "spline/space.hpp"
+
+namespace tanktread::surface {
+
+/// Cubic splines in one variable: pieces with four functions each, and collocation points, each with all pieces that contain it.
+struct Line {
+  struct Piece {
+    std::array<int, 4> functions;
+    Eigen::Matrix4d extraction;  ///< row: function; column: Bernstein polynomial
+  };
+  int n = 0;
+  std::vector<Piece> pieces;
+  std::vector<std::vector<std::pair<int, double>>> sites;
+
+  /// Adds a site at u, given the knots of the pieces from `first` on.
+  void add_site(double u, const std::vector<double>& knots, int first, bool closed);
+};
+
+/// Adds the splines on these knots to a line. Closed: function i has its middle knot at knots[i]. Open: end knots have multiplicity four. If
+/// `inwards`, the sites at the ends are moved halfway to their neighbours.
+void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards);
+
+/// Splines over one period that a density uses. The geometry has the open splines of `open`, whose collocation points are those of the periodic
+/// splines. Control values of the density on `open` are `open_from_periodic` times its control values, one per periodic spline.
+struct RepeatingLine {
+  Line open;
+  Eigen::MatrixXd open_from_periodic;
+  std::vector<double> middles;  ///< middle of each periodic element, as a parameter of the piece with the same index
+};
+
+/// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all inside. The seam cuts the last of
+/// their elements in two; piece 0 of `open` is its second part.
+RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
+
+/// Returns the collocation points of a product, those of the second line running fastest.
+std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around);
+
+/// Returns the space of products of two lines: s runs along the first one, t along the second one. Control point i n + k belongs to function i of the
+/// first and function k of the second line, which has n functions.
+spline::Space product(const Line& along, const Line& around);
+
+}  // namespace tanktread::surface

@@ -1,0 +1,42 @@
+#pragma once
+// Inverse of the single layer of plates with equal elements, by Fourier series.
+
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "base/types.hpp"
+
+namespace tanktread::coupling {
+
+/// Operator between plates that have the same grid of n1 x n2 equal elements over one period. It does not change if all indices are shifted, so that
+/// for each pair of wave numbers it is a matrix of three rows and columns per plate (block circulant):
+///
+///   u_s = sum_c g(c - s) f_c,   M(k) = sum_d g(d) exp(i k.d),   u^(k) = M(k) f^(k)                                         (2.50)
+///
+/// Only the rows of one collocation point per plate are assembled.
+class PlateFactors {
+ public:
+  /// `rows`: three rows per plate, for the collocation point with indices `point`, and 3 N columns, where N is the number of points of all plates;
+  /// point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added for k = 0, so that uniform densities have an inverse.
+  PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>& grid, const std::array<int, 2>& point, const Eigen::MatrixXd& regular);
+
+  /// Returns the solution for the velocities u of k != 0, and as row p of `uniform` the mean velocity of plate p, for which f must be added by the
+  /// caller.
+  Net solve(const Net& u, Net& uniform) const;
+
+  /// Returns M(0) + `regular`.
+  const Eigen::MatrixXd& uniform() const { return uniform_; }
+
+ private:
+  using Complex = Eigen::MatrixXcd;
+  Complex transformed(const Net& u) const;
+
+  std::array<int, 2> grid_;
+  int plates_;
+  std::array<Complex, 2> waves_;  // exp(-2 pi i k s/n) along both directions
+  std::vector<Complex> inverse_;  // of M(k), at k1 n2 + k2
+  Eigen::MatrixXd uniform_;
+};
+
+}  // namespace tanktread::coupling

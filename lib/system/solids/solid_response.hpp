@@ -1,0 +1,100 @@
+#pragma once
+// Response of fixed solids to particles between them. The force of the solids on the fluid is eliminated.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/types.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "stokes/layer.hpp"
+#include "stokes/medium/plane_wall.hpp"
+#include "system/solids/solids.hpp"
+
+namespace tanktread::coupling {
+
+/// Surroundings of the particles in a lattice with solids.
+struct SolidScene {
+  std::shared_ptr<Solids> solids;
+  std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
+  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure, force/length^3; between plates part of the ambient flow
+  quadrature::Options quadrature;
+};
+
+/// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
+Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
+
+/// Returns the integral (2.49) over the cell of the velocity of a flow of the solids.
+Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
+
+/// Velocity that solids add to the ambient flow v_inf and to the layers of the particles:
+///
+///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
+///
+/// where V is their velocity. f and U are the solution of (2.46), where F makes the forces on the fluid balance the pressure gradient g of a cell of
+/// volume |C|: F = |C| g + int df dG. The layers of the particles include all images. `empty` is the part of the solution without particles, and
+/// `respond` the part that is linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
+class SolidResponse {
+ public:
+  /// `space`: of all particles. `flow`: ambient flow. References must outlive this object.
+  SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
+
+  /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
+  void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
+
+  /// Sets 1 - lambda of the particle of each control point, and -1 for a rigid body.
+  void set_contrasts(const Eigen::VectorXd& contrasts);
+
+  /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
+  /// that this rank computes.
+  void place(const Net& x, const Net& at, std::span<const int> own);
+
+  /// Returns the solution without particles.
+  const Solids::Flow& empty();
+
+  /// Returns the part of the solution that the load f and the velocity v cause. Empty nets are skipped.
+  Solids::Flow respond(const Net& f, const Net& v);
+
+  /// Computes rows `own` of the velocity u at the points `at` of `place`. Not collective.
+  void velocities(const Solids::Flow& flow, Net& u);
+
+  /// Computes rows of the velocity u at any points in the fluid. Not collective.
+  void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
+
+  /// Returns the integral over the cell of the velocity that a flow of the solids, a load and a velocity cause. With three periods it is the volume
+  /// times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along them. By the reciprocal theorem,
+  /// with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
+  ///
+  ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) - int_C (1 - lambda) v.sigma_i n dG                         (2.49)
+  Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
+
+  /// Returns the force of the particles on the fluid for a load f.
+  Vec3 force(const Net& f) const { return -f.transpose() * areas_; }
+
+  /// Returns whether these points are in the fluid, in front of plates and outside of posts.
+  bool inside(const Net& at) const { return stokes::in_front(scene_.planes, at) && scene_.solids->outside(at); }
+
+  const SolidScene& scene() const { return scene_; }
+  stokes::Evaluations evaluations() const;
+
+ private:
+  Net nearest_values(const Net& v) const;
+  void find_nearest();
+
+  SolidScene scene_;
+  const spline::Space& space_;
+  const stokes::AmbientFlow& flow_;
+  Eigen::SparseMatrix<double> collocation_;
+  stokes::Layer single_;
+  std::optional<stokes::Layer> double_;  // set if any contrast is not 0
+  stokes::Measure measure_ = stokes::Measure::reference;
+  Eigen::VectorXd contrasts_;
+  Net shape_, at_;
+  std::vector<int> own_;
+  std::vector<int> nearest_;  // nearest collocation point of the particles for each one of the solids
+  std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
+  Eigen::VectorXd areas_;  // int N_A dG of the measure of loads
+  std::optional<Solids::Flow> empty_;
+};
+
+}  // namespace tanktread::coupling

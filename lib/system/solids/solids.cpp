@@ -1,0 +1,205 @@
+#include "system/solids/solids.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "surface/geometry.hpp"
+#include "system/collocation.hpp"
+
+namespace tanktread::coupling {
+
+namespace {
+
+/// Returns options with a smaller tolerance, for the matrix of the solids on themselves. This matrix is assembled only once.
+quadrature::Options for_assembly(quadrature::Options options) {
+  options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
+  return options;
+}
+
+surface::SolidSurface all_of(const std::vector<Solids::Solid>& solids) {
+  std::vector<surface::SolidSurface> surfaces;
+  for (const Solids::Solid& one : solids) surfaces.push_back(one.surface);
+  return stacked(surfaces);
+}
+
+/// Returns the range of the coordinates of points in the axes of a cell.
+std::array<Vec3, 2> range(const stokes::PeriodicCell& cell, const Net& x) {
+  std::array<Vec3, 2> extent{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const Vec3 s = cell.coordinates(x.row(i).transpose());
+    extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+  }
+  return extent;
+}
+
+}  // namespace
+
+Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
+               const quadrature::Options& quadrature, Phases& phases)
+    : surface_(all_of(solids)),
+      cell_(cell),
+      free_(free),
+      viscosity_(viscosity),
+      quadrature_(quadrature),
+      sites_(surface_.n_points(), 3),
+      velocities_(surface_.n_points(), 3),
+      first_{0},
+      normals_(surface_.n_points(), 3) {
+  const auto clock = phases.time("wall assembly");
+  ranks_.measure(phases);
+  own_ = ranks_.divide_in_order(surface::Symmetry(surface_.n_points()));
+  for (int i = 0; i < surface_.n_points(); ++i) {
+    const surface::Point at = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front());
+    sites_.row(i) = at.x.transpose(), normals_.row(i) = at.n.transpose();
+  }
+  for (const Solid& one : solids) {
+    velocities_.middleRows(first_.back(), one.surface.n_points()).rowwise() = one.velocity.transpose();
+    first_.push_back(first_.back() + one.surface.n_points());
+    if (one.rod) rods_.push_back(*one.rod);
+  }
+  areas_ = moments([](const Vec3&) { return 1.; });
+  flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
+  reached_ = range(cell_, surface_.net);
+  if (solids.size() == 1 && cell_.n() == 2) {  // a single plate has no extent
+    const double period = cell_.vectors().col(0).norm();
+    reached_[0][2] -= period, reached_[1][2] += period;
+  }
+  make_layer();
+  stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, for_assembly(quadrature));
+  on_itself.repeat(cell_, {.assembled = true, .across = reached_});
+  on_itself.place(surface_.net);
+  const bool only_plates = std::ranges::all_of(solids, [&](const Solid& one) {
+    return one.surface.grid[0] > 0 && one.surface.grid == solids.front().surface.grid;
+  });
+  if (only_plates) {
+    const auto [n1, n2] = solids.front().surface.grid;
+    std::vector<int> middle;  // points far from the seam
+    for (std::size_t s = 0; s + 1 < first_.size(); ++s) middle.push_back(first_[s] + n1 / 2 * n2 + n2 / 2);
+    Eigen::MatrixXd regular = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(middle.size()), 3 * static_cast<Eigen::Index>(middle.size()));
+    for (std::size_t s = 0; s < middle.size(); ++s) {
+      const Vec3 n = normals_.row(middle[s]).transpose();
+      const auto at = 3 * static_cast<Eigen::Index>(s);
+      regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell_.volume())) * n * n.transpose();
+    }
+    plates_.emplace(rows(on_itself, middle), solids.front().surface.grid, std::array{n1 / 2, n2 / 2}, regular);
+  }
+  factor(on_itself);
+  evaluations_ += on_itself.evaluations();
+}
+
+void Solids::make_layer() {
+  if (layer_) evaluations_ += layer_->evaluations();
+  layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), quadrature_);
+  layer_->repeat(cell_, {.across = reached_});
+  layer_->place(surface_.net);
+}
+
+void Solids::reach(const Net& x) {
+  if (cell_.n() == 3) return;
+  const auto [low, high] = range(cell_, x);
+  if (low[2] >= reached_[0][2] && high[2] <= reached_[1][2]) return;
+  const double more = (high[2] - low[2]) / 2;
+  reached_[0][2] = std::min(reached_[0][2], low[2] - more), reached_[1][2] = std::max(reached_[1][2], high[2] + more);
+  make_layer();
+}
+
+bool Solids::outside(const Net& at) const {
+  const std::vector<Vec3> images = rods_.empty() ? std::vector<Vec3>() : cell_.around({1, 1, 1});
+  for (const Rod& rod : rods_)
+    for (Eigen::Index i = 0; i < at.rows(); ++i) {
+      const Vec3 apart = at.row(i).transpose() - rod.point, near = apart - cell_.shift(apart);
+      for (const Vec3& image : images)
+        if ((near - image).cross(rod.axis).norm() <= rod.radius) return false;
+    }
+  return true;
+}
+
+/// Returns the rows of the single layer on densities at these sites, three per site.
+Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
+  stokes::Rows<double> all;
+  on_itself.assemble(sites, all);
+  on_itself.assemble_rest(sites, all);
+  Eigen::MatrixXd found(all.rows(), sites_.size());
+  for (Eigen::Index r = 0; r < all.rows(); ++r) {
+    const Net periodic = surface_.open_from_periodic.transpose() * Eigen::Map<const Net>(all.row(r).data(), surface_.space.n_points, 3);
+    found.row(r) = Eigen::Map<const Eigen::RowVectorXd>(periodic.data(), periodic.size());
+  }
+  return found;
+}
+
+/// Factors the matrix of (2.46) for the viscosity 1, on every rank. Between plates it is the part for uniform densities.
+void Solids::factor(stokes::Layer& on_itself) {
+  constexpr std::size_t at_a_time = 240;
+  const auto m = static_cast<Eigen::Index>(free_.size()), solids = static_cast<Eigen::Index>(first_.size()) - 1;
+  const Eigen::Index n = plates_ ? 3 * solids : sites_.size();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + m, n + m);
+  if (plates_) {
+    all.topLeftCorner(n, n) = plates_->uniform();
+  } else {
+    all = ranks_.assembled<Eigen::MatrixXd>(n + m, n + m, [&](Eigen::MatrixXd& a) {
+      for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
+        const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+        const Eigen::MatrixXd part = rows(on_itself, some);
+        for (std::size_t k = 0; k < some.size(); ++k) a.block(3 * some[k], 0, 3, n) = part.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+      }
+    });
+    for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
+      const Eigen::Index first = 3 * first_[s], length = 3 * first_[s + 1] - first;
+      const Eigen::Map<const Eigen::VectorXd> w(normals_.data() + first, length), b(flux_.data() + first, length);
+      const double area = areas_.segment(first_[s], first_[s + 1] - first_[s]).sum();
+      all.block(first, first, length, length) += std::sqrt(area) / b.dot(w) * w * b.transpose();
+    }
+  }
+  for (Eigen::Index k = 0; k < m; ++k)
+    for (Eigen::Index i = 0; i < n / 3; ++i) {
+      all.col(n + k).segment<3>(3 * i) = free_[static_cast<std::size_t>(k)];
+      all.row(n + k).segment<3>(3 * i) = (plates_ ? cell_.volume() : areas_[i]) * free_[static_cast<std::size_t>(k)].transpose();
+    }
+  factors_ = DenseFactors(all);
+}
+
+Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
+  const auto m = static_cast<Eigen::Index>(free_.size());
+  Net given = u, f;
+  if (plates_) f = plates_->solve(u, given);
+  const Eigen::Index n = given.size();
+  Eigen::VectorXd right(n + m);
+  right.head(n) = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
+  for (Eigen::Index k = 0; k < m; ++k) right[n + k] = free_[static_cast<std::size_t>(k)].dot(force) / viscosity_;
+  const Eigen::VectorXd solution = factors_.solve(right);
+  const Eigen::Map<const Net> found(solution.data(), n / 3, 3);
+  if (plates_)
+    for (std::size_t s = 0; s + 1 < first_.size(); ++s)
+      f.middleRows(first_[s], first_[s + 1] - first_[s]).rowwise() += found.row(static_cast<Eigen::Index>(s));
+  else
+    f = found;
+  Flow flow{viscosity_ * f};
+  for (Eigen::Index k = 0; k < m; ++k) flow.drift += solution[n + k] * free_[static_cast<std::size_t>(k)];
+  return flow;
+}
+
+void Solids::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
+  layer_->apply(on_space(flow.force), at, rows, u, kept);
+  for (const int i : rows) u.row(i) = u.row(i) / viscosity_ + flow.drift.transpose();
+}
+
+Eigen::VectorXd Solids::moments(const std::function<double(const Vec3& x)>& function) const {
+  const BetweenSites between = between_sites(surface_.space, surface_.net);
+  const Net at = between.values * surface_.net;
+  Eigen::VectorXd values(at.rows());
+  for (Eigen::Index i = 0; i < at.rows(); ++i) values[i] = function(at.row(i).transpose());
+  return surface_.open_from_periodic.transpose() * (between.weights * values);
+}
+
+std::vector<Vec3> Solids::forces(const Net& f) const {
+  std::vector<Vec3> all;
+  for (std::size_t s = 0; s + 1 < first_.size(); ++s) {
+    const auto rows = [&](const auto& of) { return of.middleRows(first_[s], first_[s + 1] - first_[s]); };
+    all.push_back((rows(f).transpose() * rows(areas_)).eval());
+  }
+  return all;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,119 @@
+#pragma once
+// Solids with a prescribed velocity that repeat on a lattice: plates and posts.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/dense_factors.hpp"
+#include "base/timing.hpp"
+#include "base/types.hpp"
+#include "quadrature/options.hpp"
+#include "stokes/layer.hpp"
+#include "surface/solid_surface.hpp"
+#include "system/ranks.hpp"
+#include "system/solids/plate_factors.hpp"
+
+namespace tanktread::coupling {
+
+/// Fixed cylinder in a cell: a point on its axis, the direction of the axis, and its radius.
+struct Rod {
+  Vec3 point, axis;
+  double radius;
+};
+
+/// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid, and U is a uniform
+/// velocity:
+///
+///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 of every solid s      (2.46)
+///
+/// The last condition fixes the multiple of n that produces no velocity. U is free if only a balance of forces determines it: with three periods,
+/// where the mean velocity follows from the pressure gradient, and along a single plate, on the other side of which the fluid is unbounded. Otherwise
+/// there is no free direction, and U = 0.
+///
+/// Control values of f are those of periodic splines, one per collocation point. If all solids are plates, the operator is inverted by Fourier series
+/// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
+/// collective.
+class Solids {
+ public:
+  /// A part of the solids with its own null vector. `velocity`: its velocity, along itself.
+  struct Solid {
+    surface::SolidSurface surface;
+    Vec3 velocity = Vec3::Zero();
+    std::optional<Rod> rod;  ///< the cylinder, if it is one
+  };
+
+  /// `free`: unit vectors along which U is free. References need not outlive this object.
+  Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
+         const quadrature::Options& quadrature, Phases& phases);
+
+  /// Force density and uniform velocity of (2.46).
+  struct Flow {
+    Net force;  ///< control values of f
+    Vec3 drift = Vec3::Zero();
+
+    Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
+  };
+
+  /// Makes velocity_at accurate at these points, which may be far from a single plate. Must be called before velocity_at and `layer`. Collective.
+  void reach(const Net& x);
+
+  /// Returns whether points are outside of all cylinders.
+  bool outside(const Net& at) const;
+
+  /// Returns the solution for the velocity u at the collocation points and the force F.
+  Flow solve(const Net& u, const Vec3& force) const;
+
+  /// Computes rows `rows` of the velocity of a flow at points off the solids. Not collective. `kept`: layer().near(at, rows), or null.
+  void velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept = nullptr);
+
+  std::vector<Vec3> forces(const Net& f) const;  ///< returns int f dG of each solid
+
+  /// Returns the power of a force density at the prescribed velocities.
+  double power(const Net& f) const { return f.cwiseProduct(areas_.asDiagonal() * velocities_).sum(); }
+
+  /// Returns the weights of a force density in the integral of its product with a function of the position.
+  Eigen::VectorXd moments(const std::function<double(const Vec3& x)>& function) const;
+
+  const Net& sites() const { return sites_; }            ///< collocation points
+  const std::vector<int>& own() const { return own_; }   ///< rank-owned collocation points
+  const Net& velocities() const { return velocities_; }  ///< prescribed velocity at the collocation points
+  const stokes::PeriodicCell& cell() const { return cell_; }
+  const std::vector<Vec3>& free() const { return free_; }
+  double viscosity() const { return viscosity_; }
+  const Ranks& ranks() const { return ranks_; }
+  stokes::Layer& layer() { return *layer_; }
+  Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values on the space of the layer
+  const surface::SolidSurface& surface() const { return surface_; }
+  const std::array<Vec3, 2>& across() const { return reached_; }  ///< lowest and highest coordinates of solids and targets, in the axes of the cell
+  stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
+
+ private:
+  void factor(stokes::Layer& on_itself);
+  Eigen::MatrixXd rows(stokes::Layer& on_itself, std::span<const int> sites) const;
+  void make_layer();
+
+  surface::SolidSurface surface_;
+  stokes::PeriodicCell cell_;
+  std::vector<Vec3> free_;
+  double viscosity_;
+  Ranks ranks_;
+  std::vector<int> own_;
+  quadrature::Options quadrature_;
+  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets, in the axes of the cell
+  std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
+  Net sites_, velocities_;
+  Eigen::VectorXd areas_;   // int N_A dG
+  std::vector<int> first_;  // first collocation point of each solid, and their number
+  Net normals_;                        // at the collocation points
+  Net flux_;                           // int N_A n dG
+  std::vector<Rod> rods_;
+  std::optional<PlateFactors> plates_;  // set if all solids are plates
+  DenseFactors factors_;                // of the whole operator, or between plates of its part for uniform densities
+  stokes::Evaluations evaluations_;     // of the assembly and of earlier layers
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,174 @@
+#!/usr/bin/python3
+# ranks: 2
+# Plates and posts in periodic cells: exact values, balances of forces and power, ranks and resume, and what a deck may not ask for.
+import math
+
+import numpy
+
+from harness import check, close, deck, main, refused, run, series
+
+SPHERE = """
+Tanktread:
+  Flow: {type: quiescent}
+  Domain: {periodic: x1 x2, side lengths: [16.0, 16.0, 1.0]}
+  Wall: {point: [0.0, 0.0, -2.0], normal: [0.0, 0.0, 1.0], distance: 4.0, elements per period: 24}
+  Particles: {sphere: {motion: prescribed, Surface: {elements per side: 6}}}
+  Quadrature: {tolerance: 1.0e-5}
+  Solvers: {rigid bodies: first kind}
+  Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
+"""
+
+CAPSULE = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.3, 0.0]}
+  Domain: {periodic: x1 x2, side lengths: [5.0, 4.0, 1.0]}
+  Wall: {point: [0.0, 0.0, -1.5], distance: 3.0, velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], elements per period: 10}
+  Particle: {radius: 0.8, center: [2.3, 0.1, 0.3], viscosity ratio: 2.0}
+  Membrane: {law: neo-Hookean, shear modulus: 5.0}
+  Surface: {elements per side: 4}
+  Output: {power balance: true, interval: 0.02}
+  Solvers: {tolerance: 1.0e-11}
+  Time: {scheme: bs3, fixed step: 0.01, final time: 0.04}
+"""
+
+POST = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
+  Domain: {side lengths: [1.0, 1.0, 0.5]}
+  Particle: {shape: cylinder, axis: x3, radius: 0.17841241161527712}
+  Surface: {azimuthal elements: 16, axial elements: 4}
+  Quadrature: {tolerance: 1.0e-6}
+"""
+
+
+def _first(name, text, *settings, names, ranks=1):
+    run(deck(text, f"{name}.yaml"), *[word for setting in settings for word in ("--set", setting)], "--output", name, "--overwrite", "--quiet", ranks=ranks)
+    return numpy.array([series(name, key)[0] for key in names])
+
+
+def a_sphere_midway_takes_the_force_and_torque_that_are_known():
+    """The exact Green's function of the slit and point sources."""
+    across = _first("across", SPHERE, "Particles/sphere/velocity=[0, 0, 1]", names=["sphere/drag_x3", "wall_force_x3", "second_wall_force_x3"])
+    close(across[0] / (-6 * math.pi), 2.789204, 5e-4, "drag across")
+    close(across[1] + across[2] + across[0], 0, 1e-6 * abs(across[0]), "sum of the forces across")
+    torque = _first("torque", SPHERE, "Particles/sphere/angular velocity=[0, 1, 0]", names=["sphere/torque_x2"])
+    close(torque[0] / (-8 * math.pi), 1.073027, 2e-4, "torque")
+    settings = ("Particles/sphere/motion=free", "Wall/velocity=[-1, 0, 0]", "Wall/second velocity=[1, 0, 0]")
+    spin, force, second = _first("couette", SPHERE, *settings, names=["sphere/angular_velocity_x2", "wall_force_x1", "second_wall_force_x1"])
+    close(2 * spin, 0.475800, 2e-4, "spin in Couette flow")
+    close(force + second, 0, 1e-5 * force, "sum of the forces along")
+    shear = _first("shear", SPHERE, "Particles/sphere/motion=free", "Flow/type=simple shear", "Flow/shear rate=0.5", names=["sphere/angular_velocity_x2"])
+    close(shear[0], spin, 1e-10, "spin with plates that move with the flow")
+
+
+def empty_plates_and_a_small_sphere_carry_poiseuilles_flow():
+    """Pressure gradient 0.5, distance 4: mean velocity 2/3, and no more than a sphere of the volume fraction 1e-4 takes from it."""
+    settings = ("Flow/pressure gradient=[-0.5, 0, 0]", "Particles/sphere/motion=free", "Particles/sphere/radius=0.3", "Wall/elements per period=8")
+    names = ["mean_velocity_x1", "wall_force_x1", "second_wall_force_x1", "sphere/velocity_x1", "permeability"]
+    mean, lower, upper, velocity, permeability = _first("poiseuille", SPHERE, *settings, names=names)
+    close(mean, 2 / 3, 1e-4, "mean velocity")
+    close(lower + upper, 0.5 * 4 * 256, 1e-6 * 512, "force on the plates")
+    close(velocity, 1, 0.01, "velocity of the sphere")
+    close(permeability, 2 * mean, 1e-12, "permeability")
+
+
+def a_capsule_does_the_same_on_two_ranks_and_resumed():
+    names = ["velocity_x1", "velocity_x3", "energy", "taylor_inertia", "gap", "wall_force_x1", "second_wall_force_x3", "mean_velocity_x2", "power_residual"]
+    run(deck(CAPSULE), "--output", "one", "--quiet")
+    run(deck(CAPSULE), "--output", "two", "--quiet", ranks=2)
+    run(deck(CAPSULE), "--set", "Time/final time=0.02", "--output", "half", "--quiet")
+    run(deck(CAPSULE), "--resume", "half", "--quiet")
+    for name in names:
+        for other in ("two", "half"):
+            off = abs(series("one", name) - series(other, name)).max() / max(1, abs(series("one", name)).max())
+            check(off < 1e-10, f"{name} of {other}: {off}")
+    check(abs(series("one", "power_residual")).max() < 5e-3, series("one", "power_residual"))
+    total = series("one", "wall_force_x1") + series("one", "second_wall_force_x1")
+    check(abs(total - 60).max() < 1e-4 * 60, f"the plates take {total}, the pressure gives 60")
+
+
+def the_place_along_plates_does_not_matter():
+    names = ["velocity_x1", "velocity_x3", "wall_force_x1", "mean_velocity_x1", "gap"]
+    here = _first("here", CAPSULE, names=names)
+    there = _first("there", CAPSULE, "Particle/center=[12.3, -7.9, 0.3]", names=names)
+    check(abs(here - there).max() < 1e-9, f"{here} and {there}")  # two periods farther, in both directions
+    shifted = _first("shifted", CAPSULE, "Particle/center=[2.05, 0.32, 0.3]", names=names)
+    check(abs(here - shifted).max() < 1e-3, f"{here} and {shifted}")  # other places between the elements of the plates
+
+
+def power_of_the_flow_is_that_of_its_rate_of_strain():
+    """In Couette flow the power that plates put in is that of the stresslet, S:E."""
+    text = CAPSULE.replace("velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], ", "").replace(", pressure gradient: [-1.0, 0.3, 0.0]", "")
+    run(deck(text.replace("quiescent", "simple shear")), "--output", "shear", "--quiet")
+    power, stresslet = series("shear", "flow_power"), series("shear", "stresslet_13")
+    check(abs(power - stresslet).max() < 2e-3 * abs(power).max(), f"{power} and {stresslet}")
+
+
+def a_single_plate_in_a_domain_is_the_image_plane_of_a_dilute_layer():
+    """Images of the wall and the periodic plate agree as the period grows."""
+    text = """
+Tanktread:
+  Flow: {type: simple shear}
+  Wall: {point: [0, 0, 0]}
+  Particle: {radius: 0.5, center: [0.0, 0.0, 0.9], motion: free}
+  Surface: {elements per side: 4}
+  Quadrature: {tolerance: 1.0e-5}
+  Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
+"""
+    alone = _first("alone", text, names=["velocity_x1", "angular_velocity_x2"])
+    layer = text.replace("  Wall: {point: [0, 0, 0]}", "  Wall: {point: [0, 0, 0], elements per period: 32}\n  Domain: {periodic: x1 x2, side lengths: [8, 8, 1]}")
+    layer = layer.replace("  Time:", "  Solvers: {rigid bodies: first kind}\n  Time:")
+    many = _first("layer", layer, names=["velocity_x1", "angular_velocity_x2"])
+    check(abs(many - alone).max() < 5e-3, f"{many} and {alone}")
+
+
+def posts_of_a_square_array_take_the_force_that_is_known():
+    """Sangani & Acrivos 1982: F/(mu U) = 24.83 per length at the area fraction 0.1, two meshes agree, and along its axis."""
+    names = ["permeability", "post_force_x1", "mean_velocity_x2"]
+    coarse = _first("coarse", POST, names=names)
+    fine = _first("fine", POST, "Surface/azimuthal elements=24", names=names)
+    close(fine[0] * 24.83, 1, 3e-4, "permeability")
+    close(coarse[0] / fine[0], 1, 3e-5, "coarse mesh")
+    close(fine[1], 0.5, 1e-9, "force")
+    close(fine[2], 0, 1e-9, "velocity across")
+    two = _first("two", POST, names=names, ranks=2)
+    check(abs(two - coarse).max() < 1e-10, f"{two} and {coarse}")
+    along = _first("along", POST, "Flow/pressure gradient=[0, 0, -1]", names=["permeability"])[0]
+    # Drummond & Tahir 1984, square array along its axis: (-ln c - 1.47634 + 2 c - c^2/2 + ...)/(4 c) a^2
+    c = 0.1
+    close(along, (-math.log(c) - 1.47634 + 2 * c - c * c / 2 - 0.0509713 * c**4) / (4 * c) * c / math.pi, 1e-4 * along, "permeability along")
+
+
+def posts_and_particles_balance_the_pressure_gradient():
+    text = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
+  Domain: {side lengths: [3.0, 3.0, 3.0]}
+  Particles:
+    post: {shape: cylinder, axis: x3, radius: 0.5, Surface: {azimuthal elements: 12}}
+    ball: {motion: free, radius: 0.4, center: [1.5, 0.2, 0.1], Surface: {elements per side: 4}}
+  Solvers: {rigid bodies: first kind}
+  Time: {scheme: bs3, fixed step: 1.0e-3, final time: 1.0e-3}
+"""
+    names = ["post/post_force_x1", "ball/velocity_x1", "mean_velocity_x1", "pressure_gradient_x1"]
+    force, velocity, mean, gradient = _first("ball", text, names=names)
+    close(force, 27, 1e-6 * 27, "force on the post")
+    check(0 < mean < velocity, f"mean velocity {mean}, of the ball {velocity}")
+    close(gradient, -1, 1e-12, "pressure gradient")
+
+
+def what_no_deck_may_ask_for():
+    refused(["Wall/distance", "Domain"], deck(SPHERE.replace("  Domain: {periodic: x1 x2, side lengths: [16.0, 16.0, 1.0]}\n", "")))
+    refused(["Wall and Domain", "normal"], deck(SPHERE.replace("x1 x2", "x1 x3").replace("16.0, 1.0]", "16.0, 16.0]")))
+    refused(["Wall/velocity", "along the wall"], deck(SPHERE), "--set", "Wall/velocity=[0, 0, 1]")
+    refused(["Flow/pressure gradient", "along the walls"], deck(SPHERE), "--set", "Flow/pressure gradient=[0, 0, 1]")
+    refused(["Particles/sphere crosses the wall"], deck(SPHERE), "--set", "Particles/sphere/radius=2.1")
+    refused(["Wall/second velocity", "Wall/distance"], deck(SPHERE.replace("distance: 4.0, ", "")), "--set", "Wall/second velocity=[1, 0, 0]")
+    refused(["cylinder", "Domain"], deck(POST.replace("  Domain: {side lengths: [1.0, 1.0, 0.5]}\n", "")))
+    refused(["Particle/axis", "x1, x2 or x3"], deck(POST.replace("axis: x3, ", "")))
+    refused(["touches its own image"], deck(POST), "--set", "Particle/radius=0.5")
+    refused(["Flow/pressure gradient", "posts"], deck(CAPSULE.replace("  Wall:", "  Ignored:").replace("  Ignored: {point: [0.0, 0.0, -1.5], distance: 3.0, velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], elements per period: 10}\n", "")))
+    refused(["Particle/velocity", "cylinder"], deck(POST), "--set", "Particle/velocity=[1, 0, 0]")
+
+
+main()
