@@ -108,7 +108,8 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), Chosen(scene.flow.choice(), "Flow/type"),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
-  to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()), {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"},
+  to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()),
+          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"},
           "Flow/history", "plates and posts are driven steadily");
   to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},

@@ -7,7 +7,7 @@
 
 namespace tanktread::coupling {
 
-/// Deforms the cell to this time (2.50). Returns whether it has changed. The cell of a duct is constant.
+/// Deforms the cell to this time (2.51). Returns whether it has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (tube_) {
     lattice_.cell = tube_->cell();

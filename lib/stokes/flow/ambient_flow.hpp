@@ -55,7 +55,7 @@ class AmbientFlow {
   /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.
   Mat3 cell_gradient() const { return affine() ? gradient(Vec3::Zero()) : Mat3(Mat3::Zero()); }
 
-  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.50).
+  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
   /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.

@@ -40,7 +40,7 @@ struct FlowHistory {
   /// Returns the flow at a time, in a step that began at `start`. At a jump this is the limit from before, unless the step starts there.
   Moment at(double time, double start) const;
 
-  /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.50). Exact up to
+  /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.51). Exact up to
   /// round-off. L in 1/time.
   Mat3 deformation(const Mat3& gradient, double time) const;
 
