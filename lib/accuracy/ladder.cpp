@@ -186,7 +186,10 @@ class Ladder {
   /// Publishes the finest finished level as the results, and returns the exit code.
   int conclude(Code code, const std::string& why) {
     if (coupling::decided([&] { return std::vector<double>{double(levels_.size())}; })[0] == 0) {
-      if (code == stopped) return stopped;
+      if (code == stopped) {
+        if (ranks_.rank() == 0) report(code, why, "");
+        return stopped;
+      }
       throw RunFailure("no level came to its end" + (failure_.empty() ? "" : ": " + failure_));
     }
     const auto outcome = coupling::decided([&] {

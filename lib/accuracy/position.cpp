@@ -17,50 +17,72 @@ namespace {
 
 using output::StoredSurface;
 
-/// Returns the values and the derivatives at x in [0, 1] of the Lagrange polynomials of the nodes k/p.
-std::array<Eigen::VectorXd, 2> lagrange(int p, double x) {
-  std::array<Eigen::VectorXd, 2> found{Eigen::VectorXd::Ones(p + 1), Eigen::VectorXd::Zero(p + 1)};
-  for (int k = 0; k <= p; ++k)
-    for (int i = 0; i <= p; ++i) {
-      if (i == k) continue;
-      const double step = static_cast<double>(k - i) / p, factor = (x - static_cast<double>(i) / p) / step;
-      found[1][k] = found[1][k] * factor + found[0][k] / step;
-      found[0][k] *= factor;
+constexpr int most_degree = 7;
+
+/// Values and derivatives at x in [0, 1] of the Lagrange polynomials of the nodes k/p.
+struct Lagrange {
+  std::array<double, most_degree + 1> value, slope;
+
+  Lagrange(int p, double x) {
+    for (int k = 0; k <= p; ++k) {
+      double product = 1, derivative = 0;
+      for (int i = 0; i <= p; ++i) {
+        if (i == k) continue;
+        const double step = static_cast<double>(k - i) / p, factor = (x - static_cast<double>(i) / p) / step;
+        derivative = derivative * factor + product / step;
+        product *= factor;
+      }
+      value[static_cast<std::size_t>(k)] = product, slope[static_cast<std::size_t>(k)] = derivative;
     }
-  return found;
+  }
+};
+
+/// Returns (i, j) of the nodes of a cell of degree p, see output::node_order.
+const std::vector<std::array<int, 2>>& order_of(int p) {
+  static std::array<std::vector<std::array<int, 2>>, most_degree + 1> orders;
+  auto& order = orders.at(static_cast<std::size_t>(p));
+  if (order.empty()) order = output::node_order(p);
+  return order;
 }
 
 /// Returns the position on a cell and its two derivatives.
 std::array<Vec3, 3> evaluated(const StoredSurface& surface, const std::vector<int>& cell, double s, double t) {
   const int p = static_cast<int>(std::lround(std::sqrt(static_cast<double>(cell.size())))) - 1;
-  const auto a = lagrange(p, s), b = lagrange(p, t);
-  static std::map<int, std::vector<std::array<int, 2>>> orders;
-  auto& order = orders[p];
-  if (order.empty()) order = output::node_order(p);
+  const Lagrange a(p, s), b(p, t);
+  const auto& order = order_of(p);
   std::array<Vec3, 3> found{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (std::size_t k = 0; k < cell.size(); ++k) {
-    const auto [i, j] = order[k];
+    const auto i = static_cast<std::size_t>(order[k][0]), j = static_cast<std::size_t>(order[k][1]);
     const Vec3 x = surface.points.row(cell[k]).transpose();
-    found[0] += a[0][i] * b[0][j] * x, found[1] += a[1][i] * b[0][j] * x, found[2] += a[0][i] * b[1][j] * x;
+    found[0] += a.value[i] * b.value[j] * x, found[1] += a.slope[i] * b.value[j] * x, found[2] += a.value[i] * b.slope[j] * x;
   }
   return found;
 }
 
-double distance_from_cell(const StoredSurface& surface, const std::vector<int>& cell, const Vec3& x) {
-  double s = 0.5, t = 0.5, least = std::numeric_limits<double>::infinity();
+/// Distance of a position from a cell. `inside`: the nearest point is not at the edge of the cell.
+struct FromCell {
+  double distance = std::numeric_limits<double>::infinity();
+  bool inside = false;
+};
+
+FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>& cell, const Vec3& x) {
+  FromCell found;
+  double s = 0.5, t = 0.5;
   for (int iteration = 0; iteration < 8; ++iteration) {
     const auto [y, along_s, along_t] = evaluated(surface, cell, s, t);
     const Vec3 off = x - y;
-    least = std::min(least, off.norm());
+    found.distance = std::min(found.distance, off.norm());
     Eigen::Matrix2d normal;
     normal << along_s.dot(along_s), along_s.dot(along_t), along_s.dot(along_t), along_t.dot(along_t);
     const Eigen::Vector2d step = normal.inverse() * Eigen::Vector2d(along_s.dot(off), along_t.dot(off));
     if (!step.allFinite()) break;
     const double new_s = std::clamp(s + step[0], 0., 1.), new_t = std::clamp(t + step[1], 0., 1.);
-    if (std::abs(new_s - s) + std::abs(new_t - t) < 1e-12) break;
+    found.inside = new_s == s + step[0] && new_t == t + step[1];
+    const double change = std::abs(new_s - s) + std::abs(new_t - t);
     s = new_s, t = new_t;
+    if (change < 1e-10) break;
   }
-  return least;
+  return found;
 }
 
 /// The nodes of a surface in cubes of space, for the search of the nearest one.
@@ -86,10 +108,14 @@ class Cubes {
             for (const int node : found->second)
               if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < least) least = off, nearest = node;
     if (nearest < 0) return std::numeric_limits<double>::quiet_NaN();
-    std::set<std::size_t> around;  // the cells at the nearest node, and their neighbours
-    for (const std::size_t c : cells_at(nearest))
+    std::set<std::size_t> around;  // neighbours of the cells at the nearest node
+    for (const std::size_t c : cells_at(nearest)) {
+      const FromCell found = distance_from_cell(surface_, surface_.cells[c], x);
+      least = std::min(least, found.distance);
+      if (found.inside) return least;
       for (const int node : surface_.cells[c]) around.insert(cells_at(node).begin(), cells_at(node).end());
-    for (const std::size_t c : around) least = std::min(least, distance_from_cell(surface_, surface_.cells[c], x));
+    }
+    for (const std::size_t c : around) least = std::min(least, distance_from_cell(surface_, surface_.cells[c], x).distance);
     return least;
   }
 

@@ -68,7 +68,7 @@ OWN = {
     "lattice": ("{Flow: {type: simple shear}, Domain: {side lengths: [3.0, 3.0, 3.0]}, " + CAPSULE.replace("2.0}", "1.0}")
                 + "}", ["relative_viscosity", "particle/taylor_inertia", "normal_stress_difference_1"]),
     "surfactant": ("{Flow: {type: simple shear}, Membrane: {law: surface tension, capillary number: 0.1}, "
-                   "Interface: {surfactant: {elasticity: 0.3, diffusivity: 0.1}}, Time: {final time: 1.0}, "
+                   "Interface: {surfactant: {elasticity number: 0.3, Peclet number: 5.0}}, Time: {final time: 1.0}, "
                    "Output: {interval: 0.05}}", [D, "largest_concentration", AREA]),
     "refined": ("{Flow: {type: planar hyperbolic}, Membrane: {law: Skalak, capillary number: 0.5}, Adaptation: "
                 "{enabled: true}, Time: {final time: 2.0}, Output: {interval: 0.1}}", [D, LENGTH, ENERGY]),
