@@ -168,8 +168,8 @@ void check_motion(const Scene& scene) {
 void check_power(const Scene& scene) {
   if (!scene.output.power_balance || !scene.name.empty()) return;
   const std::string word = "Output/power balance";
-  refuse(!scene.tube.present && !stokes::AmbientFlow(scene.flow).affine(), word, scene.flow.choice(),
-         "it is for flows of one gradient, and for tubes");
+  refuse(!scene.tube.present && !scene.wall.solid && !stokes::AmbientFlow(scene.flow).affine(), word, scene.flow.choice(),
+         "it is for flows of one gradient, for tubes and between plates");
   refuse(scene.alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
   refuse(scene.solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
 }
