@@ -23,7 +23,7 @@ class Evolution {
     scene.check();
     members_ = members(scene);
     arrange(members_);
-    capsule = tanktread::capsule(members_, body(), ranks_, phases_, nullptr);
+    capsule = tanktread::capsule(members_, body(), ranks_, phases_, nullptr, std::nullopt);
     scheme_ = motion::integrator(scene.time);
     state.x = body().initial;
     motion::begin(*capsule, state);
