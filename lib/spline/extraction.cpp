@@ -157,7 +157,7 @@ Space space(const TMesh& mesh, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const TileFunctions b = tile_functions(mesh);
   TileElements elements = laid_out(mesh, b, rule);
-  std::vector<int> count(b.tiling.tiles.size(), 0);  // number of functions on each tile
+  std::vector<int> count(b.tiling.tiles.size(), 0);  // number of functions on each mesh element
   for (const Contribution& c : b.entries) ++count[c.tile];
   std::vector<std::shared_ptr<Eigen::MatrixXd>> extraction(count.size());
   for (std::size_t t = 0; t < count.size(); ++t)

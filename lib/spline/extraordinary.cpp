@@ -105,7 +105,7 @@ struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };
 Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
-  std::array<Row, N> s0, s1, s2, s3;  // control points c0 .. c3 of the cubics along the spokes
+  std::array<Row, N> s0, s1, s2, s3;  // c0 .. c3 of the cubics along the mesh lines from the point
   for (int j = 0; j < N; ++j) {
     s0[j] = turned_row(bicubic.row(0), j);
     s1[j] = turned_row(bicubic.row(1), j);

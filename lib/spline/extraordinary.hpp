@@ -16,8 +16,9 @@ struct OneRing {
   static constexpr int P = 0, E = 1, F = 4, A = 7, B = 10, C = 13, D = 16;
 };
 
-/// Returns the bicubic Bezier points of face 0 by averaging, without any constraint at P (C0 across the spokes). Shape (16, 19). Row 4 v + u, with u
-/// along spoke 0 and v along spoke 1; one column per point of the ring. For face j, rotate the columns of every group by j.
+/// Returns the bicubic Bezier points of face 0 by averaging, without any constraint at the extraordinary point P (C0 across the spokes, the mesh
+/// lines from P). Shape (16, 19). Row 4 v + u, with u along spoke 0 and v along spoke 1; one column per point of the ring. For face j, rotate the
+/// columns of every group by j.
 Eigen::MatrixXd averaged_bicubic();
 
 /// Returns the bi-quartic Bezier points of face 0, row 5 v + u. Shape (25, 19). Rows sum to 1.

@@ -34,10 +34,10 @@ struct PolarAnchor {
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
-/// Returns the space. Control points: the pole behind, rows along the meridian with azimuth fastest, the pole ahead. Elements: s along the azimuth,
-/// t along the meridian towards the pole ahead; the pieces of the transform come last. With `plain`, a pole is a whole side of m elements, and its
-/// sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size
-/// in azimuth.
+/// Returns the space. Order of control points: the pole at the beginning of the meridian ("behind"), rows along the meridian with azimuth fastest,
+/// the pole at its end ("ahead"). Elements: s along the azimuth, t along the meridian towards the pole ahead; the pieces of the transform come
+/// last. With `plain`, a pole is a whole side of m elements, and its sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are
+/// fractions of the whole domain; the pieces of an element divide its size in azimuth.
 ///
 /// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions, d_j =
 /// (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then

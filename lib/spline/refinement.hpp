@@ -80,7 +80,7 @@ struct Coarsening {
   TMesh mesh;
   int bays = 0;       ///< number of bays removed
   int doublings = 0;  ///< number of times that the spacing around an extraordinary point was doubled
-  int repairs = 0;    ///< number of bays inserted after the removal to satisfy the rules again
+  int repairs = 0;    ///< number of line segments inserted after the removal to satisfy the rules again
 };
 
 /// Permission for an element of elements(mesh) to grow: `s` and `t` are the numbers of times that its width and its height may be doubled.

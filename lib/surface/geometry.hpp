@@ -40,7 +40,7 @@ struct Measures {
 /// direction between them is a semi-axis, and the computed direction is determined by round-off.
 bool distinct(double longer, double shorter, double volume);
 
-/// Semi-axes of the ellipsoid with the same second moments (6.1).
+/// Semi-axes of the ellipsoid with the same second moments (6.1) as the body.
 struct PrincipalAxes {
   Vec3 lengths = Vec3::Zero();     ///< lengths of the semi-axes in descending order
   Mat3 directions = Mat3::Zero();  ///< columns: unit vectors along the semi-axes; the first nonzero component of each is positive
