@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
+#include "record/citations.hpp"
 #include "record/files/file.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
@@ -39,7 +41,8 @@ enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in a
 struct Arguments {
   std::vector<std::string> decks, settings;
   std::string output, resume, new_deck;
-  bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false;
+  bool overwrite = false, check = false, reference = false, reference_series = false, schema = false, quiet = false, no_expect = false,
+       cite = false;
 };
 
 /// A kind of deck that `--new` prints.
@@ -110,6 +113,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--schema", arguments.schema, "print a JSON schema of decks, by which editors complete keys and show their meaning");
   app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
       ->check(CLI::IsMember(kinds_of_decks()), "");
+  app.add_flag("--cite", arguments.cite, "print what to cite for the features that the deck uses, or without a deck for all features, and stop");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
@@ -187,17 +191,19 @@ void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
       if (*name) *name = found(**name, {}, arguments);
 }
 
+/// Returns the text that these options ask for independently of a deck, or nothing if they ask for none.
+std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
+  if (arguments.reference) return "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" + deck::manual(Scene(registry));
+  if (arguments.reference_series) return series_manual(registry);
+  if (arguments.schema) return deck::schema(Scene(registry));
+  if (!arguments.new_deck.empty()) return new_deck(arguments.new_deck);
+  if (arguments.cite && arguments.decks.empty() && arguments.resume.empty()) return citations(nullptr, provenance().at("version"));
+  return std::nullopt;
+}
+
 int run(const Arguments& arguments, const Registry& registry, bool speaks) {
-  if (arguments.reference) {
-    if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene(registry));
-    return done;
-  }
-  if (arguments.reference_series) {
-    if (speaks) std::cout << series_manual(registry);
-    return done;
-  }
-  if (arguments.schema || !arguments.new_deck.empty()) {
-    if (speaks) std::cout << (arguments.schema ? deck::schema(Scene(registry)) : new_deck(arguments.new_deck));
+  if (const auto text = text_without_deck(arguments, registry)) {
+    if (speaks) std::cout << *text;
     return done;
   }
   const bool resume = !arguments.resume.empty();
@@ -222,6 +228,10 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   if (scene.domain.present) scene.domain.check(scene.flow, scene.tube.present ? scene.tube.list() : "");
   scene.particles = with_copies(scene.particles, scene.domain);
   scene.check();
+  if (arguments.cite) {
+    if (speaks) std::cout << citations(&scene, provenance().at("version"));
+    return done;
+  }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
@@ -278,7 +288,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
       return done;
     }
     const int code = run(arguments, registry, speaks);
-    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.schema ||
+    const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.schema ||
                         !arguments.new_deck.empty();  // a run is not listed, because a run writes its output to files
     if (speaks && prints) check_output();
     return code;
