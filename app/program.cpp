@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
@@ -22,6 +23,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
+#include "record/citations.hpp"
 #include "record/files/file.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
@@ -41,7 +43,7 @@ struct Arguments {
   std::vector<std::string> decks, settings, accuracy;
   std::string output, resume, new_deck;
   bool overwrite = false, check = false, reference = false, reference_series = false, rejections = false, schema = false, quiet = false;
-  bool no_expect = false;
+  bool no_expect = false, cite = false;
 };
 
 /// A kind of deck that `--new` prints.
@@ -117,6 +119,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--schema", arguments.schema, "print a JSON schema of decks, by which editors complete keys and show their meaning");
   app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
       ->check(CLI::IsMember(kinds_of_decks()), "");
+  app.add_flag("--cite", arguments.cite, "print what to cite for the features that the deck uses, or without a deck for all features, and stop");
   app.add_flag("--quiet", arguments.quiet, "no progress bar");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
@@ -261,21 +264,20 @@ std::string deck_of_run(const std::string& directory) {
   return ladder ? *ladder : stored_deck(directory);
 }
 
+/// Returns the text that these options ask for independently of a deck, or nothing if they ask for none.
+std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
+  if (arguments.reference) return "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" + deck::manual(Scene(registry));
+  if (arguments.reference_series) return series_manual(registry);
+  if (arguments.rejections) return "# Combinations that are rejected\n\nPrinted by `tanktread --rejections`.\n\n" + rejection_table(registry);
+  if (arguments.schema) return deck::schema(Scene(registry));
+  if (!arguments.new_deck.empty()) return new_deck(arguments.new_deck);
+  if (arguments.cite && arguments.decks.empty() && arguments.resume.empty()) return citations(nullptr, provenance().at("version"));
+  return std::nullopt;
+}
+
 int run(const Arguments& arguments, const Registry& registry, bool speaks) {
-  if (arguments.reference) {
-    if (speaks) std::cout << "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" << deck::manual(Scene(registry));
-    return done;
-  }
-  if (arguments.rejections) {
-    if (speaks) std::cout << "# Combinations that are rejected\n\nPrinted by `tanktread --rejections`.\n\n" << rejection_table(registry);
-    return done;
-  }
-  if (arguments.reference_series) {
-    if (speaks) std::cout << series_manual(registry);
-    return done;
-  }
-  if (arguments.schema || !arguments.new_deck.empty()) {
-    if (speaks) std::cout << (arguments.schema ? deck::schema(Scene(registry)) : new_deck(arguments.new_deck));
+  if (const auto text = text_without_deck(arguments, registry)) {
+    if (speaks) std::cout << *text;
     return done;
   }
   const bool resume = !arguments.resume.empty();
@@ -291,6 +293,10 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   deck::Document deck = deck::read(arguments.decks, settings, stored, arguments.no_expect ? "--no-expect" : "");
   prepare(deck, arguments, scene);
   if (resume) check_changes(stored, deck, before);
+  if (arguments.cite) {
+    if (speaks) std::cout << citations(&scene, provenance().at("version"));
+    return done;
+  }
   coupling::try_solvers(scene.solvers, scene.steady.present ? scene.steady.method : scene.time.nonlinear_solver);
   for (const std::string& sentence : check_expectations(scene))
     if (speaks) std::cerr << "tanktread: warning: " << sentence << std::endl;
@@ -341,7 +347,8 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
       return done;
     }
     const int code = run(arguments, registry, speaks);
-    const bool prints = arguments.check || arguments.reference || arguments.reference_series || arguments.rejections || arguments.schema ||
+    const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.rejections ||
+                        arguments.schema ||
                         !arguments.new_deck.empty();  // a run is not listed, because a run writes its output to files
     if (speaks && prints) check_output();
     return code;

@@ -108,10 +108,11 @@ struct InterfaceList {
 }  // namespace
 
 void ParticleKind::declare_lists(deck::Section& section) {
-  if (particle.rigid()) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
-  membrane_given = section.given("Membrane");
-  if (MembraneList list{*this}; !particle.rigid() || membrane_given) section.section("Membrane", list, "material of the particle's surface");
   surface.of_cylinder = particle.shape.shape == "cylinder";
+  const bool deforms = !particle.rigid() && !surface.of_cylinder;
+  if (!deforms) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
+  membrane_given = section.given("Membrane");
+  if (MembraneList list{*this}; deforms || membrane_given) section.section("Membrane", list, "material of the particle's surface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
               "the spline space is the file's");

@@ -31,7 +31,7 @@ from .results import Run, field_label, time_label
 from .runs import ENVIRONMENT, PROGRAM, SOURCE, Outcome, Study, deck_at, quoted, results_of, run, runs_of, text_of
 from .snapshots import DIMENSIONS, Snapshot
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 __all__ = ["DIMENSIONS", "ENVIRONMENT", "PROGRAM", "SOURCE", "Mistake", "Outcome", "Run", "Snapshot", "Study",
            "deck_at",
            "field_label", "node_order", "quoted", "results_of", "run", "runs_of", "text_of", "time_label"]

@@ -2,6 +2,7 @@
 # ranks: 2
 # The command line does what it promises: every option, every exit code, where results go and what is stored with them.
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -124,6 +125,30 @@ def a_resumed_run_may_change_its_end_but_not_its_mesh():
     run("--resume", "out", "--set", "Time/final time=0.07", "--quiet")
     check(summary("out")["final"]["time"] == 0.07, "not gone on")
     check("final time: 0.07" in _stored_deck("out"), "the stored deck is the old one")
+
+
+def cite_names_the_publications_of_the_features_a_deck_uses():
+    plain = run(deck(SMALL), "--cite").stdout
+    check("Comput. Methods Appl. Mech. Engrg. 326" in plain and plain.startswith("program: tanktread "), plain)
+    features = {"law Mooney-Rivlin": "Membrane/law=Mooney-Rivlin", "law Evans-Skalak": "Membrane/law=Evans-Skalak",
+                "lattice": "Domain/side lengths=[6, 6, 6]", "surface viscosity": "Membrane/shear viscosity=0.1"}
+    every = run("--cite").stdout
+    for feature, setting in features.items():
+        line = f"\n{feature}: "
+        check(line not in plain and line in every, f"{feature} without being used")
+        needed = {"law Mooney-Rivlin": "Membrane/neo-Hookean share=0.5", "surface viscosity": "Membrane/load measure=current"}
+        extra = ["--set", needed[feature]] if feature in needed else []
+        check(line in run(deck(SMALL), "--set", setting, *extra, "--cite").stdout, f"{feature} is not cited")
+    check(not pathlib.Path("results").exists(), "--cite has run the deck")
+    run(deck(SMALL), "--set", "Membrane/law=unknown", "--cite", code=2)
+
+
+def the_version_is_the_same_everywhere():
+    version = re.search(r"project\(tanktread VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+    places = {"CITATION.cff": r"^version: (\S+)", "postproc/tanktread/__init__.py": r'^__version__ = "(.*)"', "CHANGELOG.md": r"^## (\S+)"}
+    for name, pattern in places.items():
+        found = re.search(pattern, (SOURCE / name).read_text(), re.MULTILINE)[1]
+        check(found == version, f"{name} has version {found}, CMakeLists.txt {version}")
 
 
 def xml_decks_are_read():
