@@ -38,7 +38,7 @@ struct Task {
 /// and can be resumed.
 enum Code { met = 0, missed = 1, stopped = 4 };
 
-/// Name of the file in the directory of a ladder that holds its deck.
+/// Name of the deck file in the directory of a ladder (runs of one deck on finer and finer levels).
 constexpr const char* ladder_file = "ladder.yaml";
 
 /// Returns the deck of the ladder in a directory; nothing if the directory holds none. Collective.

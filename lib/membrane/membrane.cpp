@@ -19,7 +19,7 @@ constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
 
-/// Elements assigned to one caller, in packed form, with the unstressed surface at their Gauss points.
+/// Elements of one call of the packed kernels, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< material of each group: the materials of the surface, then area elasticities in groups of their own

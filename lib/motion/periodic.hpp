@@ -45,7 +45,7 @@ class ReturnMap {
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 
-  /// Returns P(x). Throws RunFailure if x does not return.
+  /// Returns P(x) (4.27), the shape at its next return. Throws RunFailure if the motion does not return.
   Net operator()(const Net& x);
   double period() const { return period_; }  ///< T of the latest return
 

@@ -42,7 +42,7 @@ struct SteadyReport {
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
 class SteadyEquations {
  public:
-  /// `step`: s. The motion must outlive this object.
+  /// `step`: the step s of (4.17). `dynamics` must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
   Net residual(const Net& x);                          ///< returns s G(x) of (4.17); not finite if the evaluation fails. Collective

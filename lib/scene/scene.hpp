@@ -49,7 +49,7 @@ struct ParticleOptions {
   double viscosity_ratio = 1;  ///< lambda
   Motion motion = Motion::deforming;
   std::optional<Vec3> velocity;          ///< velocity of the centre of a body with `prescribed` motion; zero if not set
-  std::optional<Vec3> angular_velocity;  ///< angular velocity of such a body about its centre; zero if not set
+  std::optional<Vec3> angular_velocity;  ///< angular velocity of a body with `prescribed` motion about its centre; zero if not set
   std::optional<Vec3> force, torque;     ///< force and torque on a `free` body; zero if not set
   std::optional<double> density_difference;  ///< inner minus outer density, for the body force of `Flow/gravity`; zero if not set
   std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre

@@ -34,11 +34,11 @@ struct TubeRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data of the tube for an evaluated shape of the particles. Collective.
+/// Returns what a row of the series records about the tube (pressure drop, gap) for the particle shapes of `e`. Collective.
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e);
 
-/// Returns the data of the tube for a rigid body, at the position set in the tube, with this force density on the fluid and this pressure drop.
-/// Collective.
+/// Returns what a row of the series records about the tube (pressure drop, gap) for a rigid body at the position last set in `tube`, from the force
+/// density on the fluid and the pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);
 
 /// Returns the smallest position of a particle's centroid in a row: x1, or in a channel the coordinate along the centre line.

@@ -257,7 +257,7 @@ class Layer {
   std::optional<Measure> measure_;                                 // area of the current weight_
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
-  std::vector<double> weight_;                                     // weights of the far nodes, including area and k
+  std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
   std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area
                                                                    // and factor k
   std::optional<TreeSum> tree_;                                    // set if clusters are faster

@@ -114,7 +114,7 @@ struct Moving {
   Net places, normals, velocities;
 };
 
-/// Returns the rigid motion W (4.14), about the mean of the control points, that the mesh of a drop shares.
+/// Returns the rigid motion W (4.14) of a drop, about the mean of its control points, with which its mesh moves.
 RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;

@@ -91,7 +91,7 @@ class ShapeCoordinates {
   Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
-  Net normals_;  // normals of drops at the sites of the projection
+  Net normals_;  // normals of drops at the sites where velocities are projected onto the splines
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
   Net state_;                           // state y relative to which add_fields() defines changes
   Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the field coefficients of a state, one column each

@@ -93,7 +93,7 @@ class SolidResponse {
   std::vector<int> own_;
   std::vector<int> nearest_;  // nearest collocation point of the particles for each one of the solids
   std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
-  Eigen::VectorXd areas_;  // int N_A dG of the measure of loads
+  Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<Solids::Flow> empty_;
 };
 

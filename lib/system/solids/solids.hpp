@@ -46,7 +46,7 @@ class Solids {
     std::optional<Rod> rod;  ///< the cylinder, if it is one
   };
 
-  /// `free`: unit vectors along which U is free. References need not outlive this object.
+  /// `free`: unit vectors along which the uniform velocity U of (2.46) is an unknown. The arguments need not outlive this object.
   Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
          const quadrature::Options& quadrature, Phases& phases);
 

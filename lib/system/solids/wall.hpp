@@ -84,8 +84,8 @@ class Wall {
   /// read. Collective.
   Net collocated(const Net& u) const;
 
-  /// Computes the rows of an operator for `solve`, three per collocation point of `sites`, from its rows at the targets. `assemble` fills the rows of
-  /// given targets. `collocate` combines them with the same weights with which `collocated` combines velocities.
+  /// Assembles an operator at the collocation points `sites`, three rows each, as the system of the wall needs it. `assemble` fills its rows at the
+  /// targets; the weights with which `collocated` combines velocities combine them into the rows of the collocation points.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
