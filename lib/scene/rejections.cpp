@@ -28,7 +28,8 @@ void reject_registered(const Scene& scene, Rejections& to) {
 void Scene::reject_power(Rejections& to) const {
   const bool asked = output.power_balance && name.empty();
   const std::string word = "Output/power balance";
-  to.pair(asked && !tube.present && !wall.solid && !stokes::AmbientFlow(flow).affine(), word, {flow.choice(), "Flow/type `parabolic`"},
+  to.pair(asked && flow.type != "duct" && !tube.present && !wall.solid && !stokes::AmbientFlow(flow).affine(), word,
+          {flow.choice(), "Flow/type `parabolic`"},
           "it is for flows of one gradient, for tubes and between plates");
   to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
   to.pair(asked && solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");

@@ -64,6 +64,14 @@ def axis_and_label_of_time_agree():
         close(lowest.lines[0].get_xdata()[-1], 0.2, 1e-12, f"end of the curve of {function.__name__}")
 
 
+def inclination_is_drawn_only_if_the_flow_has_no_axis_of_symmetry():
+    for name, flow in ("shear", "simple shear"), ("extension", "uniaxial extension"):
+        run(deck(DECK.replace("simple shear", flow)), "--output", name, "--quiet")
+    labels = [[axes.get_ylabel() for axes in figures.deformation(runs).axes] for runs in ("shear", "extension", ["shear", "extension"])]
+    both = ["Taylor parameter D", "inclination, degrees"]
+    check(labels == [both, both[:1], both], labels)
+
+
 def pictures_are_without_units():
     run(deck(DECK), "--output", "plain", "--quiet")
     micrometres = DECK.replace("simple shear", "simple shear, shear rate: 40, viscosity: 2.0e-2").replace("sphere", "sphere, radius: 3.0e-6")

@@ -25,8 +25,13 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
     for run in runs:
         if not run.several:
             run.require("taylor_inertia", "taylor_surface", "inclination")
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4 if len(runs) == 1 else 9.8, 6.4, sharex=True,
-                                          height_ratios=[3, 2])
+    inclined = any(has_inclination(run) for run in runs)
+    width = 6.4 if len(runs) == 1 else 9.8
+    if inclined:
+        figure, (upper, lower) = style.panels(axes, 2, 1, width, 6.4, sharex=True, height_ratios=[3, 2])
+    else:
+        figure, (upper,) = style.panels(axes, 1, 1, width, 4.2)
+        lower = None
     known: list = []
     for run, color in zip(runs, style.RUNS * len(runs)):
         found = literature.curves(run, curves)
@@ -44,10 +49,17 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
         upper.legend(loc="lower right")
     else:
         upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
-    lower.set_ylabel("inclination, degrees")
-    lower.set_xlabel(time_label(runs))
-    lower.set_xlim(left=0)
+    if inclined:
+        lower.set_ylabel("inclination, degrees")
+    bottom = lower if inclined else upper
+    bottom.set_xlabel(time_label(runs))
+    bottom.set_xlim(left=0)
     return figure
+
+
+def has_inclination(run):
+    """Returns False if the angle in the plane x1 x2 has no meaning, because the flow is symmetric about an axis."""
+    return run.value("Flow/type") != "uniaxial extension"
 
 
 def title(runs):
@@ -68,9 +80,10 @@ def draw_run(upper, lower, run, deformation, color):
     t = run.time
     upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
     style.draw_band(upper, run, deformation, color)
-    style.draw_band(lower, run, "inclination", color)
-    lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
-    for axes, name in (upper, deformation), (lower, "inclination"):
+    if lower:
+        style.draw_band(lower, run, "inclination", color)
+        lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
+    for axes, name in [(upper, deformation)] + ([(lower, "inclination")] if lower else []):
         expected = run.value(f"Expect/{name}")
         if expected:
             at = expected["at"] * run.rate[0] if "at" in expected else t[-1]
@@ -90,7 +103,8 @@ def draw_particles(upper, lower, run, deformation, colors):
         words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
         upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
         style.draw_band(upper, run, f"{name}/{deformation}", pen["color"])
-        lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
+        if lower:
+            lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
 
 
 def unbroken(t, angle):
@@ -107,13 +121,14 @@ def draw_literature(upper, lower, known, end):
         if curve.exact:
             pen = {"color": style.INK, "linestyle": (0, (1, 1.6)), "linewidth": 2.2, "zorder": 5}
             upper.plot(curve.t, curve.d, label=curve.label, **pen)
-            lower.plot(curve.t, curve.inclination, **pen)
+            if lower:
+                lower.plot(curve.t, curve.inclination, **pen)
             continue
         every = max(1, inside.sum() // 40)
         pen = {"linestyle": "none", "marker": next(marks), "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
                "zorder": 2, "markevery": every}
         upper.plot(curve.t[inside], curve.d[inside], label=curve.label, **pen)
-        if curve.inclination is not None:
+        if lower and curve.inclination is not None:
             formed = inside & (curve.t > 0.05)
             lower.plot(curve.t[formed], curve.inclination[formed], **pen)
 
