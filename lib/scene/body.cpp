@@ -149,8 +149,8 @@ Body body(const Scene& scene, const Member* alike) {
 }
 
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
-  const bool channel = body.wall && body.wall->channel;
-  if (scene.particle.rigid() || (body.wall && !channel) || (channel && scene.domain.present)) return surface::Symmetry(body.space.n_points);
+  const bool unused = scene.domain.present && (channel || scene.adaptation.enabled);
+  if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));
   return coupling::symmetry(scene.symmetry, body.space, nets, body.flow, loads(scene, body, nullptr),
