@@ -16,7 +16,7 @@ Tanktread:
   Particle: { shape: sphere }
   Membrane: { law: neo-Hookean, capillary number: 0.3 }
   Surface: { mesh: cube, elements per side: 3 }
-  Time: { final time: 2.0, tolerance: 1.0e-5 }
+  Time: { final time: 4.0, tolerance: 1.0e-5 }
   Output: { interval: 0.25 }
 """
 OWN_TIME = ["wall_seconds"]  # the only series that may differ
