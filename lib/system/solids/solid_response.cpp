@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "system/collocation.hpp"
+#include "system/solids/nearest_sites.hpp"
 
 namespace tanktread::coupling {
 
@@ -67,7 +68,7 @@ void SolidResponse::place(const Net& x, const Net& at, std::span<const int> own)
   solids_on_particles_ = solids.layer().near(at_, own_);
   if (!double_) return;
   double_->place(x);
-  find_nearest();
+  nearest_ = nearest_sites(collocation_ * x, solids.sites(), solids.own(), &solids.cell());
   double_on_solids_ = double_->near(solids.sites(), solids.own());
 }
 
@@ -122,24 +123,10 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   return along(wall, sum);
 }
 
-void SolidResponse::find_nearest() {
-  const Net &targets = scene_.solids->sites(), points = collocation_ * shape_;
-  nearest_.assign(static_cast<std::size_t>(targets.rows()), 0);
-  for (const int i : scene_.solids->own()) {
-    Eigen::Index at = 0;
-    Net apart = points.rowwise() - targets.row(i);
-    for (Eigen::Index k = 0; k < apart.rows(); ++k) apart.row(k) -= scene_.solids->cell().shift(apart.row(k).transpose()).transpose();
-    apart.rowwise().squaredNorm().minCoeff(&at);
-    nearest_[static_cast<std::size_t>(i)] = static_cast<int>(at);
-  }
-}
-
-/// Returns a field at the collocation point of the particles that is nearest to each one of the solids.
+/// Returns a field at the collocation point of the particles that is nearest to each one of the solids, in the rows of this rank.
 Net SolidResponse::nearest_values(const Net& v) const {
   const Net at_sites = collocation_ * v;
-  Net values = Net::Zero(scene_.solids->sites().rows(), 3);
-  for (const int i : scene_.solids->own()) values.row(i) = at_sites.row(nearest_[static_cast<std::size_t>(i)]);
-  return values;
+  return at_sites(nearest_, Eigen::all);
 }
 
 stokes::Evaluations SolidResponse::evaluations() const {

@@ -79,7 +79,6 @@ class SolidResponse {
 
  private:
   Net nearest_values(const Net& v) const;
-  void find_nearest();
 
   SolidScene scene_;
   const spline::Space& space_;

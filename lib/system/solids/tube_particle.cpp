@@ -1,8 +1,11 @@
 #include "system/solids/tube_particle.hpp"
 
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "system/collocation.hpp"
+#include "system/solids/nearest_sites.hpp"
 
 namespace tanktread::coupling {
 
@@ -66,7 +69,9 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   }
   if (dual) {
     dual->place(shape);
-    find_nearest(wall.targets());
+    std::vector<int> everybody(static_cast<std::size_t>(wall.targets().rows()));
+    std::iota(everybody.begin(), everybody.end(), 0);
+    nearest = nearest_sites(sites, wall.targets(), everybody, period ? &period->cell : nullptr);
     if (period) {
       dual->see_images_only(static_cast<int>(wall.targets().rows()));
       dual_on_wall = dual->near(period->targets, period->own);
@@ -161,23 +166,9 @@ Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   return all;
 }
 
-void Tube::Particle::find_nearest(const Net& targets) {
-  nearest.resize(static_cast<std::size_t>(targets.rows()));
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    Eigen::Index at = 0;
-    Net apart = sites.rowwise() - targets.row(static_cast<Eigen::Index>(i));
-    if (period)
-      for (Eigen::Index k = 0; k < apart.rows(); ++k) apart.row(k) -= period->cell.shift(apart.row(k).transpose()).transpose();
-    apart.rowwise().squaredNorm().minCoeff(&at);
-    nearest[i] = static_cast<int>(at);
-  }
-}
-
 Net Tube::Particle::nearest_values(const Net& v) const {
   const Net at_sites = collocation * v;
-  Net values(static_cast<Eigen::Index>(nearest.size()), 3);
-  for (std::size_t i = 0; i < nearest.size(); ++i) values.row(static_cast<Eigen::Index>(i)) = at_sites.row(nearest[i]);
-  return values;
+  return at_sites(nearest, Eigen::all);
 }
 
 void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {

@@ -93,7 +93,6 @@ struct Tube::Particle {
  private:
   void weigh_pressure(const stokes::DuctFlow& flow, bool straight);
   Net ambient_of(const stokes::DuctFlow& flow) const;
-  void find_nearest(const Net& targets);
 
   Net flow_of_strength_;
 };
