@@ -20,6 +20,9 @@ struct Estimate {
   bool trusted() const { return untrusted.empty(); }
 };
 
+/// Factor by which an estimate exceeds what the differences give (9.1).
+constexpr double safety = 1.2;
+
 /// A request is met if the estimate times this factor does not exceed it, because the error may be larger than its estimate.
 constexpr double margin = 1.4;
 

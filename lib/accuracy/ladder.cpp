@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -78,10 +77,17 @@ class Ladder {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
     const auto numbers = coupling::decided([&] {
-      return std::vector<double>{seconds_here(), levels_.empty() ? 0 : predicted_seconds(seconds_)};
+      return std::vector<double>{seconds_here(), predicted_seconds(seconds())};
     });
     if (numbers[0] + numbers[1] <= *limit) return {};
     return formatted("level %d is predicted to take %.3g s, which exceeds Accuracy/wall-clock limit, %g s", k, numbers[1], *limit);
+  }
+
+  /// Returns the wall seconds of the finished levels.
+  std::vector<double> seconds() const {
+    std::vector<double> all;
+    for (const Outcome& one : levels_) all.push_back(one.seconds);
+    return all;
   }
 
   double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -91,7 +97,7 @@ class Ladder {
     std::optional<Outcome> outcome;
     const int code = run(level_at(k), std::to_string(k), outcome);
     if (code == stopped || !failure_of_last_.empty()) return code;
-    if (ranks_.rank() == 0) seconds_.push_back(outcome->seconds), levels_.push_back(std::move(*outcome));
+    if (ranks_.rank() == 0) levels_.push_back(std::move(*outcome));
     ++count_;
     return 0;
   }
@@ -169,7 +175,7 @@ class Ladder {
       return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
     });
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
-                  2e-3 / std::pow(4., level_at(k).time), seconds_.empty() ? 0 : seconds_.back()));
+                  tolerance(level_at(k).time), levels_.empty() ? 0 : levels_.back().seconds));
     for (const Answer& one : answers_) say("              " + sentence(one));
     return all_met[0] != 0;
   }
@@ -219,7 +225,6 @@ class Ladder {
   std::unique_ptr<output::Occupation> occupation_;  // on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank
   std::optional<Outcome> looser_;                   // level 2 with a looser tolerance of time, on the first rank
-  std::vector<double> seconds_;                     // their wall seconds, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
   std::vector<double> shares_{0.25, 0.25};          // errors of time and quadrature at level 2, divided by the whole error

@@ -13,7 +13,7 @@
 
 namespace tanktread::accuracy {
 
-/// What the program does for a ladder. Both are collective.
+/// Functions of the program that a ladder calls. Both are collective.
 struct Program {
   /// Returns the effective deck of the scene with these settings `Section/key=value`, without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
@@ -55,7 +55,7 @@ int climb(const Task& task, const Program& program);
 std::vector<std::string> forecast(const Task& task, const Program& program);
 
 /// Returns the predicted seconds of the next level from those of the levels before it, coarse to fine: the last one times its growth, which is
-/// limited to 1.5 ... 5; 2.5 if it is unknown. The seconds include `fixed` seconds that do not grow.
+/// limited to 1.5 ... 5; 2.5 if it is unknown.
 double predicted_seconds(const std::vector<double>& seconds);
 
 }  // namespace tanktread::accuracy

@@ -8,13 +8,13 @@
 
 #include "base/errors.hpp"
 #include "deck/words.hpp"
+#include "surface/options.hpp"
 
 namespace tanktread::accuracy {
 
 namespace {
 
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
-constexpr double loosest = 2e-3;           // Time/tolerance of level 0
 constexpr double least_quadrature = 1e-6;  // far sums in single precision and the rules of near panels keep this
 
 /// Reads values of a deck and collects settings.
@@ -104,34 +104,36 @@ void set_wall(Setter& to, const std::string& list, int level) {
   const double n = elements_per_side(level), around = to.number(list + "/azimuthal elements", 24) / 24;
   to.set_whole(list + "/azimuthal elements", 4 * n * around, 8, 400);
   if (to.has(list + "/axial elements"))
-    to.set_whole(list + "/axial elements", to.number(list + "/axial elements", 25) * n / 6, 8, 400);
+    to.set_whole(list + "/axial elements", to.number(list + "/axial elements", 0) * n / 6, 8, 400);
   else if (list == "Tube" && !to.has("Tube/periodic length") && !to.has("Domain/periodic"))
-    to.set_whole(list + "/axial elements", 25 * n / 6, 8, 400);
+    to.set_whole(list + "/axial elements", surface::TubeOptions::default_axial_elements * n / 6, 8, 400);
   to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
 }
 
 void set_time(Setter& to, int level) {
-  const double tolerance = loosest / std::pow(4., level);
+  const double most = tolerance(level);
   if (to.has("Time/fixed step"))
     to.scale("Time/fixed step", std::pow(2., 2 - level));
   else
-    to.set("Time/tolerance", std::max(tolerance, 1e-13));
-  to.lower("Time/iteration tolerance", tolerance / 10);
-  to.lower("Steady/tolerance", tolerance / 100);
-  to.lower("Periodic/tolerance", std::clamp(10 * tolerance, 1e-10, 1e-2));
-  to.lower("Continuation/fold tolerance", std::clamp(tolerance / 100, 1e-12, 1e-2));
+    to.set("Time/tolerance", std::max(most, 1e-13));
+  to.lower("Time/iteration tolerance", most / 10);
+  to.lower("Steady/tolerance", most / 100);
+  to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
+  to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));
 }
 
 void set_quadrature(Setter& to, int level) {
-  const double tolerance = std::max(loosest / std::pow(4., level), least_quadrature);
+  const double most = std::max(tolerance(level), least_quadrature);
   if (to.text("Quadrature/rule") == "adaptive")
-    to.set("Quadrature/tolerance", tolerance);
+    to.set("Quadrature/tolerance", most);
   else
     to.set_whole("Quadrature/points", 4 + 2 * level, 2, 64);
-  to.lower("Solvers/tolerance", std::max(tolerance / 100, 1e-15));
+  to.lower("Solvers/tolerance", std::max(most / 100, 1e-15));
 }
 
 }  // namespace
+
+double tolerance(int level) { return 2e-3 / std::pow(4., level); }
 
 int elements_per_side(int level) { return sides.at(static_cast<std::size_t>(level)); }
 

@@ -10,15 +10,11 @@ namespace tanktread::accuracy {
 /// Values of all keys of a deck in effect, as text, by path (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
-/// Part of the discretisation.
-enum class Part { mesh, time, quadrature };
-
 /// Level of each part. The parts of a usual level are equal; a level that differs from another one in one part measures the error of this part.
 struct Level {
   int mesh = 0, time = 0, quadrature = 0;
 
   bool operator==(const Level&) const = default;
-  int& of(Part part) { return part == Part::mesh ? mesh : part == Part::time ? time : quadrature; }
 };
 
 /// Largest level that has settings.
@@ -26,6 +22,9 @@ constexpr int last_level = 11;
 
 /// Returns n, the number of elements per side of a cube mesh at a level: 3, 4, 5, 7, 9, 12, 16, ...
 int elements_per_side(int level);
+
+/// Returns Time/tolerance at a level, 2e-3/4^level.
+double tolerance(int level);
 
 /// Returns the expected size of the error of a level, 1 at level 0: the geometric mean of the error of the mesh, n^-4, and of the tolerances,
 /// 4^-level. A part that is looser than the mesh is assumed not to matter.

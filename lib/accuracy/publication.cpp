@@ -92,7 +92,7 @@ std::string sentence(const Answer& one) {
   const std::string name = one.request.text();
   if (!one.estimate.trusted()) return name + ": the error cannot be estimated, because " + one.estimate.untrusted;
   const std::string found = name + formatted(": estimated error %.2g, allowed %.2g", one.estimate.error, one.allowed);
-  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (1.4 times the estimate must be allowed)");
+  return one.met || one.estimate.error > one.allowed ? found : found + formatted(" (%g times the estimate must be allowed)", margin);
 }
 
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
@@ -103,7 +103,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   if (levels.size() > 1) {
     const Outcome& before = levels[levels.size() - 2];
     const double fine = expected_error(finest.level), coarse = expected_error(before.level);
-    write_position_errors(finest.directory, before.directory, task.directory, 1.2 * fine / (coarse - fine));
+    write_position_errors(finest.directory, before.directory, task.directory, safety * fine / (coarse - fine));
   }
   output::RunRecord record = finest.record;
   deck::SeriesTable table;

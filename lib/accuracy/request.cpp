@@ -22,7 +22,6 @@ constexpr std::array<std::string_view, 36> without_error{
     "drag_error_of_traction", "torque_error", "pressure_l2_error", "normal_l2_error", "fold", "unstable_modes", "kernel_evaluations",
     "surfactant_mass", "volume_fraction", "shape_velocity", "normal_velocity", "contact_force", "phase_of_flow"};
 
-
 [[noreturn]] void refuse_form(const std::string& text, const std::string& why) {
   throw UserError("Accuracy/requests: " + deck::in_quotes(deck::shortened(text, 80)) + " " + why +
                   "; a request is [<particle>/]<series>[@end|@mean]=<value>[%], for example taylor_inertia=1e-3 or velocity_x1@end=0.1%.");
