@@ -111,16 +111,17 @@ class SteadyRun {
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;
+    std::shared_ptr<System> latest;  // system of the latest weaker flow
     const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
       if (amplitude == 1) return {of, &*of->equations};
       Scene weaker = of->scene;
       weaker.flow.history = stokes::FlowHistory{.times = std::vector<double>{0}, .amplitudes = std::vector<double>{amplitude}};
-      auto made = std::make_shared<System>(std::move(weaker), ranks_, phases_);
-      carry_to(*made, mesh);
-      weaker_.push_back(made);
-      if (weaker_.size() > 1) count_out(*weaker_.front()), weaker_.pop_front();
-      return {made, &*made->equations};
+      if (latest) count_out(*latest);
+      latest = std::make_shared<System>(std::move(weaker), ranks_, phases_);
+      carry_to(*latest, mesh);
+      return {latest, &*latest->equations};
     }, scene_.steady, scene_.solvers, reached);
+    if (latest) count_out(*latest);
     chosen_.emplace_back("search", way.text());
     if (ranks_.rank() == 0 && !request_.quiet) std::printf("  %s\n", way.text().c_str());
     if (way.arrived()) x = std::move(reached);
@@ -318,7 +319,6 @@ class SteadyRun {
       totals_.work = totals_.work + one.work(), totals_.kernel = totals_.kernel + one.kernel_evaluations();
     };
     if (systems_.empty()) add(*system_->particle);
-    for (const auto& system : weaker_) add(*system->particle);
     for (const auto& [parameters, system] : systems_) add(*system->particle);
     totals_.kernel = ranks_.of_all(totals_.kernel);
     totals_.phase_angle = system_->particle->phase_angle();
@@ -375,7 +375,6 @@ class SteadyRun {
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
-  std::deque<std::shared_ptr<System>> weaker_;  // system of a weaker flow
   std::optional<output::Checkpoint> mesh_;                              // mesh of these systems, if it is not the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
