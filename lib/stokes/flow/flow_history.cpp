@@ -133,8 +133,8 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
   return now;
 }
 
-/// A sine does not rotate, so that the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an
-/// equation with the gradient a L - W, which is linear in time.
+/// Without rotation the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an equation with the
+/// gradient a L - W, which is linear in time.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
     const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;
@@ -143,17 +143,21 @@ Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   std::vector<double> ends{0};
   std::ranges::copy_if(*times, std::back_inserter(ends), [&](double end) { return end > 0 && end < time; });
   ends.push_back(time);
+  if (!angles) {
+    double integral = 0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+      integral += (ends[i + 1] - ends[i]) * (at(ends[i], ends[i]).amplitude + at(ends[i + 1], ends[i]).amplitude) / 2;
+    return exponential(integral * gradient);
+  }
   Mat3 whole = Mat3::Identity();
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double length = ends[i + 1] - ends[i];
     if (!(length > 0)) continue;
     const Moment first = at(ends[i], ends[i]), last = at(ends[i + 1], ends[i]);
+    const int k = axis.value()[1] - '1', l = (k + 1) % 3, m = (k + 2) % 3;
     Mat3 turning = Mat3::Zero();
-    if (angles) {
-      const int k = axis.value()[1] - '1', l = (k + 1) % 3, m = (k + 2) % 3;
-      turning(m, l) = (last.angle - first.angle) * degree;
-      turning(l, m) = -turning(m, l);
-    }
+    turning(m, l) = (last.angle - first.angle) * degree;
+    turning(l, m) = -turning(m, l);
     whole = last.turn * linear_deformation(length * first.amplitude * gradient - turning, length * (last.amplitude - first.amplitude) * gradient) *
             first.turn.transpose() * whole;
   }
