@@ -101,11 +101,11 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
   if (to.every()) reject_duct("Tube or Channel", to);
   to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),
-          {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, Chosen(scene.flow.choice(), "Flow/type"),
+          {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, scene.flow_choice(),
           "the flow differs from cell to cell by more than a uniform gradient");
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
-  to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), Chosen(scene.flow.choice(), "Flow/type"),
+  to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
   to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()),

@@ -19,7 +19,7 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
   const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
-  const Chosen duct(scene.tube.list(), "Tube or Channel");
+  const Chosen duct = scene.duct_choice();
   to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body that moves as told has no place or attitude to be found");
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
@@ -28,7 +28,7 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
   to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, "a rigid particle has the shape that it has");
-  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", Chosen(scene.flow.choice(), "Flow/type"), "it is for flows " + gradient);
+  to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow_choice(), "it is for flows " + gradient);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
           {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);

@@ -65,6 +65,14 @@ std::string Post::path(const std::string& key) const {
   return key.empty() ? list : (name.empty() && (key == "Membrane" || key == "Adaptation/enabled") ? "" : list + "/") + key;
 }
 
+Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
+  for (int d = 0; d < cell.n(); ++d) {
+    const Vec3 vector = cell.vectors().col(d);
+    if (std::abs(std::abs(vector[post.axis]) - vector.norm()) < 1e-9 * vector.norm()) return std::abs(vector[post.axis]) * Vec3::Unit(post.axis);
+  }
+  return Vec3::Zero();
+}
+
 void take_posts(Scene& scene) {
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
@@ -106,11 +114,9 @@ void check_posts(const Scene& scene) {
          "posts hold back any flow but the one that a pressure gradient drives: give Flow/type `quiescent` and Flow/pressure gradient");
   for (std::size_t p = 0; p < scene.posts.size(); ++p) {
     const Post& post = scene.posts[p];
-    bool along = false;
-    for (int d = 0; d < cell->n(); ++d)
-      along = along || std::abs(std::abs(cell->vectors().col(d)[post.axis]) - cell->vectors().col(d).norm()) < 1e-9 * cell->vectors().col(d).norm();
     const int axis = post.axis + 1;
-    if (!along) throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), axis, axis));
+    if (period_of(post, *cell).isZero(0))
+      throw UserError(formatted("%s is x%d, but no lattice vector of Domain is along x%d.", post.path("axis").c_str(), axis, axis));
     for (std::size_t q = 0; q <= p; ++q)
       if (distance(post, scene.posts[q], *cell, p == q) <= post.radius + scene.posts[q].radius)
         throw UserError(p == q ? post.path() + " touches its own image: its radius must be smaller than half the period across its axis."

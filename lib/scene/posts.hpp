@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.hpp"
+#include "stokes/medium/periodic_images.hpp"
 
 namespace tanktread {
 
@@ -23,6 +24,9 @@ struct Post {
 
   std::string path(const std::string& key = {}) const;  ///< returns the path of its section or of a key in it, for messages
 };
+
+/// Returns the lattice vector along the axis of a post, units length; zero if there is none.
+Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
 /// Removes the cylinders from the kinds of a scene and adds them to its posts. Sets whether its walls are plates, also for its flow, and the default
 /// of Adaptation/film resolution where there are films. Throws UserError if a cylinder has keys that only particles have.

@@ -57,9 +57,9 @@ void reject_searches(const Scene& scene, Rejections& to) {
           "the volume tells which shape");
   to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
           "points that go with the fluid along an interface do not rest");
-  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), Chosen(scene.flow.choice(), "Flow/type"),
+  to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow_choice(),
           "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
-  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", Chosen(scene.flow.choice(), "Flow/type"),
+  to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow_choice(),
           "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
 }
 

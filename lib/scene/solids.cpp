@@ -15,15 +15,6 @@ namespace {
 
 using coupling::Solids;
 
-/// Returns the lattice vector along the axis of a post.
-Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell) {
-  for (int d = 0; d < cell.n(); ++d) {
-    const Vec3 vector = cell.vectors().col(d);
-    if (std::abs(std::abs(vector[post.axis]) - vector.norm()) < 1e-9 * vector.norm()) return std::abs(vector[post.axis]) * Vec3::Unit(post.axis);
-  }
-  return Vec3::Zero();
-}
-
 int elements_along(const Post& post, const Vec3& period) {
   return post.along.value_or(std::max(4, static_cast<int>(std::ceil(period.norm() * post.around / (2 * std::numbers::pi * post.radius)))));
 }

@@ -77,11 +77,11 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   const stokes::FlowOptions& flow = scene.flow;
   const coupling::SolverOptions& solvers = scene.solvers;
   const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
-  const Chosen confined(scene.tube.list(), "Tube or Channel"), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
+  const Chosen confined = scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
           "what is carried along in a channel rests only where a pressure drop does not push it through");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
-  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, {flow.choice(), "Flow/type"},
+  to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, scene.flow_choice(),
           "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
           "with which the wall goes along");
   to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the tube is as long as its period");

@@ -84,7 +84,7 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // `check` tells where the flow is not
   to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
-  to.pair(scene.tube.present, "Wall", {scene.tube.list(), "Tube or Channel"}, "images are of one plane in a fluid that is unbounded otherwise");
+  to.pair(scene.tube.present, "Wall", scene.duct_choice(), "images are of one plane in a fluid that is unbounded otherwise");
   to.pair(scene.quadrature.rule != "adaptive", "Wall",
           {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "a film at a wall takes rules by tolerance, `adaptive`");
