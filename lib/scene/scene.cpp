@@ -283,8 +283,8 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// By tractions a film of a tenth of the radius needs a third of the control points, and a factorisation of up to 4500 unknowns takes less time than
-/// the iterations on the finer mesh.
+/// The choice of `auto`: to resolve a film of a tenth of the radius, the equation for tractions needs a third of the control points, and a
+/// factorisation of up to 4500 unknowns takes less time than the iterations on the finer mesh.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto") return solvers.rigid_bodies == "first kind";

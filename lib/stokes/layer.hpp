@@ -141,7 +141,7 @@ class Layer {
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
-  /// For a periodic single layer, adds the images that are not near (PeriodicSum) to the rows of `a`, which are assembled rows at `sites`.
+  /// Adds the images that are not near (PeriodicSum) of a periodic single layer to the rows of `a`, which are assembled rows at `sites`.
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles the rows at `sites` of the contribution of the images in the plane wall only.

@@ -29,7 +29,7 @@ void Line::add_site(double u, const std::vector<double>& knots, int first, bool 
 
 namespace {
 
-/// Adds the pieces between the knots. Function j of the extended knots has the index number(j).
+/// Adds the pieces between the knots. The function that begins at knot j of `extended` has the index number(j).
 template <class Number>
 void add_pieces(Line& line, const std::vector<double>& extended, int m, const Number& number) {
   for (int e = 0; e < m; ++e) {

@@ -10,7 +10,8 @@
 
 namespace tanktread::surface {
 
-/// Cubic splines in one variable: pieces with four functions each, and collocation points, each with all pieces that contain it.
+/// Cubic splines in one variable: intervals between knots (pieces) with four functions each, and collocation points, each with all pieces that
+/// contain it.
 struct Line {
   struct Piece {
     std::array<int, 4> functions;
@@ -20,12 +21,12 @@ struct Line {
   std::vector<Piece> pieces;
   std::vector<std::vector<std::pair<int, double>>> sites;
 
-  /// Adds a site at u, given the knots of the pieces from `first` on.
+  /// Adds a collocation point at u, given the knots of the pieces from index `first` on.
   void add_site(double u, const std::vector<double>& knots, int first, bool closed);
 };
 
-/// Adds the splines on these knots to a line. Closed: function i has its middle knot at knots[i]. Open: end knots have multiplicity four. If
-/// `inwards`, the sites at the ends are moved halfway to their neighbours.
+/// Adds the splines with the given knots. If `closed`, they are periodic, and the middle knot of function i is knots[i]. Otherwise the end knots
+/// have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
 void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards);
 
 /// Splines over one period that a density uses. The geometry has the open splines of `open`, whose collocation points are those of the periodic

@@ -34,7 +34,7 @@ class Checksum {
   std::uint64_t sum_ = 0xcbf29ce484222325u;
 };
 
-/// Whether the bytes of a file are flushed to the disk before a write returns, so that they survive a power failure.
+/// Durability of a write: `yes` flushes the bytes of the file to the disk before the write returns, so that they survive a power failure.
 enum class Durable { no, yes };
 
 /// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed here. Throws RunFailure (disk
