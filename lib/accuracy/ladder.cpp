@@ -35,7 +35,8 @@ class Ladder {
     serially([this] { prepare(); });
     for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
       if (const std::string why = reason_to_stop(k); !why.empty()) return conclude(stopped, why);
-      if (k == balanced_from && count_ == k && balance() == stopped) return conclude(stopped, "the runs that balance the parts were stopped");
+      if (k >= balanced_from && count_ == k && !balanced_ && !within_reach(k) && balance() == stopped)
+        return conclude(stopped, "the runs that balance the parts were stopped");
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
       if (count_ >= 3 && judge(k)) return conclude(met, "");
@@ -46,7 +47,7 @@ class Ladder {
   }
 
  private:
-  static constexpr int balanced_from = 3;  // first level whose parts are balanced; before it their errors are not known
+  static constexpr int balanced_from = 3;  // first level whose parts can be balanced; before it their errors are not known
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
@@ -104,9 +105,20 @@ class Ladder {
 
   Level level_at(int k) const { return k < balanced_from ? Level{k, k, k} : balanced(k, shares_[0], shares_[1]); }
 
+  /// Returns whether level k is expected to meet all requests. The runs that balance its parts would then cost more than they save.
+  bool within_reach(int k) const {
+    return coupling::decided([&] {
+      const double gain = levels_.empty() ? 1 : expected_error(level_at(k)) / expected_error(levels_.back().level);
+      return std::vector<double>{double(std::ranges::all_of(answers_, [&](const Answer& one) {
+        return margin * gain * one.estimate.error <= one.allowed;
+      }))};
+    })[0] != 0;
+  }
+
   /// Runs level 2 with looser tolerances of time and of quadrature, and sets the shares of these parts in the error: the largest ones of all requests
   /// that are not met. Returns `stopped`, or 0.
   int balance() {
+    balanced_ = true;
     std::optional<Outcome> quadrature;
     if (run({2, 1, 2}, "2_time", looser_) == stopped || run({2, 2, 1}, "2_quadrature", quadrature) == stopped) return stopped;
     const auto found = coupling::decided([&] {
@@ -227,6 +239,7 @@ class Ladder {
   std::optional<Outcome> looser_;                   // level 2 with a looser tolerance of time, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
+  bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // errors of time and quadrature at level 2, divided by the whole error
   std::string failure_, failure_of_last_;           // messages of the last level that failed, and of the last level if it failed
 };

@@ -68,10 +68,6 @@ TEST(Estimate, TakesTwoRatiosIfTheLastOneIsUnusual) {
   EXPECT_TRUE(of({1.6e-2, 1.3e-3, 1e-3}).trusted());  // 16 in two levels
 }
 
-TEST(Estimate, IsNotSmallIfOneDifferenceIsSmallByChance) {
-  EXPECT_GT(of({1e-2, 4e-3, 4e-4}).error, 0.4 * of({1e-2, 4e-3, 1.3e-3}).error);
-}
-
 TEST(Estimate, OfRoundOffIsRoundOff) {
   const Estimate found = of({3e-13, 4e-13});
   EXPECT_TRUE(found.trusted());
