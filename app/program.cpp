@@ -24,6 +24,7 @@
 #include "deck/words.hpp"
 #include "motion/guarded.hpp"
 #include "record/citations.hpp"
+#include "record/evaluation_cost.hpp"
 #include "record/files/file.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
@@ -110,7 +111,7 @@ void state(CLI::App& app, Arguments& arguments) {
                  "where results go (default: results/<deck name>, followed by what is laid over it: _<overlay name>, _<key>=<value>)")
       ->check(directory, "");
   app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
-  app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
+  app.add_flag("--check", arguments.check, "print the effective deck, the plan and the cost of one velocity evaluation, and stop");
   app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory")->check(directory, "");
   app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
@@ -120,7 +121,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_option("--new", arguments.new_deck, "print a commented deck of this kind: " + deck::alternatives(kinds_of_decks()))
       ->check(CLI::IsMember(kinds_of_decks()), "");
   app.add_flag("--cite", arguments.cite, "print what to cite for the features that the deck uses, or without a deck for all features, and stop");
-  app.add_flag("--quiet", arguments.quiet, "no progress bar");
+  app.add_flag("--quiet", arguments.quiet, "no progress bar, and no timed evaluation with --check");
   app.set_version_flag("--version", [] { return "tanktread " + provenance().at("version"); });
 }
 
@@ -303,7 +304,9 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   accuracy::check_series(scene.accuracy.requests, names_of_series(scene));
 
   if (arguments.check) {
-    const std::string chosen = plan_text(plan(scene, coupling::Ranks().size()));
+    output::Entries<std::string> lines = plan(scene, coupling::Ranks().size());
+    if (!arguments.quiet) std::ranges::move(evaluation_cost(scene), std::back_inserter(lines));
+    const std::string chosen = plan_text(lines);
     if (speaks) std::cout << deck.effective() << "\n" << chosen;
     return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(done);
   }

@@ -31,16 +31,6 @@ namespace {
 
 constexpr std::chrono::seconds second(1);
 
-/// Returns the peak memory in bytes: the largest of a rank, and the sum of all ranks. Collective.
-output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  std::vector<double> all(static_cast<std::size_t>(ranks.size()), 0);
-  all[static_cast<std::size_t>(ranks.rank())] = 1024. * static_cast<double>(usage.ru_maxrss);
-  ranks.add(all);
-  return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
-}
-
 /// Runs `action` on the ranks whose `acts` is true. If it fails on one rank, every rank throws: UserError for a mistake of the user, otherwise
 /// RunFailure. Collective.
 template <class Act>
@@ -81,6 +71,15 @@ Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::
 }
 
 }  // namespace
+
+output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::vector<double> all(static_cast<std::size_t>(ranks.size()), 0);
+  all[static_cast<std::size_t>(ranks.rank())] = 1024. * static_cast<double>(usage.ru_maxrss);
+  ranks.add(all);
+  return {{"largest of a rank", std::lround(std::ranges::max(all))}, {"all ranks", std::lround(std::accumulate(all.begin(), all.end(), 0.))}};
+}
 
 output::Entries<double> with_earlier(const Phases& phases, const output::Entries<double>& earlier) {
   output::Entries<double> seconds;

@@ -21,6 +21,9 @@
 
 namespace tanktread {
 
+/// Returns the peak memory in bytes: the largest of a rank, and the sum of all ranks. Collective.
+output::Entries<long> peak_memory(const coupling::Ranks& ranks);
+
 /// Options of the command line, and the deck.
 struct RunRequest {
   std::string output;           ///< directory of the results

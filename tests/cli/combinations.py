@@ -251,7 +251,7 @@ def _sentences(text):
     with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
         path = pathlib.Path(directory) / "deck.yaml"
         path.write_text(text)
-        result = run(path, "--check", code=None)
+        result = run(path, "--check", "--quiet", code=None)
     check(result.returncode in (0, 2), f"exit code {result.returncode} of --check: {result.stderr}\n{text}")
     return tuple(result.stderr.splitlines()) if result.returncode else ()
 

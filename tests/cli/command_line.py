@@ -44,6 +44,15 @@ def check_prints_the_effective_deck_and_the_plan_and_writes_nothing():
     check(sorted(p.name for p in pathlib.Path().iterdir()) == ["deck.yaml"], "something was written")
 
 
+def check_states_the_cost_of_a_velocity_unless_it_is_quiet():
+    text = run(deck(SMALL), "--check").stdout
+    cost = re.search(r"\n  evaluation +([\d.e+]+) kernel evaluations and ([\d.e-]+) s ", text)
+    check(cost and float(cost[1]) > 0 and re.search(r"\n  memory +[\d]+ MB", text), text)
+    check("kernel evaluations" not in run(deck(SMALL), "--check", "--quiet").stdout, "timed with --quiet")
+    huge = run(deck(SMALL), "--set", "Surface/elements per side=60", "--set", "Particle/viscosity ratio=5", "--check").stdout
+    check(re.search(r"\n  evaluation +not timed, .* would take some \d+ s", huge), huge)
+
+
 def results_go_where_the_deck_s_name_says():
     run(deck(SMALL, "small_capsule.yaml"), "--quiet")
     check(pathlib.Path("results/small_capsule/run.h5").is_file(), list(pathlib.Path().rglob("*")))

@@ -163,7 +163,7 @@ MUTATIONS = [_values_changed, _values_changed, _value_of_the_deck_changed, _valu
 def _fault(name):
     """What is wrong with the answer to the deck of this name; nothing, or a sentence."""
     try:
-        result = subprocess.run(command(name, "--check"), capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS)
+        result = subprocess.run(command(name, "--check", "--quiet"), capture_output=True, stdin=subprocess.DEVNULL, timeout=SECONDS)
     except subprocess.TimeoutExpired:
         return f"no answer within {SECONDS} s"
     said = result.stderr.decode(errors="replace")

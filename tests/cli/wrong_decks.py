@@ -333,9 +333,9 @@ def shipped_decks_are_good_and_so_is_what_they_effectively_say():
     for outline in (SOURCE / "inputs").glob("*.csv"):
         shutil.copy(outline, ".")  # looked for beside the deck
     for path in sorted((SOURCE / "inputs").glob("*.yaml")):
-        printed = run(path, "--check").stdout
+        printed = run(path, "--check", "--quiet").stdout
         effective = printed.split("\n\n", 1)[0] + "\n"
-        again = run(deck(effective), "--check").stdout
+        again = run(deck(effective), "--check", "--quiet").stdout
         check(printed == again, f"{path.name}: the effective deck says something else")
 
 

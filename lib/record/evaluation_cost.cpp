@@ -1,0 +1,94 @@
+#include "record/evaluation_cost.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/errors.hpp"
+#include "base/formatted.hpp"
+#include "record/results.hpp"
+#include "scene/particles/particle_system.hpp"
+
+namespace tanktread {
+
+namespace {
+
+constexpr double longest = 5;  // seconds that a timed evaluation may take
+
+/// Measured cost of one velocity evaluation, over all ranks.
+struct Cost {
+  double setup, seconds, kernel_evaluations, elements;
+  long memory;  // peak memory of all ranks in bytes
+};
+
+/// Builds a scene, and times the evaluation of its initial velocity. Collective.
+Cost measured(const Scene& scene) {
+  coupling::Ranks ranks;
+  Phases phases;
+  const auto start = std::chrono::steady_clock::now();
+  const auto particles = particle_system(scene, ranks, phases);
+  coupling::Dynamics& dynamics = particles->dynamics();
+  const Net x = particles->start();
+  dynamics.at(0, 0);
+  Cost cost{};
+  cost.setup = ranks.seconds_since(start);
+  const stokes::Evaluations before = particles->kernel_evaluations();
+  const auto evaluation = std::chrono::steady_clock::now();
+  dynamics.velocity(x);
+  cost.seconds = ranks.seconds_since(evaluation);
+  cost.kernel_evaluations = static_cast<double>(ranks.of_all(particles->kernel_evaluations()).total() - ranks.of_all(before).total());
+  cost.elements = static_cast<double>(particles->body().space.elements.size());
+  cost.memory = peak_memory(ranks).back().second;
+  return cost;
+}
+
+/// Divides the numbers of elements of a mesh by `divisor`, with at least three elements left per side. Returns true if a number has changed.
+bool coarsen(surface::MeshOptions& mesh, int divisor) {
+  bool changed = false;
+  for (auto* elements : {&mesh.elements_per_side, &mesh.azimuthal_elements, &mesh.meridional_elements}) {
+    if (!*elements) continue;
+    const int fewer = std::max(elements == &mesh.azimuthal_elements ? 6 : 3, **elements / divisor);
+    changed |= fewer < **elements;
+    *elements = std::min(**elements, fewer);
+  }
+  return changed;
+}
+
+/// Divides the numbers of elements of all particles by `divisor`. Returns true if a number has changed.
+bool coarsen(Scene& scene, int divisor) {
+  bool changed = coarsen(scene.surface, divisor);
+  for (ParticleKind& kind : scene.particles) changed |= coarsen(kind.surface, divisor);
+  return changed;
+}
+
+double elements(const Scene& scene) {
+  double sum = 0;
+  for (const Scene& one : scene.alone()) sum += one.surface.n_elements();
+  return sum;
+}
+
+}  // namespace
+
+output::Entries<std::string> evaluation_cost(const Scene& scene) {
+  if (!scene.in_system() && scene.particle.motion != Motion::free) return {};
+  for (const int divisor : {4, 2}) {
+    Scene coarse = scene;
+    if (!coarsen(coarse, divisor)) continue;
+    Cost cost{};
+    try {
+      cost = measured(coarse);
+    } catch (const UserError&) {
+      continue;  // the scene needs its finer mesh
+    }
+    const double ratio = elements(scene) / cost.elements, seconds = cost.seconds * ratio * ratio;
+    if (seconds > longest)
+      return {{"evaluation", formatted("not timed, because one velocity evaluation would take some %.0f s, by %.2g s on %.0f elements", seconds,
+                                       cost.seconds, cost.elements)}};
+  }
+  const Cost cost = measured(scene);
+  return {{"evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations, cost.seconds,
+                                   cost.setup)},
+          {"memory", formatted("%.0f MB of all ranks, without the Jacobian of implicit steps", 1e-6 * static_cast<double>(cost.memory))}};
+}
+
+}  // namespace tanktread

@@ -1,0 +1,14 @@
+#pragma once
+// Cost of one velocity evaluation of a scene, measured before a run.
+
+#include "record/files/summary.hpp"
+#include "scene/scene.hpp"
+
+namespace tanktread {
+
+/// Returns lines for the plan with the memory, the kernel evaluations and the seconds of one velocity evaluation of a scene in its initial shape. An
+/// evaluation that would take longer than five seconds is not made: its seconds are estimated from a coarser mesh, with the square of the number of
+/// elements. A scene without velocity, such as the resistance problem of a body with prescribed motion, has no lines. Collective.
+output::Entries<std::string> evaluation_cost(const Scene& scene);
+
+}  // namespace tanktread
