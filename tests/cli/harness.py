@@ -23,6 +23,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import traceback
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else None
@@ -118,9 +119,10 @@ def _outcome(test):
     """Whether a test passes, and what is to be said of it."""
     with tempfile.TemporaryDirectory(prefix="tanktread-") as directory:
         os.chdir(directory)
+        start = time.perf_counter()
         try:
             test()
-            return True, "passed " + test.__name__.replace("_", " ")
+            return True, f"passed {test.__name__.replace('_', ' ')} ({time.perf_counter() - start:.1f} s)"
         except Exception as error:  # the rest of the script still runs
             said = str(error) if isinstance(error, Failed) else traceback.format_exc()
             return False, "FAILED " + test.__name__.replace("_", " ") + "\n" + said

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-# ranks: 3
+# ranks: 2
 # Several capsules and drops in one run: each keeps what is its own, and nothing depends on order, ranks or a pause.
 import pathlib
 import re
