@@ -22,7 +22,8 @@ struct Outcome {
   double seconds = 0;  ///< wall seconds that the level has taken
 };
 
-/// Returns whether two decks differ at most in `Time/final time` and the section `Output`, so that a run of one is resumed with the other.
+/// Returns whether two decks differ at most in `Time/final time` and the section `Output`, so that a run of one deck can be resumed with the other
+/// deck.
 bool resumes(const std::string& one, const std::string& other);
 
 /// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
@@ -39,15 +40,15 @@ struct Answer {
   double value = 0;      ///< value that the error is of: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< the request in the unit of the series
   bool met = false;
-  double statistical = 0;  ///< statistical error of an average of several particles, which the estimate does not contain; NaN if it is unknown
+  double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
 };
 
 /// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: the run of level 2 with a looser tolerance of time, if
 /// there is one; it shows which share of the errors falls with this tolerance.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
-/// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. `ratio`: factor by
-/// which one level reduces it.
+/// Returns the error of `level` for a request that is due to one part of the discretisation (time integration or quadrature). `looser`: a run in
+/// which only this part is one level looser. `ratio`: factor by which one level reduces the error of this part.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
 /// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. Judges the finest level:
@@ -59,7 +60,7 @@ std::string obstacle(const std::vector<Outcome>& levels);
 struct SeriesError {
   std::string name, unit, si;
   std::vector<double> values;  ///< NaN where the estimate cannot be trusted
-  std::string untrusted;       ///< reason, empty if it can be trusted
+  std::string untrusted;       ///< reason why the estimate cannot be trusted; empty if it can
 };
 
 /// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
