@@ -94,7 +94,7 @@ class Walk {
     else if (value.IsSequence())
       list.setEntry(name, typed_row(words(value, path)));
     else
-      read(value, path, level + 1, list.sublist(name));  // adds an empty list if nothing follows the colon
+      read(value, path, level + 1, list.sublist(name));  // an empty section if nothing follows the colon
   }
 
  private:
@@ -102,7 +102,7 @@ class Walk {
     throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
   }
 
-  /// Returns the words of a row, or of rows of equal length one after the other.
+  /// Returns the scalars of a sequence, or of a sequence of rows of equal length, row after row.
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
     std::vector<YAML::Node> out;
     for (const YAML::Node& item : sequence) {
