@@ -79,7 +79,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   for (Eigen::Index k = 0; k < shape_size(); ++k)
     drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // rotations of the mesh are excluded, as in (4.17)
+  for (const Net& field : dynamics.relabellings(x)) {  // excludes mesh rotations, which do not change the shape, as in (4.17)
     if (!admits(field)) continue;
     const Eigen::VectorXd turn = coordinates_along(field).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());

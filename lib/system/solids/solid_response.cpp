@@ -123,7 +123,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   return along(wall, sum);
 }
 
-/// Returns a field at the collocation point of the particles that is nearest to each one of the solids, in the rows of this rank.
+/// Returns, for each collocation point of the solids, the field v at the nearest collocation point of the particles. Valid in the rank-owned rows.
 Net SolidResponse::nearest_values(const Net& v) const {
   const Net at_sites = collocation_ * v;
   return at_sites(nearest_, Eigen::all);

@@ -82,7 +82,8 @@ struct Tube::Particle {
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites; its control values (in a channel only)
   Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in (2.7); the second is empty if lambda = 1
   std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections, cached for the iterations if lambda != 1
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections of `dual` and of the wall's layer, cached for the
+                                                                   ///< iterations if lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;
