@@ -31,7 +31,7 @@ struct Task {
   std::string deck;     ///< effective deck, with its requests
   std::filesystem::path directory;
   bool resume = false, overwrite = false, quiet = false;
-  bool runs_in_time = true;  ///< false for searches, which cannot be resumed
+  bool runs_in_time = true;  ///< false for searches for steady or periodic shapes, which cannot be resumed
 };
 
 /// Exit codes of a ladder: all requests are met; one is not met on the finest allowed level; the ladder was stopped, by a signal or by its limit,

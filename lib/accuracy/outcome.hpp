@@ -29,15 +29,15 @@ bool resumes(const std::string& one, const std::string& other);
 /// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
-/// Returns a series as a function of time. Of a branch of steady shapes, whose points differ between levels, only its folds and its last point are
-/// compared; the abscissa is their index. A run of one row has one point.
+/// Returns a series as a function of time. For a branch of steady shapes, whose points differ between levels, returns the values at its folds and its
+/// last point, as a function of their index. A run of one row gives one point.
 Curve curve(const output::RunRecord& record, const std::string& series);
 
 /// The estimate for one request.
 struct Answer {
   Request request;
   Estimate estimate;
-  double value = 0;      ///< value that the error is of: the largest magnitude over the run, the last value, or the average
+  double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< the request in the unit of the series
   bool met = false;
   double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
@@ -63,8 +63,8 @@ struct SeriesError {
   std::string untrusted;       ///< reason why the estimate cannot be trusted; empty if it can
 };
 
-/// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
-/// `looser`: see `answer`.
+/// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: see
+/// `answer`.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 }  // namespace tanktread::accuracy

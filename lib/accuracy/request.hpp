@@ -44,8 +44,8 @@ std::string setting_of(const std::vector<std::string>& texts);
 /// `has_error`).
 void check_series(const std::vector<Request>& requests, const std::vector<std::string>& names);
 
-/// Returns whether an error of the series is estimated. Series of the work of a run, for example `wall_seconds`, of the time, of indices, and of
-/// errors themselves have none.
+/// Returns whether an error of the series is estimated. There is none for series that describe the work of a run (for example `wall_seconds`), for
+/// the time, for indices, and for errors themselves.
 bool has_error(const std::string& series);
 
 }  // namespace tanktread::accuracy
