@@ -235,7 +235,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();
-  if (whole.resume) arguments.resume += "/level_0";  // this run keeps copies of the files that the deck names
+  if (whole.resume) arguments.resume += "/level_0";  // the directory of level 0 has copies of the files that the deck names
   accuracy::Program program;
   program.deck = [&](const std::vector<std::string>& settings) {
     deck::Document level = deck::read({}, settings, base);

@@ -370,7 +370,7 @@ class Run {
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
-  bool adapting_ = false;     // true if the latest step has reached the adaptation of the mesh
+  bool adapting_ = false;     // true if the latest step has begun to adapt the mesh, which must then be undone if the step fails
   bool interrupted_ = false;  // true if a step was interrupted and discarded
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;
