@@ -54,8 +54,8 @@ class Dynamics {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the result of `missed` for the displacement delta, computed from a change of the defect instead of dv. `change`: change, due to delta,
-  /// of the defect of the velocity (x - c)/shift with any constant net c.
+  /// Returns the result of `missed` if the change of a defect is known instead of dv. `change`: change, due to delta, of the defect of the velocity
+  /// (x - c)/shift for any constant net c; without an operator B, it is dv - delta/shift.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if

@@ -160,7 +160,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the tangential coordinates t whose coordinates y across the interface are 0.
+/// Returns the field with the tangential coordinates t and zero coordinates y across the interface.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

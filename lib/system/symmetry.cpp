@@ -75,8 +75,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation) {
-  constexpr double fitted = 1e-2;  // largest normal part of the rotation field, relative to the field; 1e-3 for a sphere with three by three elements
-                                   // per face
+  constexpr double fitted = 1e-2;  // bound on the relative normal velocity of the rotation; it is 1e-3 for a sphere with 3 x 3 elements per face
   const Vec3 centre = block.rows(unstressed).colwise().mean().transpose();
   Net field = Net::Zero(x.rows(), 3);
   double across = 0, all = 0;

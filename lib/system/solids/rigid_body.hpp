@@ -145,9 +145,9 @@ class FreeBodyInTube : public LoneRigidBody {
   double viscosity_;
   Krylov krylov_;
   double tolerance_;
-  mutable Net place_;  // latest position, the solution at this position, and the unknowns of the linear system
-  mutable Solution solution_;
-  mutable Eigen::VectorXd unknowns_;
+  mutable Net place_;                 // position of the latest solve
+  mutable Solution solution_;         // solution at this position
+  mutable Eigen::VectorXd unknowns_;  // unknowns of the linear system at this position
   mutable long iterations_ = 0;
 };
 

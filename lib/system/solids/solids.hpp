@@ -64,7 +64,7 @@ class Solids {
   /// Returns whether points are outside of all cylinders.
   bool outside(const Net& at) const;
 
-  /// Returns the solution for the velocity u at the collocation points and the force F.
+  /// Returns the solution of (2.46) for the velocity u at the collocation points and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
 
   /// Computes rows `rows` of the velocity of a flow at points off the solids. Not collective. `kept`: near-field corrections layer().near(at, rows)
@@ -87,7 +87,7 @@ class Solids {
   double viscosity() const { return viscosity_; }
   const Ranks& ranks() const { return ranks_; }
   stokes::Layer& layer() { return *layer_; }
-  Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values on the space of the layer
+  Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
   const std::array<Vec3, 2>& across() const { return reached_; }  ///< lowest and highest coordinates of solids and targets, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
@@ -114,7 +114,7 @@ class Solids {
   std::vector<Rod> rods_;
   std::optional<PlateFactors> plates_;  // set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, of its block for uniform densities
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of earlier layers
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of layers replaced by reach()
 };
 
 }  // namespace tanktread::coupling

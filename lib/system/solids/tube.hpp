@@ -63,14 +63,14 @@ class Tube {
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
        Phases& phases);
 
-  /// Constructs a channel with the wall of its flow.
+  /// Constructs the tube of a channel, with the wall of the channel's flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
   /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
+  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
@@ -106,7 +106,7 @@ class Tube {
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
   Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
+  Net velocity_on_wall(const Net& v);                       ///< double layer (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
@@ -184,7 +184,7 @@ class Tube {
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate and in the axial force; set by weigh_flow(), like the members
                                       // below
   Net flow_of_wall_;  // weights of a velocity u on the wall: the traction that cancels u causes the flow rate weights.u through the inlet
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop, of mu c (2.5) only; of mu c with the wall's response
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rate of mu c (2.5) through the inlet; flow rate per unit pressure drop, with the wall
 };
 
 }  // namespace tanktread::coupling

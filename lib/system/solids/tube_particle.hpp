@@ -71,7 +71,7 @@ struct Tube::Particle {
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
   membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
-  std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
+  std::optional<stokes::Layer> dual;  ///< double layer; set if any lambda is not 1
   std::optional<Period> period;       ///< set if the duct is periodic
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 

@@ -327,8 +327,8 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   return net;
 }
 
-/// Returns int N_A field dG for every A. Along the wall, the Gauss points are clustered at the ends of each element by s = 3 q^2 - 2 q^3, because the
-/// inlet's integral (2.13) is steep at the rim of the inlet.
+/// Returns int N_A field dG over the wall for every control point A. Gauss points are clustered at both ends of each element along the wall by s = 3
+/// q^2 - 2 q^3, because the inlet integral (2.13) is steep at the rim of the inlet.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);
