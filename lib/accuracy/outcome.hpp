@@ -51,9 +51,9 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
 /// which only this part is one level looser. `ratio`: factor by which one level reduces the error of this part.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
-/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. Judges the finest level:
-/// - the limiter of contacts acts, whose forces depend on the time step;
-/// - the finest run warns of wrinkles that its mesh does not represent.
+/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. The finest level is checked for
+/// - forces of the contact limiter, because they depend on the time step;
+/// - a warning of wrinkles that its mesh does not represent.
 std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.
