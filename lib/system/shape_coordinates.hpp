@@ -47,7 +47,7 @@ class ShapeCoordinates {
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                    const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
 
-  /// Lets relaxing meshes follow displacements (4.26), with the mesh motion of `dynamics` at x. Collective.
+  /// Makes meshes that relax by themselves follow displacements of x (4.26), by the linearised mesh motion of `dynamics`. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
   /// Adds the coordinates of the fields on the surfaces (4.34). They represent changes relative to the state y. `motion` must outlive this object.

@@ -39,7 +39,7 @@ class OneBodyInverses {
   /// `placed`: current positions of the bodies.
   void solve(const RigidParticles& placed, Net& y) const;
 
-  /// Returns columns of the inverse of the system (2.23) of particle p, those for right-hand sides at `sites`; shape (3 points, 3 sites).
+  /// Returns the columns of the inverse of the system (2.23) of particle p that belong to right-hand sides at `sites`; shape (3 points, 3 sites).
   Eigen::MatrixXd columns(const RigidParticles& placed, std::size_t p, std::span<const int> sites) const;
 
  private:

@@ -12,8 +12,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only: no target is at or after this row, so that the surface
-                                                             // itself contributes to all targets
+constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only for which the surface itself contributes to all targets:
+                                                             // no row number is as large
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // factor on the tolerance of wall integrals in leak(), where pressures are large; upper
                                                            // limit of the result
 

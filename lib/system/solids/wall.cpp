@@ -158,8 +158,8 @@ void Wall::add_middles() {
     if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
 }
 
-/// Returns the weight of each adjacent element midpoint in the mean velocity (2.39) around a collocation point. The residual velocity is nearly a
-/// wave that vanishes at the collocation points; the mean of this wave is `mean_of_wave` times its value at the midpoints.
+/// Returns the weight of each adjacent element midpoint in the mean velocity (2.39) around a collocation point. Between collocation points the
+/// residual velocity is nearly a wave, whose mean is `mean_of_wave` times its value at the midpoints.
 double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
 
 /// Returns the indices (in `middles`) of the midpoints of the elements that touch a collocation point. In a periodic wall these are the elements of
