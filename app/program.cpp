@@ -82,7 +82,7 @@ std::vector<std::string> kinds_of_decks() {
   return names;
 }
 
-/// Returns a commented deck of this kind.
+/// Returns the text of the example deck with this name, with a comment for each key.
 std::string new_deck(const std::string& name) {
   const Kind& kind = *std::ranges::find(kinds, name, &Kind::name);
   Scene scene;
@@ -184,7 +184,7 @@ void find(std::string& file, const std::string& kept, const Arguments& arguments
   scene.files.emplace_back(file, kept);
 }
 
-/// Finds the files of the shapes and the copies of a kind of particle, and reads the shape.
+/// Finds the files that a kind of particle names (shapes, positions of copies), and reads the shape.
 void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
   if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
@@ -236,7 +236,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();
-  if (whole.resume) arguments.resume += "/level_0";  // where the files that the deck names are kept
+  if (whole.resume) arguments.resume += "/level_0";  // the directory of level 0 has copies of the files that the deck names
   accuracy::Program program;
   program.deck = [&](const std::vector<std::string>& settings) {
     deck::Document level = deck::read({}, settings, base);

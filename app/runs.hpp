@@ -14,7 +14,7 @@ constexpr int stopped = 4;
 /// signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);
 
-/// Runs the computation that Steady, Periodic or Spectrum request. Returns and throws like `simulate`. Collective.
+/// Runs the computation that the section Steady, Periodic or Spectrum of the deck requests. Returns and throws like `simulate`. Collective.
 int find_steady(const Scene& scene, const RunRequest& request);
 
 /// Solves for the traction on a body with prescribed motion, and records one row and one snapshot. Returns the exit code like `simulate`. Collective.

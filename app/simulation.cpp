@@ -200,7 +200,8 @@ class Run {
     }
   }
 
-  /// Makes a step. If the limiter cannot keep the particles apart after it, repeats it from the state `before` with half its size.
+  /// Makes a time step. If particles are too close after the step for the contact limiter to keep them apart, repeats the step from the state
+  /// `before` with half its size.
   void advance_apart(motion::GuardedDynamics& motion, double limit, const motion::State& before) {
     for (int rejected = 0;; ++rejected) {
       report_ = scheme_->advance(motion, state_, limit);
@@ -280,7 +281,7 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // the snapshot has added to the totals, and the next solve starts from the solution of the snapshot
+    if (pictured_) settle();  // because the snapshot has added to the totals; the next solve also starts from its solution
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);
@@ -347,7 +348,7 @@ class Run {
     return last.whole ? code : stopped;
   }
 
-  /// Returns a status text without its colon, for a message.
+  /// Removes the colon from a status, so that it can be used within a message.
   static std::string spoken(std::string status) {
     std::erase(status, ':');
     return status;
@@ -369,7 +370,7 @@ class Run {
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
-  bool adapting_ = false;     // true if the latest step has reached the adaptation of the mesh
+  bool adapting_ = false;     // true if the latest step has begun to adapt the mesh, which must then be undone if the step fails
   bool interrupted_ = false;  // true if a step was interrupted and discarded
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;

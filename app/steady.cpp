@@ -104,8 +104,9 @@ class SteadyRun {
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
-  /// Finds the steady shape of a system through weaker flows, where the search from `start` has ended with `failed` and its best iterate x. Returns
-  /// `failed` and leaves x as it is if there is no flow to be weakened, or if the way does not lead to the full flow.
+  /// Finds the steady shape of a system by continuation from weaker flows, after the search from `start` has failed with the report `failed` and the
+  /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not reach
+  /// the full flow.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
     if (!(of->scene.speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
@@ -144,7 +145,8 @@ class SteadyRun {
       throw RunFailure(formatted("no shape that comes back was found: after %d periods it misses that by %.2g", found.iterations, found.rest));
   }
 
-  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening, since both could alternate forever.
+  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening, because refinement and coarsening could
+  /// alternate forever.
   bool adapt() {
     if (totals_.coarsenings > 0 || !system_->particle->adapt(state_, totals_)) return false;
     results_.remesh(system_->particle->body(), system_->particle->bezier());
@@ -216,7 +218,7 @@ class SteadyRun {
     return made;
   }
 
-  /// Puts another system on the mesh in `mesh`.
+  /// Transfers a system to the mesh of the checkpoint `mesh`, with the current shape.
   void carry_to(System& system, const output::Checkpoint& mesh) const {
     Resumed resumed;
     resumed.state.x = state_.x, resumed.totals.phase_angle = system.particle->phase_angle(), resumed.checkpoint = mesh;
@@ -224,7 +226,7 @@ class SteadyRun {
     system.begin(state_.x);
   }
 
-  /// Adds the work of a system that is dropped.
+  /// Adds the operation counts of a system, which is then dropped, to the totals.
   void count_out(const System& system) {
     work_ = work_ + system.particle->work(), kernel_ = kernel_ + system.particle->kernel_evaluations();
   }
@@ -375,13 +377,13 @@ class SteadyRun {
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
-  std::optional<output::Checkpoint> mesh_;                              // mesh of these systems, if it is not the mesh of the deck
+  std::optional<output::Checkpoint> mesh_;                              // mesh of `systems_`, if it is not the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
-  coupling::Work work_;         // work of systems that were dropped
+  coupling::Work work_;         // operation counts of systems that were dropped
   stokes::Evaluations kernel_;  // kernel evaluations of systems that were dropped
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;

@@ -15,7 +15,7 @@ namespace tanktread::accuracy {
 /// 89 of 100 of the 905 estimates for all series. An estimate with the largest or the mean C of several levels is farther off, and so is one from a
 /// ratio fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
 struct Estimate {
-  double error = 0;       ///< estimated error of the finest level; NaN if nothing can be said
+  double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels: E_(l-1)/E_l times C_(l-1)/C_l; NaN if it is unknown
   std::string untrusted;  ///< reason for which the estimate cannot be trusted; empty if it can
   bool trusted() const { return untrusted.empty(); }
@@ -27,11 +27,11 @@ constexpr double safety = 1.2;
 /// A request is met if the estimate times this factor does not exceed it, because the error may be larger than its estimate.
 constexpr double margin = 1.5;
 
-/// Smallest and largest ratios with which an estimate is trusted.
+/// Smallest and largest `Estimate::ratio` with which an estimate is trusted.
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
-/// Returns the estimate from the differences of all pairs of successive levels, coarse to fine, and the expected sizes of the errors of all levels,
-/// one more. `scale` is the largest magnitude of the series: differences below 1e-10 times `scale` are round-off.
+/// Returns the estimate. `differences`: of all pairs of successive levels, coarse to fine. `expected`: expected sizes of the errors of all levels,
+/// one entry more. `scale`: largest magnitude of the series; differences below 1e-10 times `scale` are round-off.
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected);
 
 /// A quantity as a function of time, or of another abscissa. Abscissas ascend.
@@ -53,8 +53,8 @@ double mean(const Curve& curve);
 /// the curve has fewer than 32 points.
 double statistical_error(const Curve& curve);
 
-/// Returns a curve at other abscissas: the largest value at the adjacent abscissas of the curve, one more on each side included, so that a zero of a
-/// difference is no zero of an error. NaN values are skipped.
+/// Returns an upper envelope of a curve at the abscissas `at`: at each abscissa, the largest of the values at the two nearest points of the curve on
+/// each side. The error is then not taken for zero where a difference crosses zero. NaN values are skipped.
 std::vector<double> envelope(const Curve& curve, const std::vector<double>& at);
 
 }  // namespace tanktread::accuracy

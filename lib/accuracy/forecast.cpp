@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A directory that is deleted with this object. All ranks use the same one.
+/// Temporary directory, one for all ranks, that is deleted with this object.
 class Temporary {
  public:
   Temporary() {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// How the directory of a level continues.
+/// State of the directory of a level: finished, to be resumed, or to be run anew.
 enum class Start { finished, resume, anew };
 
 class Ladder {
@@ -47,7 +47,7 @@ class Ladder {
   }
 
  private:
-  static constexpr int balanced_from = 3;  // first level whose parts can be balanced; before it their errors are not known
+  static constexpr int balanced_from = 3;  // first level with balanced tolerances; on coarser levels, the shares of the error are unknown
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
@@ -73,7 +73,7 @@ class Ladder {
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns the sentence with which the ladder stops before level k because of its limit; empty if it goes on.
+  /// Returns why the ladder stops before level k because of its wall-clock limit, as a sentence; empty if it continues.
   std::string reason_to_stop(int k) const {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
@@ -115,8 +115,8 @@ class Ladder {
     })[0] != 0;
   }
 
-  /// Runs level 2 with looser tolerances of time and of quadrature, and sets the shares of these parts in the error: the largest ones of all requests
-  /// that are not met. Returns `stopped`, or 0.
+  /// Runs level 2 twice more, with a looser tolerance of time and with one of quadrature. Sets shares_ to the shares of these parts in the error,
+  /// each the largest among all requests that are not met. Returns `stopped`, or 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -179,7 +179,7 @@ class Ladder {
     return Start::anew;
   }
 
-  /// Estimates the errors of the finest level and says what is missing. Returns whether all requests are met.
+  /// Estimates the errors of the finest level k and prints them next to the requests. Returns whether all requests are met.
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
       answers_.clear();
@@ -192,7 +192,7 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether the two finest levels have an obstacle, so that finer ones have it too.
+  /// Returns whether the two finest levels have an obstacle (see `obstacle`). It is then expected on finer levels too.
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};
@@ -240,8 +240,8 @@ class Ladder {
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
   bool balanced_ = false;                           // true if `shares_` is measured
-  std::vector<double> shares_{0.25, 0.25};          // errors of time and quadrature at level 2, divided by the whole error
-  std::string failure_, failure_of_last_;           // messages of the last level that failed, and of the last level if it failed
+  std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
+  std::string failure_, failure_of_last_;           // message of the latest failure; message of the latest level, empty if it succeeded
 };
 
 }  // namespace

@@ -31,7 +31,7 @@ struct Task {
   std::string deck;     ///< effective deck, with its requests
   std::filesystem::path directory;
   bool resume = false, overwrite = false, quiet = false;
-  bool runs_in_time = true;  ///< false for searches, which cannot be resumed
+  bool runs_in_time = true;  ///< false for searches for steady or periodic shapes, which cannot be resumed
 };
 
 /// Exit codes of a ladder: all requests are met; one is not met on the finest allowed level; the ladder was stopped, by a signal or by its limit,
@@ -41,7 +41,7 @@ enum Code { met = 0, missed = 1, stopped = 4 };
 /// Name of the deck file in the directory of a ladder (runs of one deck on finer and finer levels).
 constexpr const char* ladder_file = "ladder.yaml";
 
-/// Returns the deck of the ladder in a directory; nothing if the directory holds none. Collective.
+/// Returns the deck of the ladder (runs on finer and finer levels) in a directory; nothing if the directory holds no ladder. Collective.
 std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 
 /// Climbs the ladder (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of the directory. The results of the finest
@@ -54,8 +54,8 @@ int climb(const Task& task, const Program& program);
 /// seconds. The lines are those of the first rank. Collective.
 std::vector<std::string> forecast(const Task& task, const Program& program);
 
-/// Returns the predicted seconds of the next level from those of the levels before it, coarse to fine: the last one times its growth, which is
-/// limited to 1.5 ... 5; 2.5 if it is unknown.
+/// Returns the predicted seconds of the next level. `seconds`: of the levels before it, coarse to fine. The prediction is the last value times the
+/// ratio of the last two, limited to 1.5 ... 5, or times 2.5 if there is only one value.
 double predicted_seconds(const std::vector<double>& seconds);
 
 }  // namespace tanktread::accuracy

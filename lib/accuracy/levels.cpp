@@ -15,7 +15,7 @@ namespace tanktread::accuracy {
 namespace {
 
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
-constexpr double least_quadrature = 1e-6;  // far sums in single precision and the rules of near panels keep this
+constexpr double least_quadrature = 1e-6;  // smallest error that single-precision far sums and near-panel rules reach
 
 /// Reads values of a deck and collects settings.
 class Setter {
@@ -33,7 +33,7 @@ class Setter {
 
   void set(const std::string& path, double value) { all.push_back(path + "=" + deck::number_text(value)); }
   void set_whole(const std::string& path, double value, double least, double most) { set(path, std::clamp(std::round(value), least, most)); }
-  /// Multiplies a value that the deck has.
+  /// Multiplies the value of a key by `factor` if the deck has the key.
   void scale(const std::string& path, double factor) {
     if (has(path)) set(path, number(path, 0) * factor);
   }
@@ -67,7 +67,8 @@ std::string of_particle(const std::string& prefix, const std::string& key) { ret
 
 bool from_file(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "file"; }
 
-/// Returns the elements per side of the deck, for a polar mesh half the elements from pole to pole; 0 if the mesh is given by a file.
+/// Returns the number of elements per side in the deck; for a polar mesh, half the number of elements from pole to pole. Returns 0 if the mesh is
+/// given by a file.
 double side_of(const Setter& deck, const std::string& prefix) {
   if (from_file(deck, prefix)) return 0;
   if (deck.text(prefix + "Surface/mesh") == "polar") return deck.number(prefix + "Surface/meridional elements", 16) / 2;

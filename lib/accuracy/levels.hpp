@@ -10,7 +10,8 @@ namespace tanktread::accuracy {
 /// Values of all keys of a deck in effect, as text, by path (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
-/// Level of each part. The parts of a usual level are equal; a level that differs from another one in one part measures the error of this part.
+/// Level of refinement of each part of the discretisation: mesh, time integration, quadrature. Usually the three are equal. Two levels that differ in
+/// one part only measure the error of this part.
 struct Level {
   int mesh = 0, time = 0, quadrature = 0;
 
@@ -27,32 +28,32 @@ int elements_per_side(int level);
 double tolerance(int level);
 
 /// Returns the expected size of the error of a level, 1 at level 0: the geometric mean of the error of the mesh, n^-4, and of the tolerances,
-/// 4^-level. A part that is looser than the mesh is assumed not to matter.
+/// 4^-level. Depends only on the level of the mesh, because a looser time integration or quadrature is assumed to contribute little.
 double expected_error(const Level& level);
 
-/// Factors by which one level reduces the errors of time integration and of quadrature. The local error of a step falls by 4, the error at a time by
-/// less.
+/// Factors by which one level reduces the errors of time integration and of quadrature. The time tolerance limits the local error of a step and falls
+/// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns level k with balanced parts. `time` and `quadrature`: errors of these parts at level 2, divided by the whole error there; 0.25 leaves the
-/// tolerances as they are. A part is loosened by up to two levels as long as its error is at most a fourth of the expected one, and otherwise
-/// tightened by up to two levels.
+/// Returns level k with the tolerances of time and quadrature adjusted to their share in the error. `time` and `quadrature`: errors due to time
+/// integration and to quadrature at level 2, divided by the whole error there; 0.25 leaves the tolerances as they are. A tolerance is loosened by up
+/// to two levels as long as its error is at most a fourth of the expected one, and otherwise tightened by up to two levels.
 Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:
-/// - `elements per side` is n. A polar mesh has 2n elements from pole to pole, and around the pole axis as many as the deck's ratio gives. Of several
-///   particles, the ratios of their meshes are those of the deck.
-/// - Tolerances and lengths of an adaptive mesh are scaled as the error of a mesh, n^-4, and the length of its elements, 1/n.
-/// - Walls have 4n elements around, or in proportion as many as the deck gives.
-/// - `Time/tolerance` is 2e-3/4^level; a fixed step is divided by 4^(1/2) per level, with which an error of second order falls as fast.
-/// - `Quadrature/tolerance` is the same, but not below 1e-6; rules of fixed points have 2 more points per level.
-/// - Tolerances of solvers and searches are kept below those of the level.
+/// - `elements per side` is n. A polar mesh has 2n elements from pole to pole; the number of elements around the pole axis keeps its ratio to 2n. If
+///   there are several particles, n belongs to the finest mesh, and the ratios between the meshes are kept.
+/// - In the section Adaptation, tolerances are multiplied by r^4 and lengths by r, where r is the deck's number of elements per side divided by n.
+/// - Walls have 4n azimuthal elements if the deck has the default number, 24, and otherwise proportionally more or fewer.
+/// - `Time/tolerance` is 2e-3/4^level; a fixed step is halved per level, so that an error of second order also falls by a factor of 4.
+/// - `Quadrature/tolerance` equals `Time/tolerance`, but is at least 1e-6; rules with a fixed number of points have 2 more points per level.
+/// - Tolerances of solvers, and of searches for steady and periodic shapes, are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 
-/// Returns the particles whose mesh is given by a file, and so is the same on every level, by path of their section.
+/// Returns the paths of the sections of particles whose mesh is given by a file and is therefore equal on all levels.
 std::vector<std::string> fixed_meshes(const Values& deck);
 
-/// Throws UserError if the deck starts from a shape of its own mesh, which no other level has.
+/// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh.
 void check_levels(const Values& deck);
 
 /// Returns the effective deck without this section.

@@ -58,8 +58,8 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, see `estimated`: those of mesh and tolerances together. If `looser` shows that a share of
-/// the error at level 2 is that of time integration, this share falls with its tolerance.
+/// Returns the expected sizes of the errors of the levels, see `estimated`. By default they combine mesh and tolerances. If `looser` shows that a
+/// share of the error at level 2 is due to time integration, this share decreases with the time tolerance only.
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;
@@ -173,7 +173,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
-      if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // rows before a fold have its error
+      if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // a row has the error of the next fold or of the end
         for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;
       one.values = envelope(pairs.back(), at);
       const double factor = estimate.error / std::max(largest(pairs.back().values), std::numeric_limits<double>::min());

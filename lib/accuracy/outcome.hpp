@@ -22,48 +22,49 @@ struct Outcome {
   double seconds = 0;  ///< wall seconds that the level has taken
 };
 
-/// Returns whether two decks differ at most in `Time/final time` and the section `Output`, so that a run of one is resumed with the other.
+/// Returns whether two decks differ at most in `Time/final time` and the section `Output`, so that a run of one deck can be resumed with the other
+/// deck.
 bool resumes(const std::string& one, const std::string& other);
 
 /// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
-/// Returns a series as a function of time. Of a branch of steady shapes, whose points differ between levels, only its folds and its last point are
-/// compared; the abscissa is their index. A run of one row has one point.
+/// Returns a series as a function of time. For a branch of steady shapes, whose points differ between levels, returns the values at its folds and its
+/// last point, as a function of their index. A run of one row gives one point.
 Curve curve(const output::RunRecord& record, const std::string& series);
 
 /// The estimate for one request.
 struct Answer {
   Request request;
   Estimate estimate;
-  double value = 0;      ///< value that the error is of: the largest magnitude over the run, the last value, or the average
+  double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< the request in the unit of the series
   bool met = false;
-  double statistical = 0;  ///< statistical error of an average of several particles, which the estimate does not contain; NaN if it is unknown
+  double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
 };
 
 /// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: the run of level 2 with a looser tolerance of time, if
 /// there is one; it shows which share of the errors falls with this tolerance.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
-/// Returns the error that one part of the discretisation, which is one level looser in `looser`, has at `level` for a request. `ratio`: factor by
-/// which one level reduces it.
+/// Returns the error of `level` for a request that is due to one part of the discretisation (time integration or quadrature). `looser`: a run in
+/// which only this part is one level looser. `ratio`: factor by which one level reduces the error of this part.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
-/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. Judges the finest level:
-/// - the limiter of contacts acts, whose forces depend on the time step;
-/// - the finest run warns of wrinkles that its mesh does not represent.
+/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. The finest level is checked for
+/// - forces of the contact limiter, because they depend on the time step;
+/// - a warning of wrinkles that its mesh does not represent.
 std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.
 struct SeriesError {
   std::string name, unit, si;
   std::vector<double> values;  ///< NaN where the estimate cannot be trusted
-  std::string untrusted;       ///< reason, empty if it can be trusted
+  std::string untrusted;       ///< reason why the estimate cannot be trusted; empty if it can
 };
 
-/// Returns the errors of all series of the finest level that have one (`has_error`), in the order of the record.
-/// `looser`: see `answer`.
+/// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: see
+/// `answer`.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 }  // namespace tanktread::accuracy

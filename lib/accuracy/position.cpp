@@ -85,7 +85,7 @@ FromCell distance_from_cell(const StoredSurface& surface, const std::vector<int>
   return found;
 }
 
-/// The nodes of a surface in cubes of space, for the search of the nearest one.
+/// The nodes of a surface, sorted into cubes of space so that the node nearest to a position is found quickly.
 class Cubes {
  public:
   explicit Cubes(const StoredSurface& surface) : surface_(surface), cells_of_(static_cast<std::size_t>(surface.points.rows())) {
@@ -108,7 +108,7 @@ class Cubes {
             for (const int node : found->second)
               if (const double off = (surface_.points.row(node).transpose() - x).norm(); off < least) least = off, nearest = node;
     if (nearest < 0) return std::numeric_limits<double>::quiet_NaN();
-    std::set<std::size_t> around;  // neighbours of the cells at the nearest node
+    std::set<std::size_t> around;  // cells that share a node with the cells at the nearest node
     for (const std::size_t c : cells_at(nearest)) {
       const FromCell found = distance_from_cell(surface_, surface_.cells[c], x);
       least = std::min(least, found.distance);
@@ -126,7 +126,7 @@ class Cubes {
   const StoredSurface& surface_;
   std::vector<std::vector<std::size_t>> cells_of_;  // cells that contain a node
   std::map<std::array<long, 3>, std::vector<int>> nodes_;
-  double size_ = std::numeric_limits<double>::min();  // edge of a cube: the largest diameter of a cell
+  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes: the largest diameter of a cell
 };
 
 }  // namespace

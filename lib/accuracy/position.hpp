@@ -1,5 +1,5 @@
 #pragma once
-// Distances between the surfaces of two levels.
+// Distances between surfaces computed on two levels of refinement.
 
 #include <filesystem>
 #include <vector>

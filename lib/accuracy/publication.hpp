@@ -1,5 +1,5 @@
 #pragma once
-// Results of a ladder: those of its finest level, with the estimated errors.
+// Results of a ladder (runs on finer and finer levels): results of the finest level, with their estimated errors.
 
 #include <string>
 #include <vector>

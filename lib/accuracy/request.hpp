@@ -19,7 +19,7 @@ struct Request {
   double value = 0;       ///< largest allowed error, in the unit of the series, or relative
   bool relative = false;  ///< true if `value` is relative to the largest magnitude of the series over the run
 
-  /// Returns the request as text, as a deck gives it.
+  /// Returns the request as the text that a deck contains.
   std::string text() const;
 };
 
@@ -37,15 +37,15 @@ struct Options {
   void declare(deck::Section& section);
 };
 
-/// Returns the key and value of a deck, `Accuracy/requests=...`, that request what the arguments of the command line request. `texts` is not empty.
+/// Returns the setting `Accuracy/requests=...` that is equivalent to the requests `texts` of the command line. `texts` is not empty.
 std::string setting_of(const std::vector<std::string>& texts);
 
 /// Throws UserError, with the name that was probably meant, if a requested series is not among `names`, or has no error to estimate (see
 /// `has_error`).
 void check_series(const std::vector<Request>& requests, const std::vector<std::string>& names);
 
-/// Returns whether an error of the series is estimated. Series of the work of a run, for example `wall_seconds`, of the time, of indices, and of
-/// errors themselves have none.
+/// Returns whether an error of the series is estimated. There is none for series that describe the work of a run (for example `wall_seconds`), for
+/// the time, for indices, and for errors themselves.
 bool has_error(const std::string& series);
 
 }  // namespace tanktread::accuracy

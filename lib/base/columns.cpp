@@ -36,7 +36,7 @@ void Columns::append(const Columns& other, const std::string& prefix) {
 }
 
 void Columns::sort(const std::function<std::size_t(const std::string& name)>& rank) {
-  std::vector<std::pair<std::size_t, std::size_t>> order;  // rank and unsorted index of each column
+  std::vector<std::pair<std::size_t, std::size_t>> order;  // sorting rank and original index of each column
   for (const Column& column : columns_) order.emplace_back(rank(column.name), order.size());
   std::ranges::sort(order);
   Columns sorted(every_);

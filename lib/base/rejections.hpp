@@ -9,7 +9,7 @@
 
 namespace tanktread {
 
-/// A choice that a deck makes: as it is in this deck, and as it is in general, for the table of all rejected combinations.
+/// Text for a choice of the deck: `here` as this deck makes it, `any` in general, for the table of all rejected combinations.
 struct Chosen {
   Chosen(const char* always) : here(always), any(always) {}
   Chosen(std::string always) : here(std::move(always)), any(here) {}
@@ -18,14 +18,14 @@ struct Chosen {
   std::string here, any;
 };
 
-/// Collects combinations of choices that contradict each other. They are added by the classes that know the reasons.
+/// Collects combinations of choices that contradict each other. The classes that know the reasons add them.
 class Rejections {
  public:
   struct Row {
     std::string one, other, why;
   };
 
-  /// `every`: collects the combinations of all decks, as rows of a table; otherwise those of one deck, as sentences.
+  /// `every`: if true, collects the combinations of all decks as rows of a table; otherwise, those that this deck makes as sentences.
   explicit Rejections(bool every = false) : every_(every) {}
 
   /// Adds a combination if both choices are made. `why`: reason, appended to the sentence.

@@ -29,7 +29,7 @@ class Document {
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // throws the errors of wrong values first: this error may be their consequence, because such keys keep their defaults
+      refuse_wrong_values();  // throws the errors of wrong values first, because such keys keep their defaults, which may have caused this error
       throw;
     }
     finish();

@@ -32,7 +32,7 @@ class Parts<Made(On...)> {
       if (values.size() != columns.size()) throw std::logic_error(name + " gives another number of values than it has columns");
       for (std::size_t k = 0; k < values.size(); ++k) to.add(values[k], columns[k]);
     }
-    /// Adds the columns with value 0, for a list of column names.
+    /// Adds the columns with value 0. Used if only the column names are needed.
     void add_columns(Columns& to) const { add_columns(std::vector<double>(columns.size(), 0.), to); }
   };
 

@@ -30,15 +30,15 @@ struct List {
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
-  bool alike = false;                               ///< true if inner sections share keys through the key `like` and the section `defaults`
+  bool alike = false;                               ///< true if inner sections take unset keys from the section that `like` names, or from `defaults`
   std::vector<std::string> mentioned;               ///< names that are allowed in this section although they are not declared
   std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null if the section is for this program
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };
 
-/// State of a Section: the list that it fills, whether the manual is being made, and the units of the deck (null if the deck defines none).
-/// In the manual, sections whose names the user chooses are declared once, as `<name>`.
+/// State of a Section: the record that it fills, whether the manual is being made, and the units of the deck (null if the deck defines none). In the
+/// manual, sections whose names the user chooses are declared once, as `<name>`.
 struct Section::State {
   List* list;
   bool documenting;

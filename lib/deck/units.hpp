@@ -23,8 +23,8 @@ class Units {
   /// Throws UserError if the option for the unit of length, time or force does not have this dimension, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 
-  /// Returns the number that `text`, a number with or without a unit, is in the deck's units. Throws std::invalid_argument if its unit is not of this
-  /// kind. The message completes a sentence that begins with `text`.
+  /// Returns the value of `text`, a number with or without a unit, in the deck's units. Throws std::invalid_argument if the unit is not of this kind;
+  /// the message completes a sentence that begins with `text`.
   double number(const std::string& text, std::string_view kind) const;
 
   /// Returns a quantity of this kind in SI units, `1e-06 N/m`. `number`: its value in the deck's units. Empty if the kind is dimensionless.

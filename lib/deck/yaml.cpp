@@ -30,7 +30,7 @@ bool reads(const std::string& text, Number& number) {
   return error == std::errc() && last == end;
 }
 
-/// Returns a word, converted to the first of these types as which it can be read: truth value, whole number, number, text. A word in quotes is text.
+/// Converts a word to an entry, of the first of these types that fits it: truth value, whole number, number, text. A word in quotes is text.
 Teuchos::ParameterEntry typed(const YAML::Node& node) {
   const std::string& text = node.Scalar();
   const bool plain = node.Tag() == "?" || node.Tag().empty();
@@ -54,7 +54,7 @@ Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries)
   return Teuchos::ParameterEntry(values);
 }
 
-/// Returns a row of words, converted to the first of these types as which all words can be read: whole numbers, numbers, texts.
+/// Converts a row of words to an entry, of the first of these types that fits all words: whole numbers, numbers, texts.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));
@@ -94,7 +94,7 @@ class Walk {
     else if (value.IsSequence())
       list.setEntry(name, typed_row(words(value, path)));
     else
-      read(value, path, level + 1, list.sublist(name));  // adds an empty list if nothing follows the colon
+      read(value, path, level + 1, list.sublist(name));  // an empty section if nothing follows the colon
   }
 
  private:
@@ -102,7 +102,7 @@ class Walk {
     throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
   }
 
-  /// Returns the words of a row, or of rows of equal length one after the other.
+  /// Returns the scalars of a sequence, or of a sequence of rows of equal length, row after row.
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
     std::vector<YAML::Node> out;
     for (const YAML::Node& item : sequence) {

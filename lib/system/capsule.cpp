@@ -234,7 +234,7 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   return v;
 }
 
-/// Computes the velocity of a scene of rigid bodies only from the tractions on them (2.40).
+/// Computes the velocity of a scene that contains only rigid bodies, from the tractions on them (2.40).
 Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
   const auto clock = phases_.time("tractions");
   std::vector<Vec3> centres;
@@ -350,7 +350,8 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Returns rows of the double layer D (4.2) on every rank. The rank that owns a row's point provides the row: assembled earlier, or assembled here.
+/// Returns rows of the double layer D (4.2) on every rank. Each row is provided by the rank that owns its point. `assembled`: true if the rank-owned
+/// rows have been assembled before.
 stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
@@ -375,14 +376,15 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   constexpr double most_bytes = 1e9;
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;  // expected in films if the matrix fits
+  // Thin films between rigid bodies take many iterations, for which it is faster to assemble the matrix (72 n^2 bytes).
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
   const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product with rows of the rank-owned targets, gathered on all ranks
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of the assembled rows of all ranks with v, at all targets
     Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
     for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();

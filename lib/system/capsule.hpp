@@ -66,8 +66,7 @@ struct CapsuleParameters {
   std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; a symmetry without points: no
-                               ///< symmetry
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points if there is no symmetry
 };
 
 /// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
@@ -195,11 +194,12 @@ class Capsule : public Dynamics {
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set by `at`
   const std::optional<stokes::PeriodicCell>& cell() const { return lattice_.cell; }  ///< cell at the time set by `at`
 
-  /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The middle of the cell is the origin.
-  /// In a channel it is the middle of the channel, and in a straight tube, whose wall moves with the particles, the mean of the particles.
+  /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The cell is centred on the origin; in
+  /// a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
   std::vector<Vec3> put_into_cell(Net& x);
 
-  /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus that at the point. 0 in a duct, whose flow is periodic.
+  /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus the ambient velocity at the point itself. 0 in a duct,
+  /// whose flow is periodic.
   Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.cell_gradient() * shift); }
 
   const membrane::Membrane& membrane() const { return membrane_; }
@@ -298,14 +298,14 @@ class Capsule : public Dynamics {
   Ranks& ranks_;
   Phases& phases_;
   std::vector<int> own_points_;
-  std::vector<int> own_elements_;  // elements over which integrals for the rank-owned points run
+  std::vector<int> own_elements_;  // elements that contribute to the integrals for the rank-owned points
   bool folded_ = false;            // true if own_elements_ are fundamental elements only; integrals are then folded onto fundamental points
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
-  Loads loads_;  // loads in addition to elasticity and bending
+  Loads loads_;  // all loads other than elasticity and bending
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the
                                                                        // Jacobian; set if a membrane is viscous
   std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
@@ -330,7 +330,7 @@ class Capsule : public Dynamics {
   Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); empty unless the flow is not affine or there is a tube or a wall
   Lattice lattice_;
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
-  double latest_shift_ = 0;             // shift of the implicit system solved last
+  double latest_shift_ = 0;             // shift gamma dt of the implicit system solved last
   Net flux_, flux_response_;            // b and c of the volume projection P (2.8) in the Jacobian; empty if the Jacobian has no P
   std::vector<Mat3> gradients_;         // velocity gradients at the sites, at the last linearisation; only in a tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle

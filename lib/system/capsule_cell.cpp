@@ -48,8 +48,8 @@ Vec3 Capsule::cell_origin(const Net& x) const {
   return x.col(0).mean() * Vec3::UnitX();
 }
 
-/// Adds the velocity (2.47) of solids to u at the targets, in the rows of this rank: due to a load f and a velocity `moves`, and without particles if
-/// `with_empty`.
+/// Adds to the rank-owned rows of u the velocity (2.47) that the solids cause at the targets in response to the load f and the velocity `moves` of
+/// the particles. If `with_empty`, includes the flow of the solids without particles.
 void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   place_among_solids(x);

@@ -102,9 +102,9 @@ Net Capsule::without_flux(Net rate) const {
   return rate;
 }
 
-/// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). For a membrane that nearly conserves area it
-/// is the result of an implicit step for c, because c also changes the area, and the resulting stress, proportional to the large dilatation constant,
-/// would affect the next step.
+/// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). If the membrane nearly conserves area, it is
+/// the solution of an implicit step with the right-hand side c: c itself would change the area, and the resulting stress, proportional to the large
+/// dilatation modulus, would affect the next step.
 Net Capsule::inflation(const Net& c) {
   constexpr double rough = 1e-2;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(particles(), keeps_area)) return c;

@@ -130,8 +130,8 @@ void Capsule::make_layers() {
   if (double_layer_) double_layer_->share(ranks_.rank(), ranks_.size(), everybody);
 }
 
-/// Sets the rank-owned points, and the elements over which integrals for these points run: the fundamental elements that touch the points or their
-/// images. If an element is its own image, integrals run over all elements that touch the points.
+/// Sets the rank-owned points, and the elements whose integrals contribute to these points: the fundamental elements that touch the points or their
+/// images. If an element is its own image, uses all elements that touch the points instead.
 void Capsule::own(const surface::Share& share) {
   const surface::Symmetry& symmetry = parameters_.symmetry;
   const auto points = [&](int e) { return std::span<const int>(space_.elements[static_cast<std::size_t>(e)].points); };

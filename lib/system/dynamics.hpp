@@ -42,21 +42,20 @@ class Dynamics {
   /// Used by Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
-  /// Returns the error v - u of a velocity u at x, multiplied by an operator B that depends on x and that `correction` and `missed_of` account for
-  /// (the defect of u). If the velocity is the solution of a system B v = w, the defect is w - B u, which takes one sum over the surface and no
-  /// linear solve.
+  /// Returns the defect of a velocity u at x: the error v - u multiplied by an operator B. B may depend on x, and `correction` and `missed_of` take
+  /// it into account. If v is the solution of a system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
   /// Returns whether evaluating the velocity takes a linear solve that evaluating the defect of a given velocity does not take.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns what `solve` returns for r = shift (v - u), given the defect of the velocity u instead of v.
+  /// Returns the result of `solve` for r = shift (v - u), given the defect of the velocity u instead of v.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns missed(dv, delta) from defects instead of velocities. `change`: change that delta caused in the defect of the velocity (x - c)/shift
-  /// with any constant net c.
+  /// Returns the result of `missed` if the change of a defect is known instead of dv. `change`: change, due to delta, of the defect of the velocity
+  /// (x - c)/shift for any constant net c; without an operator B, it is dv - delta/shift.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
@@ -90,7 +89,7 @@ class Dynamics {
   /// Returns how much a shape differs from the shape at which operators were assembled: by default the norm of the displacement.
   virtual double distance(const Net& from, const Net& to) const { return norm(to - from); }
 
-  /// Returns the norm of `Time/tolerance`: the root mean square of the control points' displacement over R_C.
+  /// Returns the norm in which `Time/tolerance` is measured: the root mean square of the control points' displacement, divided by R_C.
   virtual double norm(const Net& displacement) const = 0;
 
  protected:

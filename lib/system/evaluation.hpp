@@ -31,7 +31,7 @@ class Evaluation {
   const std::vector<Net>& load_sums();                   ///< complete sums of the loads
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
-  /// rigid body this is the load df of (2.23), a rigid field with the force and torque on the fluid, and not the traction.
+  /// rigid body, this is the load df of (2.23), a rigid-motion field with the force and torque on the fluid. It is not the traction.
   const Net& load();
 
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape

@@ -50,8 +50,8 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals and the tangent of E1 at x for `derivative`. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change du of u for a displacement delta that changes the fluid velocity by dv. b, and W as a function of v, are kept fixed. The
-  /// normals are kept fixed too unless `velocity` was called last at x. Collective.
+  /// Returns the change du of u for a displacement delta that changes the fluid velocity by dv. Neglects the change of b and of the map from v to W.
+  /// Includes the change of the normals only if `velocity` was called last at x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
   /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).
@@ -82,7 +82,8 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // rest: v - W - w of (4.6) at the sites where u is evaluated; density: M0^{-1} dE1/dx at the collocation sites
+    Net x, rest, density;  // rest: fluid velocity relative to the mesh motion, v - W - w of (4.6), at the sites where u is evaluated; density:
+                           // M0^{-1} dE1/dx at the collocation sites
   };
   Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised

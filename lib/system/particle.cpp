@@ -61,7 +61,7 @@ std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
 
 namespace {
 
-/// Adds the virtual work that the function `add` computes to a particle's rows.
+/// Adds the virtual work of one particle, which the function `add` computes, to the rows of this particle in `work`.
 template <class Add>
 void add_rows(const spline::Block& block, Net& work, const Add& add) {
   Net own = Net::Zero(block.n_points, 3);

@@ -48,7 +48,7 @@ void place(std::span<Particle> particles);
 /// Returns the materials of all elements, each distinct material once.
 membrane::Materials materials(std::span<const Particle> particles);
 
-/// Returns the area to which the loads of all particles refer, or by_element if particles differ.
+/// Returns the area (unstressed or current) to which the loads of all particles refer; by_element if the particles differ.
 stokes::Measure measure(std::span<const Particle> particles);
 
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.

@@ -78,9 +78,10 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   return powers;
 }
 
-/// Returns the power input of the flow. In a duct flow it is the flow rate times the additional pressure drop due to the particles (2.7). Between two
-/// plates or among posts it is the power of the force that particles add to their motion, and of the pressure gradient g for the flow that is lost:
-/// sum_s V_s.F_s + g.int u dV. Other flows have a uniform gradient, and (6.11) applies; the walls of their tube move with the flow.
+/// Returns the power input by the flow. In a duct flow, it is the flow rate times the additional pressure drop due to the particles (2.7). Between
+/// two plates or among posts, it is sum_s V_s.F_s + g.int u dV: V_s is the velocity of solid s, F_s the force on the fluid that particles add to it,
+/// g the pressure gradient, and u the velocity that particles cause. Other flows have a uniform gradient, and (6.11) applies; the wall of a tube
+/// moves with such a flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
@@ -103,8 +104,8 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   return power;
 }
 
-/// Returns int (Df - p n).r over all particles by Gauss quadrature, where r is `left` and p is the mean of Df.n over each particle. p is subtracted
-/// because a uniform pressure does no work, so that the quadrature error of its single layer does not enter.
+/// Returns int (Df - p n).r over all particles by Gauss quadrature, where Df is the load, r the residual velocity `left`, and p the mean of Df.n over
+/// each particle. p is subtracted because a uniform pressure does no work; the quadrature error of its single layer then has no effect.
 double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, const Net& measured) const {
   const Net loads = values_ * load;
   double sum = 0;
@@ -132,7 +133,7 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   return all;
 }
 
-/// Returns v minus the right-hand side of (2.22) at `places_`.
+/// Returns the residual of (2.22), v minus the right-hand side, at the Gauss points `places_`.
 Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();

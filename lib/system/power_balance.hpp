@@ -17,8 +17,8 @@ namespace tanktread::coupling {
 
 /// Powers of all particles at one time, force x velocity.
 struct Powers {
-  double flow = 0;         ///< input of the ambient flow in excess of its input without particles (6.11)
-  double forces = 0;       ///< input of weights, forces on membranes and bodies, and contacts
+  double flow = 0;         ///< power input of the ambient flow minus its input without particles (6.11)
+  double forces = 0;       ///< power input of weight, of forces on membranes and bodies, and of contact forces
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
   double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow: remainder of the balance (6.12)

@@ -163,7 +163,7 @@ void Ranks::add(std::span<Net* const> nets) const {
 void Ranks::add(std::span<double> numbers) const {
   if (size() == 1) return;
   const auto clock = impl_->time();
-  constexpr std::size_t at_a_time = 1 << 24;  // a large matrix is sent in parts, because MPI counts by int and the sent data are a copy
+  constexpr std::size_t at_a_time = 1 << 24;  // sends large data in parts, because MPI counts with int and each part is copied
   for (std::size_t first = 0; first < numbers.size(); first += at_a_time) {
     const std::span<double> part = numbers.subspan(first, std::min(at_a_time, numbers.size() - first));
     const std::vector<double> mine(part.begin(), part.end());

@@ -16,8 +16,7 @@
 
 namespace tanktread::coupling {
 
-/// Session of MPI and Kokkos. Starts MPI only if an MPI launcher started this process. Must be the first object of main, and lasts as long as it
-/// lives.
+/// Session of MPI and Kokkos, which ends with this object. Starts MPI only if an MPI launcher started this process. Must be the first object of main.
 class Session {
  public:
   /// Removes the arguments `--kokkos-...` from the command line.

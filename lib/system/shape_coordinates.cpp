@@ -79,7 +79,7 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   for (Eigen::Index k = 0; k < shape_size(); ++k)
     drawn.col(k) = coordinates_along(dynamics.mesh_motion(of_shape(Eigen::VectorXd::Unit(shape_size(), k))));
   const double scale = slides.diagonal().cwiseAbs().mean();
-  for (const Net& field : dynamics.relabellings(x)) {  // rotations of the mesh are excluded, as in (4.17)
+  for (const Net& field : dynamics.relabellings(x)) {  // excludes mesh rotations, which do not change the shape, as in (4.17)
     if (!admits(field)) continue;
     const Eigen::VectorXd turn = coordinates_along(field).normalized();
     slides -= turn * (turn.transpose() * slides + scale * turn.transpose());
@@ -160,7 +160,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the tangential coordinates t whose coordinates y across the interface are 0.
+/// Returns the field with the tangential coordinates t and zero coordinates y across the interface.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

@@ -47,28 +47,28 @@ class ShapeCoordinates {
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                    const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
 
-  /// Lets relaxing meshes follow displacements (4.26), with the mesh motion of `dynamics` at x. Collective.
+  /// Makes meshes that relax by themselves follow displacements of x (4.26), by the linearised mesh motion of `dynamics`. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
-  /// Adds the coordinates of the fields. Changes are relative to the state y. `motion` must outlive this object.
+  /// Adds the coordinates of the fields on the surfaces (4.34). They represent changes relative to the state y. `motion` must outlive this object.
   void add_fields(CoupledMotion& motion, const Net& y);
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the field with these coordinates, or the change of a state
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of the field with these control values, or of the change of a state
+  Net displacement(const Eigen::VectorXd& y) const;     ///< displacement with these coordinates (control values); with fields, change of the state
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of a displacement (control values); with fields, of a change of the state
   bool admits(const Net& field) const;                  ///< true if the field has, up to small errors, the symmetry of the coordinates
   Net admitted(Net field) const;                        ///< the symmetric field that equals `field` at fundamental points
 
  private:
   struct Coordinate {
     int site;
-    Vec3 direction;  // zero for a coordinate of the projected scalar field
+    Vec3 direction;  // direction of the displacement; zero if the coordinate is a normal component of the projected field
   };
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // displacement with these coordinates; its part that across() omits
+    Net field, rest;              // control values of the translation; the part of them that across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;

@@ -31,7 +31,8 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
   return defect <= 1e-10 * size && gradient_defect <= 1e-10 * gradient_size;
 }
 
-/// Returns whether the image of every lattice vector is a lattice vector. A flow that has the symmetry too keeps this at all times.
+/// Returns whether the lattice has the symmetry: the image of every lattice vector is a lattice vector. If the flow has the symmetry too, this
+/// remains true at all times.
 static bool keeps(const stokes::PeriodicCell& cell, const surface::Image& image) {
   for (int d = 0; d < cell.n(); ++d) {
     Vec3 steps = cell.coordinates(image.signs.cwiseProduct(cell.vectors().col(d)));
@@ -74,7 +75,7 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation) {
-  constexpr double fitted = 1e-2;  // a sphere of three by three elements per face satisfies this to 1e-3
+  constexpr double fitted = 1e-2;  // bound on the relative normal velocity of the rotation; it is 1e-3 for a sphere with 3 x 3 elements per face
   const Vec3 centre = block.rows(unstressed).colwise().mean().transpose();
   Net field = Net::Zero(x.rows(), 3);
   double across = 0, all = 0;

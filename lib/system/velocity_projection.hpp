@@ -25,7 +25,7 @@ namespace tanktread::coupling {
 /// zeros of B4, two per parametric direction, because the error of the best fit vanishes there.
 class VelocityProjection {
  public:
-  /// If the scene is symmetric, velocities are evaluated in the fundamental part only.
+  /// If the scene is symmetric, velocities are evaluated only on the fundamental part of the surface.
   VelocityProjection(const spline::Space& space, const Net& unstressed, const surface::Symmetry& symmetry,
                      const membrane::DirectSolverOptions& direct, const Ranks& ranks);
 
@@ -33,7 +33,7 @@ class VelocityProjection {
   const std::vector<int>& own() const { return own_; }                         ///< sites of this rank, ascending; each site belongs to one rank
   const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< N_A at the sites, shape (sites, N)
   Net normals(const Net& x) const;                                             ///< unit normals of the surface x at the sites
-  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), symmetric
+  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), made symmetric if the scene is
   Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< control values of a scalar that is equal at all symmetry images, such as
                                                                          ///< a normal component
 

@@ -9,7 +9,7 @@
 namespace tanktread::coupling {
 
 namespace {
-constexpr Eigen::Index few = 64;    // number of points up to which each rank evaluates all points itself
+constexpr Eigen::Index few = 64;    // largest number of points for which each rank evaluates all points instead of a share
 constexpr double sharpness = 1e-2;  // tolerance relative to other layers
 }
 
@@ -26,7 +26,8 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
   ends_.push_back(section(channel_->end(), -1));
 }
 
-/// Returns the cross-section at the position s along the centre line, with the flow of a straight duct of this section and flow rate.
+/// Returns the cross-section at the position s along the centre line, and the fully developed flow through it with the flow rate of the channel.
+/// `inward`: 1 at the inlet, -1 at the outlet.
 stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
   const surface::Channel::Section at = channel_->section(s);
   const double area = channel_->outline().area() * at.factor.prod();

@@ -81,8 +81,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest width of a film, divided by the smaller radius, for which a film inverse is set up. Wider films need none: across them, modes whose
-/// wavelength is the width are damped by a third or more.
+/// Largest thickness of a film, divided by the smaller radius of the two bodies, for which a film inverse is set up. Thicker films need none: modes
+/// whose wavelength equals the thickness decay across the film by a third or more.
 constexpr double widest = 0.5;
 
 /// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.

@@ -39,7 +39,7 @@ class OneBodyInverses {
   /// `placed`: current positions of the bodies.
   void solve(const RigidParticles& placed, Net& y) const;
 
-  /// Returns the columns of the inverse of particle p for right-hand sides at `sites`; shape (3 points, 3 sites).
+  /// Returns the columns of the inverse of the system (2.23) of particle p that belong to right-hand sides at `sites`; shape (3 points, 3 sites).
   Eigen::MatrixXd columns(const RigidParticles& placed, std::size_t p, std::span<const int> sites) const;
 
  private:
@@ -74,7 +74,8 @@ class FilmInverses {
   /// Returns the rows of the double layer H for the sites `targets`, three per site, in their order; shape (3 targets, 3 N).
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
-  /// `x`: net of all particles. Films are set up for the pairs of bodies that have an inverse in `alone`.
+  /// `x`: net of all particles. Films (thin layers of fluid between two bodies) are set up only for pairs of bodies that both have an inverse in
+  /// `alone`.
   FilmInverses(std::span<const Particle> particles, const OneBodyInverses& alone, const RigidParticles& placed, const Net& x, const RowsOf& rows_of);
 
   /// Adds ((1 + C)^-1 - 1) y to the values y at the sites of each film.

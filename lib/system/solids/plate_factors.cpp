@@ -41,7 +41,7 @@ PlateFactors::PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>
   for (std::size_t k = 1; k < inverse_.size(); ++k) inverse_[k] = inverse_[k].inverse().eval();
 }
 
-/// Returns the transform of a net, shape (3 plates, n1 n2).
+/// Returns the discrete Fourier transform of a net on the plates, shape (3 plates, n1 n2).
 Eigen::MatrixXcd PlateFactors::transformed(const Net& u) const {
   const auto [n1, n2] = grid_;
   Complex all(3 * plates_, n1 * n2);

@@ -21,8 +21,8 @@ class PlateFactors {
   /// point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added for k = 0, so that uniform densities have an inverse.
   PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>& grid, const std::array<int, 2>& point, const Eigen::MatrixXd& regular);
 
-  /// Returns the solution for the velocities u of k != 0, and as row p of `uniform` the mean velocity of plate p, for which f must be added by the
-  /// caller.
+  /// Returns the part of f with wave numbers k != 0 for the velocities u. Sets row p of `uniform` to the mean velocity of plate p, for which the
+  /// caller must add the part of f with k = 0.
   Net solve(const Net& u, Net& uniform) const;
 
   /// Returns M(0) + `regular`.
@@ -35,7 +35,7 @@ class PlateFactors {
   std::array<int, 2> grid_;
   int plates_;
   std::array<Complex, 2> waves_;  // exp(-2 pi i k s/n) along both directions
-  std::vector<Complex> inverse_;  // of M(k), at k1 n2 + k2
+  std::vector<Complex> inverse_;  // inverse of M(k), at index k1 n2 + k2
   Eigen::MatrixXd uniform_;
 };
 

@@ -114,8 +114,8 @@ class Resistance {
   std::optional<stokes::Layer> images_;  // layer of the images, in the laboratory frame
   stokes::Rows<double> image_rows_;      // rows of the images
   bool in_front_ = true;
-  std::optional<DenseFactors> factors_;  // LU factors of R times the operator that is solved (in a tube: of the isolated body); only for a body of
-                                         // few points
+  std::optional<DenseFactors> factors_;  // LU factors of R times the operator of (2.10), without the response of a tube; set only if there are few
+                                         // control points
   Net place_;                     // net in the laboratory frame
   Mat3 turn_ = Mat3::Identity();  // rotation from surface_ to place_
   Krylov krylov_;

@@ -50,7 +50,8 @@ class LoneRigidBody : public Dynamics {
   Net solve(double, const Net& r, double, const Secants&) override { return r; }  ///< J = 0: the motion is not stiff
   Net missed(const Net& dv, const Net&) override { return dv; }
   void restore_volume(Net& place) override;                       ///< normalises the quaternion; the volume of a rigid body needs no correction
-  double norm(const Net& displacement) const override;            ///< combines the displacement of the centre over R_C and the angle of rotation
+  double norm(const Net& displacement) const override;            ///< combines the displacement of the centre, divided by R_C, and the angle of
+                                                                  ///< rotation
 
   virtual RigidMotion motion(const Net& place) const = 0;
   virtual Net force_density(const Net& place) const = 0;  ///< force density on the fluid, control values
@@ -144,9 +145,9 @@ class FreeBodyInTube : public LoneRigidBody {
   double viscosity_;
   Krylov krylov_;
   double tolerance_;
-  mutable Net place_;  // latest position, the solution at this position, and the unknowns of the linear system
-  mutable Solution solution_;
-  mutable Eigen::VectorXd unknowns_;
+  mutable Net place_;                 // position of the latest solve
+  mutable Solution solution_;         // solution at this position
+  mutable Eigen::VectorXd unknowns_;  // unknowns of the linear system at this position
   mutable long iterations_ = 0;
 };
 

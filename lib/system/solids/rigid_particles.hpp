@@ -63,15 +63,15 @@ class RigidParticles {
   void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
                                              ///< body's load f
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w, adds <w> (2.23) if force and torque are given, and
-                                              ///< adds the collocation correction of the double layer R^-1 D w
+  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w; adds the collocation correction of R^-1 D w; adds <w> (2.23) if
+                                              ///< force and torque are given
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> (2.23) of bodies with prescribed motion; 0 in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the system is solved for the images of the bodies in the cell. `enter` replaces the bodies by these images: shifts[p] is the
-  /// position of particle p minus the position of its image, and `gradient` is the gradient of the flow. `carry` moves the image of particle p, if it
-  /// is a body, by `along` back to the position of the body, and adds the velocity difference `faster` to its velocity.
+  /// On a lattice, the system is solved with each body replaced by its image in the cell. `enter` sets the velocity differences between bodies and
+  /// images: shifts[p] is the position of particle p minus the position of its image, and `gradient` is the velocity gradient of the flow. `carry`
+  /// moves particle p, if it is a body, from its image back by `along`, and adds `faster` to its velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -85,13 +85,13 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< drive, including the forces set by `push`
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or force and torque including those of `push`
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// Returns the collocation correction of the velocity that the unit load k on the body induces on the same body, in the axes at rest (OwnLacking).
+  /// Returns the collocation correction (OwnLacking) of the velocity that a unit load k on the body causes on the body itself, in the axes at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
@@ -109,7 +109,7 @@ class RigidParticles {
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // force and torque (columns) of each unit rigid motion taken as a load
+    Eigen::Matrix<double, 6, 6> inertia;  // column k: force and torque of unit motion k if it is taken as a load
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
@@ -122,7 +122,7 @@ class RigidParticles {
     Rigid given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> nearest to w (2.23); `w`: net of all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this integral and moment over the surface
-    Net field(const RigidMotion& of) const;                             // values of a rigid field at the control points of the body
+    Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     RigidMotion load() const;                                           // coefficients a and b of the load -df = a + b x r (2.23) on the
                                                                         // fluid
     Net lacking_of(const RigidMotion& load) const;                      // collocation correction (OwnLacking) of R^-1 A f for f = a + b x r

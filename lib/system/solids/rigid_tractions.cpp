@@ -204,7 +204,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
-  Eigen::MatrixXd work(n, m);  // column k, product with a density: its work in the unit motion k
+  Eigen::MatrixXd work(n, m);  // product of column k with a density: work of this density in the unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);

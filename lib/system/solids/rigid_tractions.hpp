@@ -61,8 +61,8 @@ class RigidTractions {
     Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the correction of moment()
   };
 
-  /// Solves for bodies with net x, for which the tube has been set, with these centres and driving forces or motions. Results are kept until the next
-  /// call. Collective.
+  /// Solves for the densities and motions of the bodies with net x, for which the tube, if any, must have been set. `centres`: centres of the bodies.
+  /// `driven`: their prescribed forces and torques, or motions. Results are kept until the next call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
 
   const std::vector<Body>& bodies() const { return bodies_; }
@@ -98,7 +98,7 @@ class RigidTractions {
   Ranks& ranks_;
   std::vector<int> own_points_;
   BetweenSites between_;
-  stokes::Layer layer_, between_layer_;  // layers at the collocation sites, and at points between the sites
+  stokes::Layer layer_, between_layer_;  // single layer at the collocation sites; single layer at Gauss points
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
   bool repeats_ = false;
@@ -106,10 +106,10 @@ class RigidTractions {
   double tolerance_;
   std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
   Net flux_, outward_;     // flux vector b of each body; a velocity field with nonzero flux, divided by this flux (2.10)
-  Eigen::MatrixXd alone_;  // system without the response of the tube; kept only in a tube
+  Eigen::MatrixXd alone_;  // system matrix without the response of the tube; kept only in a tube
   std::optional<DenseFactors> factors_;  // LU factors of `alone_`
-  Net at_;                               // positions of the sites in the latest call of `solve`; left_: residual (2.11) of the density there
-  Eigen::VectorXd left_;
+  Net at_;                               // positions of the sites in the latest call of `solve`
+  Eigen::VectorXd left_;                 // residual work (2.11) of the density of this call
   std::vector<Vec3> centres_;
   std::vector<Body> bodies_;
   Net density_;

@@ -107,7 +107,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   std::vector<double> weighted = single_.weights();
   for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single_.nodes(), k)) / scene_.solids->viscosity();
   if (f.size() > 0) sum -= f.transpose() * single_.moments(weighted);
-  if (v.size() > 0 && double_) {  // sigma_i n = x_i n + phi' (e_i (n.m) + m (e_i.n)), where n is the normal of the particle and m of the plates
+  if (v.size() > 0 && double_) {  // sigma_i n of (2.49) is x_i n + phi' (e_i (n.m) + m (e_i.n)); n: normal of the particle, m: of the plates
     const Net strength = contrasts_.asDiagonal() * v;
     for (int i = 0; i < 3; ++i)
       for (int c = 0; c < 3; ++c) {
@@ -123,7 +123,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   return along(wall, sum);
 }
 
-/// Returns a field at the collocation point of the particles that is nearest to each one of the solids, in the rows of this rank.
+/// Returns, for each collocation point of the solids, the field v at the nearest collocation point of the particles. Valid in the rank-owned rows.
 Net SolidResponse::nearest_values(const Net& v) const {
   const Net at_sites = collocation_ * v;
   return at_sites(nearest_, Eigen::all);

@@ -17,7 +17,7 @@ namespace tanktread::coupling {
 struct SolidScene {
   std::shared_ptr<Solids> solids;
   std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
-  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure, force/length^3; between plates part of the ambient flow
+  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure, force/length^3; between plates, v_inf includes its effect
   quadrature::Options quadrature;
 };
 
@@ -36,13 +36,13 @@ Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 /// `respond` the part that is linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
 class SolidResponse {
  public:
-  /// `space`: of all particles. `flow`: ambient flow. References must outlive this object.
+  /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
   SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
 
-  /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
+  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
   void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
 
-  /// Sets 1 - lambda of the particle of each control point, and -1 for a rigid body.
+  /// Sets the contrasts of the double layer, one per control point: 1 - lambda of the particle, or -1 if it is rigid.
   void set_contrasts(const Eigen::VectorXd& contrasts);
 
   /// Sets the particles' control net; later calls use this shape. `at`: points on the particles at which `velocities` are needed. `own`: the rows
@@ -61,9 +61,9 @@ class SolidResponse {
   /// Computes rows of the velocity u at any points in the fluid. Not collective.
   void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
 
-  /// Returns the integral over the cell of the velocity that a flow of the solids, a load and a velocity cause. With three periods it is the volume
-  /// times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along them. By the reciprocal theorem,
-  /// with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
+  /// Returns the integral over the cell of the velocity that is caused by a flow of the solids and by the load f and the velocity v of the particles.
+  /// With three periods it is the volume times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along
+  /// them. By the reciprocal theorem, with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
   ///
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) - int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
@@ -85,12 +85,12 @@ class SolidResponse {
   const stokes::AmbientFlow& flow_;
   Eigen::SparseMatrix<double> collocation_;
   stokes::Layer single_;
-  std::optional<stokes::Layer> double_;  // set if any contrast is not 0
+  std::optional<stokes::Layer> double_;  // double layer of the particles; set if any contrast is not 0
   stokes::Measure measure_ = stokes::Measure::reference;
   Eigen::VectorXd contrasts_;
   Net shape_, at_;
   std::vector<int> own_;
-  std::vector<int> nearest_;  // nearest collocation point of the particles for each one of the solids
+  std::vector<int> nearest_;  // nearest collocation point of the particles, for each collocation point of the solids
   std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<Solids::Flow> empty_;

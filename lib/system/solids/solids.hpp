@@ -39,11 +39,11 @@ struct Rod {
 /// collective.
 class Solids {
  public:
-  /// A part of the solids with its own null vector. `velocity`: its velocity, along itself.
+  /// A part of the solids with its own null vector, for example one plate. `velocity`: its prescribed velocity, tangential to its surface.
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
-    std::optional<Rod> rod;  ///< the cylinder, if it is one
+    std::optional<Rod> rod;  ///< set if the solid is a cylinder
   };
 
   /// `free`: unit vectors along which the uniform velocity U of (2.46) is an unknown. The arguments need not outlive this object.
@@ -64,10 +64,11 @@ class Solids {
   /// Returns whether points are outside of all cylinders.
   bool outside(const Net& at) const;
 
-  /// Returns the solution for the velocity u at the collocation points and the force F.
+  /// Returns the solution of (2.46) for the velocity u at the collocation points and the force F.
   Flow solve(const Net& u, const Vec3& force) const;
 
-  /// Computes rows `rows` of the velocity of a flow at points off the solids. Not collective. `kept`: layer().near(at, rows), or null.
+  /// Computes rows `rows` of the velocity of a flow at points off the solids. Not collective. `kept`: near-field corrections layer().near(at, rows)
+  /// computed before, or null.
   void velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept = nullptr);
 
   std::vector<Vec3> forces(const Net& f) const;  ///< returns int f dG of each solid
@@ -75,7 +76,7 @@ class Solids {
   /// Returns the power of a force density at the prescribed velocities.
   double power(const Net& f) const { return f.cwiseProduct(areas_.asDiagonal() * velocities_).sum(); }
 
-  /// Returns the weights of a force density in the integral of its product with a function of the position.
+  /// Returns int N_A phi dG for every control point A, where phi is the given function. The inner product with a force density f is int phi f dG.
   Eigen::VectorXd moments(const std::function<double(const Vec3& x)>& function) const;
 
   const Net& sites() const { return sites_; }            ///< collocation points
@@ -86,7 +87,7 @@ class Solids {
   double viscosity() const { return viscosity_; }
   const Ranks& ranks() const { return ranks_; }
   stokes::Layer& layer() { return *layer_; }
-  Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values on the space of the layer
+  Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
   const std::array<Vec3, 2>& across() const { return reached_; }  ///< lowest and highest coordinates of solids and targets, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
@@ -107,13 +108,13 @@ class Solids {
   std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dG
-  std::vector<int> first_;  // first collocation point of each solid, and their number
+  std::vector<int> first_;  // index of the first collocation point of each solid; last entry: number of all collocation points
   Net normals_;                        // at the collocation points
   Net flux_;                           // int N_A n dG
   std::vector<Rod> rods_;
   std::optional<PlateFactors> plates_;  // set if all solids are plates
-  DenseFactors factors_;                // of the whole operator, or between plates of its part for uniform densities
-  stokes::Evaluations evaluations_;     // of the assembly and of earlier layers
+  DenseFactors factors_;                // LU factors of the operator; if all solids are plates, of its block for uniform densities
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of layers replaced by reach()
 };
 
 }  // namespace tanktread::coupling

@@ -104,7 +104,7 @@ Net Tube::images_on_particle(const Net& f, const Net& v) {
   return on_particle(particle_->cause(f, v, *wall_).at_sites);
 }
 
-/// Returns the rank-owned rows of all ranks, one row per collocation point of the particle.
+/// Gathers the rank-owned rows of a net with one row per collocation point of the particle, on all ranks.
 Net Tube::on_particle(const Net& own) const {
   return particle_->ranks.filled(own.rows(), [&](Net& u) {
     for (const int i : particle_->own) u.row(i) = own.row(i);

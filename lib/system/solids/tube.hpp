@@ -27,7 +27,7 @@ struct BetweenSites;
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
   double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
-  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; a symmetry without points: no symmetry
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;
@@ -63,14 +63,14 @@ class Tube {
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
        Phases& phases);
 
-  /// Constructs a channel with the wall of its flow.
+  /// Constructs the tube of a channel, with the wall of the channel's flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
   /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed particles and the area to which loads refer, as Layer::set_reference does.
+  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
@@ -106,7 +106,7 @@ class Tube {
 
   /// Compute the terms of (2.5) and (2.6) at the collocation points of the wall or the particle.
   Net load_on_wall(const Net& f);                           ///< -(1/mu) G_C f
-  Net velocity_on_wall(const Net& v);                       ///< (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
+  Net velocity_on_wall(const Net& v);                       ///< double layer (1 - lambda) (1 / 8 pi) int_C T v n dG (2.6)
   Net wall_on_particle(const Net& traction);                ///< -(1/mu) G_W f^D
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
@@ -117,19 +117,19 @@ class Tube {
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
-  /// Returns the correction (2.41) of pressure_of(f) for collocation errors, if the ambient flow is a duct flow with this amplitude. `work`: residual
-  /// work of the density for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is added; `at_places`: v_inf at the
-  /// points of `between`.
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow with this amplitude. `work`:
+  /// residual work of the density f for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is included; `at_places`:
+  /// v_inf at the points of `between`.
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
   /// Independent checks: errors of a response in conditions (2.14) that it satisfies exactly if discretisation errors vanish.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< axial balance: section area times dp minus axial forces on wall and particle, per area x pressure
+    double force = 0;         ///< axial force balance: section area times dp, minus the axial forces on wall and particle; divided by area x pressure
                               ///< gradient x radius of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops: that would make `flux` zero; that would make `force` zero
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop that would make `flux` zero; pressure drop that would make `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
@@ -141,8 +141,8 @@ class Tube {
   };
   Leak leak(const Net& f);
 
-  /// Returns the contribution of the wall and the inlet to the correction (2.42): the work f^D.leak.velocity - dp leak.flow, where `leak` is due to
-  /// one load, and f^D and dp are the response `of` to another load.
+  /// Returns the contribution of the wall and the inlet to the correction (2.42): f^D.leak.velocity - dp leak.flow. `leak`: residual for one load.
+  /// `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
   /// Returns the flow rate if the particle causes this additional pressure drop: Q, or the reduced flow rate if the pressure drop of the duct is
@@ -181,11 +181,10 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall's traction in flow rate and force; they, flow_of_wall_, own_flow_ and
-                                      // flow_of_pressure_ are computed at first use
-  Net flow_of_wall_;  // weights of a velocity on the wall; their product is the flow rate through the inlet due to the traction that
-                      // cancels this velocity
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rates per unit pressure drop, of mu c (2.5) only; of mu c with the wall's response
+  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate and in the axial force; set by weigh_flow(), like the members
+                                      // below
+  Net flow_of_wall_;  // weights of a velocity u on the wall: the traction that cancels u causes the flow rate weights.u through the inlet
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rate of mu c (2.5) through the inlet; flow rate per unit pressure drop, with the wall
 };
 
 }  // namespace tanktread::coupling

@@ -12,10 +12,10 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // see_images_only(everything): no target is at or after this row, so that the
-                                                             // surface itself contributes to all targets
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // tolerance of wall integrals in leak(), where pressures are large: factor on
-                                                           // the usual tolerance, upper limit of the result
+constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only for which the surface itself contributes to all targets:
+                                                             // no row number is as large
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // factor on the tolerance of wall integrals in leak(), where pressures are large; upper
+                                                           // limit of the result
 
 /// Adds points on the straight lines from the centroid of a section to points of its outline, except points that are not inside the outline. `place`:
 /// maps points of the section into space.

@@ -71,7 +71,7 @@ struct Tube::Particle {
   Eigen::SparseMatrix<double> collocation;  ///< collocation matrix R
   membrane::DirectSolver from_sites;        ///< factored collocation matrix R, to compute control values from values at the sites
   stokes::Layer single;
-  std::optional<stokes::Layer> dual;  ///< set if any lambda is not 1
+  std::optional<stokes::Layer> dual;  ///< double layer; set if any lambda is not 1
   std::optional<Period> period;       ///< set if the duct is periodic
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
@@ -82,7 +82,8 @@ struct Tube::Particle {
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites; its control values (in a channel only)
   Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in (2.7); the second is empty if lambda = 1
   std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections, cached for the iterations if lambda != 1
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections of `dual` and of the wall's layer, cached for the
+                                                                   ///< iterations if lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

@@ -77,9 +77,8 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 namespace {
 
 constexpr double residual = 1e-2;        // tolerance of the iterative solve divided by the quadrature tolerance
-constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints;
-                                        // the error has harmonics k^-5, as the single layer of the interpolation error of
-                                        // cubic splines has
+constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints. The harmonics of
+                                        // this error decrease as k^-5, like those of the single layer of the interpolation error of cubic splines
 
 /// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
@@ -159,12 +158,12 @@ void Wall::add_middles() {
     if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
 }
 
-/// Returns the weight, in the mean velocity (2.39), of each element midpoint around a collocation point. The residual velocity is nearly a wave that
-/// vanishes at the collocation points; its mean is `mean_of_wave` times its value at the midpoints.
+/// Returns the weight of each adjacent element midpoint in the mean velocity (2.39) around a collocation point. Between collocation points the
+/// residual velocity is nearly a wave, whose mean is `mean_of_wave` times its value at the midpoints.
 double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
 
-/// Returns the indices (in `middles`) of the midpoints of the elements that contain a collocation point. The elements are those on which the traction
-/// density is smooth.
+/// Returns the indices (in `middles`) of the midpoints of the elements that touch a collocation point. In a periodic wall these are the elements of
+/// the traction density, not those of the geometry.
 std::vector<int> Wall::middles_around(int point) const {
   std::vector<int> all;
   for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
@@ -172,8 +171,8 @@ std::vector<int> Wall::middles_around(int point) const {
   return all;
 }
 
-/// Computes the two fields pressure_ and flux_ whose product is added to A to make it regular, because a uniform pressure produces no velocity. They
-/// are scaled so that with them it produces about the velocity of a tangential traction of equal size.
+/// Computes pressure_ and flux_. The product of these two fields is added to A to make it regular, because a uniform pressure produces no velocity.
+/// The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
 void Wall::find_pressure() {
   flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
   pressure_.resize(sites_.rows(), 3);
@@ -328,8 +327,8 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   return net;
 }
 
-/// Returns int N_A field dG for every A. Along the wall, the Gauss points are clustered at the ends of each element by s = 3 q^2 - 2 q^3, because the
-/// inlet's integral (2.13) is steep at the rim of the inlet.
+/// Returns int N_A field dG over the wall for every control point A. Gauss points are clustered at both ends of each element along the wall by s = 3
+/// q^2 - 2 q^3, because the inlet integral (2.13) is steep at the rim of the inlet.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);

@@ -30,7 +30,7 @@ class WallPatches {
   /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.
   WallPatches(const surface::TubeWall& wall, stokes::Layer& layer, const std::vector<int>& points);
 
-  /// Computes the rows of f for these points.
+  /// Applies the preconditioner: computes the rows of f at these points from the right-hand side `rhs`.
   void apply(const Net& rhs, Net& f) const;
 
  private:
@@ -42,7 +42,7 @@ class WallPatches {
   std::vector<Patch> patches_;
 };
 
-/// The single layer of the wall on itself, assembled and factored, and the integral of the inlet. The viscosity is not included. Nets are in the
+/// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
 /// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
 ///
 /// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
@@ -84,8 +84,8 @@ class Wall {
   /// read. Collective.
   Net collocated(const Net& u) const;
 
-  /// Assembles an operator at the collocation points `sites`, three rows each, as the system of the wall needs it. `assemble` fills its rows at the
-  /// targets; the weights with which `collocated` combines velocities combine them into the rows of the collocation points.
+  /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes rows of the
+  /// operator at the targets; they are combined with the weights by which `collocated` combines velocities.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
@@ -104,7 +104,7 @@ class Wall {
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< transforms an operator's columns, three per control point, to columns for f
+  void from_space(stokes::Rows<float>& rows) const;  ///< transforms an operator on the layer's space to one on control values of f
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
   /// a periodic wall, A includes the condition int f.n dG = 0.
@@ -119,8 +119,8 @@ class Wall {
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
   const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
 
-  /// Returns int N_A c dG and int N_A e1 dG for every A. Their products with a traction are its contribution to the flow rate through the inlet,
-  /// times mu, and to the axial force.
+  /// Returns int N_A c dG, with c of the inlet (2.13), and int N_A e1 dG, for every control point A. The inner products of a traction with them are
+  /// mu times the flow rate that the traction causes through the inlet, and the axial force of the traction.
   Net flow_weights() const;
   Net force_weights() const;
 
@@ -161,7 +161,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // set for a periodic wall: traction w n of a constant pressure w, at the sites; int N_A n dG
+  Net pressure_, flux_;  // periodic wall only: traction w n of a constant pressure w, at the sites; int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

@@ -15,7 +15,7 @@ namespace tanktread::coupling {
 /// Y^T, and the remaining part by another preconditioner (2.24).
 class RecycledProducts {
  public:
-  /// Records a product of the current solve, which is used from the next solve on.
+  /// Records a product y = A z of the current solve. It is used from the next solve on.
   void record(const Eigen::VectorXd& z, const Eigen::VectorXd& y) { present_.push_back({z, y}); }
 
   /// Ends the current solve.

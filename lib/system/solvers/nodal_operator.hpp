@@ -42,8 +42,8 @@ class NodalOperator {
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Lets ranks share sums by clusters: this rank computes part number `part` of `parts` parts of equal work of the sums for the rows `everybody`,
-  /// which include its own targets.
+  /// Lets ranks share the sums by clusters. This rank computes share `part` of `parts` equal shares of the work, for the rows `everybody`, which
+  /// include its own targets.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to
@@ -66,7 +66,7 @@ class NodalOperator {
   std::vector<Vec3> at_;                                 // positions of the targets
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites
-  std::vector<int> row_;                                 // index of the fundamental site of each site
+  std::vector<int> row_;                                 // for each site, the index of its fundamental site
   Eigen::VectorXd weights_;
   std::vector<double> node_[3], force_[3];
   std::optional<stokes::TreeSum> tree_;                  // set if clusters are faster

@@ -50,11 +50,12 @@ struct SolverOptions {
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
                                       ///< auto: matrix-free if far sums are taken by clusters
-  std::string tube = "schur";                     ///< unknowns in a tube: v with the wall eliminated, or all blocks (BlockForm)
+  std::string tube = "schur";                     ///< unknowns in a tube: schur: v, with the wall tractions eliminated; otherwise all blocks
+                                                  ///< (BlockForm)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
-  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind, also among other particles (RigidParticles), first kind, rigid
-                                      ///< bodies only (RigidTractions), or auto (Scene::by_tractions)
+  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles, also among other particles), first kind
+                                      ///< (RigidTractions, rigid bodies only), or auto (Scene::by_tractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
                                                   ///< (FrozenOperator)
@@ -63,7 +64,7 @@ struct SolverOptions {
   /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
-  /// Returns the options `system` with unset solver and parameter list replaced by the ones for all systems.
+  /// Returns `system`; its solver and parameter list, if not set, are replaced by the solver and list for all systems.
   IterativeOptions of(IterativeOptions system) const;
 
   void declare(deck::Section& section);

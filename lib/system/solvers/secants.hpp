@@ -17,7 +17,7 @@ namespace tanktread::coupling {
 /// multisecant update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
 class Secants {
  public:
-  /// `pairs`: d_1, e_1, d_2, e_2, ..., oldest first.
+  /// `pairs`: corrections and errors (4.13) in the order d_1, e_1, d_2, e_2, ..., oldest first.
   explicit Secants(std::vector<Net> pairs);
   Secants() = default;
 
