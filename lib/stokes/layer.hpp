@@ -159,8 +159,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Computes the values of a field at the far nodes, and the transpose: int N_A g dG for every A, where `g` is the product of g and the area at each
-  /// far node.
+  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG for every A, where `g` holds h
+  /// times the area at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 

@@ -24,7 +24,7 @@ struct FlowOptions {
                                       ///< parabolic, duct, or a registered one
   double shear_rate = 1.0;            ///< rate of every flow with a gradient except `linear` and `parabolic`, units 1/time
   double viscosity = 1.0;             ///< mu of the outer fluid
-  std::optional<double> roll_parameter;  ///< a of (P-48); set for `four-roll`
+  std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (P-48)
   std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
   std::optional<Vec3> velocity;          ///< set for `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
