@@ -19,11 +19,12 @@
 
 namespace tanktread {
 
-/// Plane through the centroid in which D and tank-treading are measured. The rows of `axes` are the first in-plane direction a, the normal b x a and
-/// the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
+/// Plane through the centroid in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first in-plane direction a,
+/// the normal b x a and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  bool holds_flow = true;  ///< false if the flow is not planar; D is then measured in the plane of the longest and the shortest axis of inertia
+  bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
+                           ///< axis of inertia
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true for the plane x1 x3
   Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the directions a, b x a and b
@@ -52,7 +53,7 @@ struct Body {
   Net initial;     ///< control net of the shape at the start of the run
   Net unstressed;  ///< control net of the unstressed shape, which is smaller by the pre-inflation
   stokes::AmbientFlow flow;
-  FlowPlane plane;     ///< plane in which D and tank-treading are measured
+  FlowPlane plane;     ///< plane in which the Taylor parameter D and tank-treading are measured
   membrane::Law law;
   double radius = 1;   ///< R_C, radius of the sphere of equal volume
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh

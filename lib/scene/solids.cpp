@@ -21,7 +21,7 @@ int elements_along(const Post& post, const Vec3& period) {
 
 Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
 
-/// Returns the plates, each with the velocity of the ambient flow on it, which is fitted to them.
+/// Returns the plates, each with the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
@@ -136,7 +136,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
       row.mean_velocity += carried / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the fluid in the post, which the pressure gradient drives along it
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the flow inside the post, which exists only in the integral equation and is
+                                                          // driven by the pressure gradient
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];
