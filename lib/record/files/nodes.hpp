@@ -29,7 +29,7 @@ struct LagrangeMesh {
 /// does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
-/// Returns (i, j) of the nodes of a cell of degree p, in their order.
+/// Returns the indices (i, j) of the nodes of a cell of degree p, in VTK's order (LagrangeMesh).
 std::vector<std::array<int, 2>> node_order(int p);
 
 /// Evaluates fields at the nodes of a surface's Lagrange mesh.
