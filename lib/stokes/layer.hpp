@@ -196,7 +196,7 @@ class Layer {
 
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
+    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its weights at the far nodes, areas included
     std::vector<bool> present;           // true for elements for which Measure::by_element means the current area
   };
 
@@ -258,8 +258,8 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area
-                                                                   // and factor k
+  std::vector<double> density_[3], normal_[3];                     // at far nodes: density f (in a single layer times weight_); normal times area and
+                                                                   // factor k
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall

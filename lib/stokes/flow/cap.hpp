@@ -47,7 +47,7 @@ class Cap {
 
   surface::Outline outline_;
   double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest curve segment of the outline
-  std::vector<std::pair<double, Nodes>> rules_;  ///< pairs: smallest distance from the plane at which the nodes are used; the nodes
+  std::vector<std::pair<double, Nodes>> rules_;  ///< for each rule, the smallest distance from the plane at which it is used, and its nodes
 };
 
 }  // namespace tanktread::stokes

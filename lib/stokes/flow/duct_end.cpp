@@ -14,7 +14,7 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
-constexpr double far = 1.2, smallest = 1e-5;  // in radii of the end: distance beyond which the far nodes suffice; smallest cell size
+constexpr double far = 1.2, smallest = 1e-5;  // divided by the radius of the end: distance beyond which the far nodes suffice; smallest cell size
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;

@@ -36,8 +36,8 @@ struct FlowOptions {
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
   std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
-  const UserFlows* registered = nullptr;   ///< further types, with keys in `Flow/<type>`; null if there are none
-  std::shared_ptr<const UserFlow> user;    ///< set for a registered type
+  const UserFlows* registered = nullptr;   ///< user-defined types of flow, with keys in `Flow/<type>`; null if there are none
+  std::shared_ptr<const UserFlow> user;    ///< set if the type is user-defined
 
   void declare(deck::Section& section);
 

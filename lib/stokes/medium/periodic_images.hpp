@@ -27,7 +27,7 @@ class PeriodicCell {
   /// Returns the lattice vector that must be subtracted from x to move it into the cell around the origin.
   Vec3 shift(const Vec3& x) const;
 
-  /// Returns the distance between neighbouring lattice planes that contain all vectors except vector d, d < n.
+  /// Returns the distance between neighbouring lattice planes that are parallel to all lattice vectors except vector d, d < n.
   double spacing(int d) const { return 1 / inverse_.row(d).norm(); }
 
   /// Returns the lattice vectors with up to `most[d]` steps along vector d in both directions.

@@ -1,5 +1,5 @@
 #pragma once
-// Points in nested boxes. Each box has Chebyshev nodes that represent its points at a distance.
+// Points in nested boxes. Each box has Chebyshev nodes that replace its points for distant targets or sources.
 
 #include <span>
 #include <vector>

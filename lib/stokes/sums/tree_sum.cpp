@@ -205,7 +205,8 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced to one of their images, act on the targets in `target`.
+/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced by lattice vector images_[image], act on the targets in
+/// `target`.
 void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];
