@@ -44,7 +44,7 @@ struct DomainOptions {
   void reject_duct(const std::string& duct, Rejections& to) const;
 };
 
-/// Data of the lattice in one row of the series.
+/// Data of the lattice for one row of the results.
 struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;

@@ -131,7 +131,7 @@ void check_size(const Scene& scene) {
               formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }
 
-/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their products, are too large.
+/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
 void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;

@@ -69,7 +69,7 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; not set for a clean interface
-  const Registry* registry = &no_parts;                   ///< parts that the program adds
+  const Registry* registry = &no_parts;                   ///< user-defined loads, fields, flows and series
   std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
   std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
   motion::AdaptationOptions adaptation;
@@ -128,8 +128,8 @@ struct Scene : ParticleKind {
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
-  void reject(Rejections& to) const;  ///< adds combinations of choices that the program rejects, of a scene with one particle
-  void reject_power(Rejections& to) const;  ///< adds choices with which the power balance (6.11) of all particles is not available
+  void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
+  void reject_power(Rejections& to) const;  ///< adds the choices with which the power balance (6.11) of all particles is not available
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section of the deck that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }

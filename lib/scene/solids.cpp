@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// Returns the directions in which the mean velocity is free (2.46).
+/// Returns the directions in which the mean velocity over the cell is not prescribed (2.46).
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
@@ -118,7 +118,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
     row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
   } else {
     const Vec3& n = of.planes.front().normal();
-    Vec3 across = particle_force;  // force on the fluid along the normal
+    Vec3 across = particle_force;  // force of particles and posts on the fluid; its component along the normal is needed
     for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {

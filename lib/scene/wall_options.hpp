@@ -35,9 +35,9 @@ struct WallOptions {
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
 
-  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one that is an image plane
+  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall if it acts by images, otherwise nothing
   std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls, one or two
-  std::optional<stokes::Plates> plates() const;    ///< returns the walls as plates, if they are solids
+  std::optional<stokes::Plates> plates() const;    ///< returns the plates if the walls are plates in a periodic cell, otherwise nothing
 
   /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
   /// plates, or a twelfth of `radius` if there is only one plate, but a period has at most 48 elements.

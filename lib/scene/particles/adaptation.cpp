@@ -57,7 +57,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// Records the displacement `moved` of the surfaces by the mesh change in the result, divided by R_C.
+/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;

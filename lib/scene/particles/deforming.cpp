@@ -249,7 +249,7 @@ class Deforming : public ParticleSystem {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
-  /// Returns the data of particle p for a row, except tank-treading. Adds the columns of its fields.
+  /// Returns the data of particle p for a row of the results, except tank-treading. Adds the columns of its fields.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
     if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
@@ -301,7 +301,7 @@ class Deforming : public ParticleSystem {
     return now;
   }
 
-  /// Adapts the mesh of particle p if the indicator asks for it.
+  /// Adapts the mesh of particle p if the indicator requires it.
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;

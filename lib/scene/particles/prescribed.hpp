@@ -24,7 +24,7 @@ struct RigidSolution {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Data of a prescribed body for its row of results, except the data of walls.
+/// Data of a body with prescribed motion for its row of the results, except the data of walls.
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};

@@ -1,5 +1,5 @@
 #pragma once
-// Data of what surrounds the particles of a coupled system, for a row: tube, cell, walls, posts, gaps.
+// Data about the surroundings of a coupled system of particles (tube, cell, walls, posts, gaps) for a row of the results.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Series of a run: the columns of its progress, and the order of all columns in a row.
+// Series of a run: the columns of its progress, and the order of all columns in a row of the results.
 
 #include <optional>
 #include <span>

@@ -18,7 +18,7 @@
 
 namespace tanktread {
 
-/// Data of a particle's surfactant for one row.
+/// Data of a particle's surfactant for one row of the results.
 struct SurfactantRow {
   double mass = 0;                   ///< mass divided by the initial mass
   double smallest = 0, largest = 0;  ///< concentration divided by the initial one
