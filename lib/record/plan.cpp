@@ -281,8 +281,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
-/// Adds the lines of all particles. The lines of a single particle are added unchanged. If there are several, each particle has one line, and
-/// particles with equal lines share it.
+/// Adds the lines of all particles to the plan. The lines of a single particle are added unchanged. If there are several, each particle has one line,
+/// and particles with equal lines share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   for (const Scene& one : alone) {

@@ -29,7 +29,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
 /// Returns the plan of a scene before a run. Throws UserError if the particles overlap, or do not fit into the scene, in their initial positions.
 output::Entries<std::string> plan(const Scene& scene, int ranks);
 
-/// Returns the plan as it is printed.
+/// Returns the text of the plan, to be printed.
 std::string plan_text(const output::Entries<std::string>& plan);
 
 }  // namespace tanktread

@@ -31,7 +31,7 @@ namespace {
 
 constexpr std::chrono::seconds second(1);
 
-/// Returns the peak memory in bytes: the largest of a rank, and the sum of all ranks. Collective.
+/// Returns the peak memory in bytes: the largest of any rank, and the sum of all ranks. Collective.
 output::Entries<long> peak_memory(const coupling::Ranks& ranks) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -22,7 +22,8 @@ namespace tanktread::output {
 struct LagrangeMesh {
   std::vector<std::int64_t> connectivity;  ///< node numbers, cell after cell
   std::vector<std::int64_t> offsets;       ///< (n_cells + 1) index in `connectivity` at which the nodes of each cell begin
-  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are no spline fields
+  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are not spline
+                                           ///< fields
 };
 
 /// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it

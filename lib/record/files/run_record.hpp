@@ -12,7 +12,7 @@
 
 namespace tanktread::output {
 
-/// One quantity as a function of the step. Scripts outside the project rely on the names.
+/// One quantity as a function of the step. Scripts outside the project rely on the names of series.
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one value per row; row 0 is the initial state
