@@ -191,7 +191,7 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
-    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at rest_at, by the images that are not near
+    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at the targets rest_at, due to the images that are not near
   };
 
   /// The unstressed surface.

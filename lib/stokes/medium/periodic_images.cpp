@@ -201,7 +201,7 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images in a row with one period except the near images, in pairs +n and -n, minus the limits of their Stokeslets far along the row. The
+/// Adds all images in a row with one period except the near images, in pairs +n and -n, and subtracts (I + e e)/|n h| from each Stokeslet (2.43). The
 /// next `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
@@ -222,7 +222,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
-/// Adds the constant of (2.43) minus the limits of the near images.
+/// Adds the constant of (2.43), minus (I + e e)/|n h| for each near image n.
 void PeriodicKernel::add_constant(double* values) const {
   if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
   const double h = cell_.vectors().col(0).norm();
