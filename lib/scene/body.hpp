@@ -36,8 +36,8 @@ struct FlowPlane {
 /// The largest component of the direction b is positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
-/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane that contains the velocity and its variation. If
-/// there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
+/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane of a planar flow: the velocity has no component along
+/// its normal and does not change along it. If there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
 FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
@@ -66,7 +66,8 @@ struct Body {
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// Returns the spline space that contains the coarser one after refinement. Fields are transferred between meshes in this space.
+  /// Returns the space that is nested: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this
+  /// space.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
@@ -74,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if the mesh and the resting shape of one scene's particle can be copied from the other's.
+/// Returns true if body() can copy the mesh and the resting shape of one scene's particle for the other scene.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.

@@ -133,8 +133,10 @@ struct Scene : ParticleKind {
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section of the deck that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
-  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for rejections
-  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for rejections
+  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for messages about rejected
+                                                                            ///< combinations
+  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for messages about rejected
+                                                                           ///< combinations
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does

@@ -32,8 +32,8 @@ struct SolidsRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the row for a flow of the solids. `particle_force`: force of the particles on the fluid. `carried`: integral over the cell of the velocity
-/// that solids and particles add to the ambient flow (SolidResponse::carried); used only if there are two plates.
+/// Returns the data of plates and posts for the flow `flow` around them. `particle_force`: force of the particles on the fluid. `carried`: integral
+/// over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only if there are two plates.
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const coupling::Solids::Flow& flow, const Vec3& particle_force,
                      const Vec3& carried);
 

@@ -18,7 +18,7 @@ struct RigidSolution {
   Vec3 integral;       ///< force computed only as the integral of the traction
   int iterations = 0;  ///< iterations of the solver for this traction
   double pressure_drop = unknown;  ///< additional pressure drop caused by the body in a tube (2.7)
-  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of force, `integral` and torque
+  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of `force`, of `integral` and of `torque`
   SurfaceErrors surface{unknown, unknown, 0};
 
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

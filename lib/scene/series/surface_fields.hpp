@@ -87,7 +87,7 @@ class SurfaceFields {
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns, at each node, the lattice vector by which its particle is moved so that the mean of its control points is in the cell around the
+/// Returns, for each node, the lattice vector that moves the particle of the node so that the mean of its control points is in the cell around the
 /// origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 
