@@ -48,7 +48,7 @@ struct Account {
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
   bool whole = true;            ///< true if the run reached its end, so that missed expectations fail it
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
-  output::Entries<Vec3> vectors;    ///< vectors from the last row, for `final`
+  output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
 };
 

@@ -146,7 +146,7 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
 }
 
 /// Calls use(patch, nodes, jets) for every element, the last element first. A node shared by several elements thus ends with the value of the first
-/// of them.
+/// of these elements.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;
