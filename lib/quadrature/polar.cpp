@@ -46,7 +46,7 @@ double rho_along_ray(const Vec3& a, const Vec3& b) {
 }
 
 /// Side from A to B of a triangle with its apex at the target, in the plane of the metric: the distance h of the side from the apex, the positions
-/// tau_a and tau_b of its ends relative to the foot of the perpendicular, and the coordinate mu (see polar) at A and its range.
+/// tau_a and tau_b of its ends relative to the foot of the perpendicular, the angular coordinate mu (see polar) at A, and the length of its interval.
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 
@@ -60,8 +60,8 @@ struct FarSide {
 
   int order(double tolerance, double rho) const { return 1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho); }
 
-  /// Returns the Bernstein parameter rho of the integrand as a function of mu, if the side is the line a + q c in space with c = b - a. The distance
-  /// from the target is 0 at q = (-a.c +- i |a x c|) / c.c.
+  /// Returns the Bernstein parameter rho of the integrand as a function of the angular coordinate mu, if the side is the line a + q c in space with c
+  /// = b - a. The distance from the target is 0 at q = (-a.c +- i |a x c|) / c.c.
   double rho(const Vec3& a, const Vec3& b) const {
     const Vec3 c = b - a;
     if (!(c.squaredNorm() > 1e-12 * a.squaredNorm())) return 1e6;

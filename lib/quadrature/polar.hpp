@@ -46,7 +46,8 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
 /// side, measured from the foot of the perpendicular.
 Rule polar(double s, double t, Shear shear, const PolarOrders& orders);
 
-/// Returns the rule of the paper: the same triangles in the parameter plane, each with n x n Gauss points under the map of Lachat and Watson.
+/// Returns the rule of Maestre et al. (2017): up to four triangles with apex (s, t) in the parameter plane, each with n x n Gauss points under the
+/// map of Lachat and Watson.
 Rule lachat_watson(double s, double t, int n);
 
 }  // namespace tanktread::quadrature

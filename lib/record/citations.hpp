@@ -1,5 +1,5 @@
 #pragma once
-// Publications that a user cites, by the features that a scene uses.
+// Publications that a user should cite, by the features that a scene uses.
 
 #include <string>
 

@@ -73,7 +73,7 @@ std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
-  if (!scene.particles.empty() || scene.only_solids) return found;  // the numbers below are defined for a single particle only
+  if (!scene.particles.empty() || scene.only_solids) return found;  // all named_numbers are defined for a single particle only
   for (const Number& one : named_numbers)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;
@@ -281,8 +281,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
-/// Adds the lines of all particles. The lines of a single particle are added unchanged. If there are several, each particle has one line, and
-/// particles with equal lines share it.
+/// Adds the lines of all particles to the plan. The lines of a single particle are added unchanged. If there are several, each particle has one line,
+/// and particles with equal lines share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   for (const Scene& one : alone) {

@@ -1,5 +1,5 @@
 #pragma once
-// Plan of a run: the methods and sizes that it has chosen, one line each, and the numbers of its scene.
+// Plan of a run: the methods and sizes that it has chosen, one line each, and the derived and dimensionless numbers of its scene.
 
 #include <span>
 #include <string>
@@ -9,17 +9,17 @@
 
 namespace tanktread {
 
-/// Derived or dimensionless number of a scene; NaN if it has no meaning for the scene.
+/// Derived or dimensionless number of a scene; NaN if it is not defined for the scene.
 struct Number {
   const char *name, *unit, *description;
   double (*value)(const Scene& scene, const Body& body);
 };
 std::span<const Number> all_numbers();
 
-/// Returns the numbers that have a meaning for this scene.
+/// Returns the derived and dimensionless numbers that are defined for this scene.
 output::Entries<double> numbers(const Scene& scene, const Body& body);
 
-/// Returns the numbers of a scene as the text of one line of the plan.
+/// Returns the derived and dimensionless numbers of a scene as the text of one line of the plan.
 std::string numbers_text(const output::Entries<double>& numbers);
 
 /// Returns the plan: unknowns, kernels, memory, scheme, and the computations that the scene does not need. `body`: stacked body of all particles.
@@ -29,7 +29,7 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
 /// Returns the plan of a scene before a run. Throws UserError if the particles overlap, or do not fit into the scene, in their initial positions.
 output::Entries<std::string> plan(const Scene& scene, int ranks);
 
-/// Returns the plan as it is printed.
+/// Returns the text of the plan, to be printed.
 std::string plan_text(const output::Entries<std::string>& plan);
 
 }  // namespace tanktread

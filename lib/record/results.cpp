@@ -294,7 +294,7 @@ int Results::close(const Account& account, const Phases& phases) {
   return ranks_.any(!missed.empty()) ? 1 : 0;
 }
 
-/// Returns what is known of the errors of the run: those of time integration and quadrature.
+/// Returns estimates of the errors of time integration and quadrature, and the remark that the error of the mesh is unknown.
 output::Entries<std::string> Results::known_errors() const {
   output::Entries<std::string> errors;
   double steps = 0;

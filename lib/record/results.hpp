@@ -35,8 +35,7 @@ struct RunRequest {
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// Names under which a run stores copies of the files that a deck names in its results directory, so that it can be resumed without the original
-/// files.
+/// Names, in the results directory, of the copies of files that the deck names. With these copies the run can be resumed without the original files.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
@@ -52,7 +51,7 @@ struct Account {
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
   bool whole = true;            ///< true if the run reached its end, so that missed expectations fail it
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
-  output::Entries<Vec3> vectors;    ///< vectors from the last row, for `final`
+  output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
 };
 
@@ -152,8 +151,8 @@ class Results {
 /// Returns the names of the series that a run of this scene records.
 std::vector<std::string> names_of_series(const Scene& scene);
 
-/// Returns a sentence for each expectation that the run cannot meet because it does not reach its time. Throws UserError if an expected series is not
-/// recorded in this scene.
+/// Returns a sentence for each expectation that the run cannot meet because it ends before the time of the expectation. Throws UserError if an
+/// expected series is not recorded in this scene.
 std::vector<std::string> check_expectations(const Scene& scene);
 
 }  // namespace tanktread

@@ -19,11 +19,12 @@
 
 namespace tanktread {
 
-/// Plane through the centroid in which D and tank-treading are measured. The rows of `axes` are the first in-plane direction a, the normal b x a and
-/// the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
+/// Plane through the centroid in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first in-plane direction a,
+/// the normal b x a and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  bool holds_flow = true;  ///< false if the flow is not planar; D is then measured in the plane of the longest and the shortest axis of inertia
+  bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
+                           ///< axis of inertia
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true for the plane x1 x3
   Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the directions a, b x a and b
@@ -35,8 +36,8 @@ struct FlowPlane {
 /// The largest component of the direction b is positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
-/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane that contains the velocity and its variation. If
-/// there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
+/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane of a planar flow: the velocity has no component along
+/// its normal and does not change along it. If there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
 FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
@@ -52,7 +53,7 @@ struct Body {
   Net initial;     ///< control net of the shape at the start of the run
   Net unstressed;  ///< control net of the unstressed shape, which is smaller by the pre-inflation
   stokes::AmbientFlow flow;
-  FlowPlane plane;     ///< plane in which D and tank-treading are measured
+  FlowPlane plane;     ///< plane in which the Taylor parameter D and tank-treading are measured
   membrane::Law law;
   double radius = 1;   ///< R_C, radius of the sphere of equal volume
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh
@@ -65,7 +66,8 @@ struct Body {
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// Returns the spline space that contains the coarser one after refinement. Fields are transferred between meshes in this space.
+  /// Returns the space that is nested: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this
+  /// space.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
@@ -73,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if the mesh and the resting shape of one scene's particle can be copied from the other's.
+/// Returns true if body() can copy the mesh and the resting shape of one scene's particle for the other scene.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.

@@ -44,7 +44,7 @@ struct DomainOptions {
   void reject_duct(const std::string& duct, Rejections& to) const;
 };
 
-/// Data of the lattice in one row of the series.
+/// Data of the lattice for one row of the results.
 struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
@@ -53,8 +53,8 @@ struct DomainRow {
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all members except `cell` (6.9), (6.10) from the total volume and stresslet of all particles and their total force on the fluid. `of`:
-  /// the cell. `plane`: axes of the plane of the flow, as rows. `gradient`: of the flow at this time. The relative viscosity is NaN if the
-  /// flow does not strain at this time.
+  /// periodic cell. `plane`: axes of the plane of the flow, as rows. `gradient`: velocity gradient of the flow at this time. The relative viscosity
+  /// is NaN if the flow does not strain at this time.
   void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
                   const Vec3& force);
 

@@ -22,8 +22,8 @@ struct ExactBody {
   Vec3 force() const;   ///< returns the force on the body
   Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// Return the pressure p = -t.n without its constant (t: traction on the body) and the unit normal, at the point of the exact surface in the
-  /// direction of x from the centre.
+  /// Return the pressure p = -t.n up to a constant (t: traction on the body) and the unit normal, at the point of the exact surface in the direction
+  /// of x from the centre.
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
@@ -40,11 +40,12 @@ coupling::RigidMotion prescribed_motion(const Scene& scene);
 /// Returns the exact solution of a body with prescribed motion; nothing if none is known: for another shape, a flow with strain, a tube or a wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
-/// Errors of the force density f on the fluid (control values) and of the normal n_h, on the surface with the control net `surface`.
+/// Errors of the force density f on the fluid (control values) and of the normal n_h of the numerical surface, whose control net is `surface`.
 struct SurfaceErrors {
-  double pressure = 0;  ///< L2 norm of p - p_exact divided by that of p_exact (6.3); p = f.n_h plus the constant for which int (p - p_exact) dG = 0
+  double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h plus the constant for which int (p - p_exact)
+                        ///< dG = 0
   double normal = 0;    ///< L2 norm of n_h - n divided by the L2 norm of n
-  double constant = 0;  ///< constant that is added to f.n_h to get p
+  double constant = 0;  ///< constant that is added to the normal force density f.n_h to get the pressure p
 };
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact);
 

@@ -145,7 +145,8 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
     particle.measure = load_measure(own);
   }
   const auto deforms = std::ranges::find_if(parameters.particles, [](const coupling::Particle& one) { return !one.rigid; });
-  for (coupling::Particle& one : parameters.particles)  // the measure of the deforming ones: a common one is cheaper; rigid bodies admit any
+  for (coupling::Particle& one : parameters.particles)  // rigid bodies admit any measure; the measure of the deforming particles is cheapest, because
+                                                        // all layers then share it
     if (one.rigid && deforms != parameters.particles.end()) one.measure = deforms->measure;
   parameters.strong_load = scene.load_is_strong();
   parameters.volume = scene.volume;

@@ -13,11 +13,11 @@ namespace tanktread {
 struct ParticleKind;
 struct Scene;
 
-/// A circular cylinder along a periodic direction, at rest. One period of it is in the cell.
+/// A circular cylinder along a periodic direction, at rest. One period of the cylinder is in the cell.
 struct Post {
   std::string name;  ///< name of its section in Particles; empty for a single one
   double radius = 1;
-  int axis = 0;  ///< index of the coordinate axis along which it lies
+  int axis = 0;  ///< index of the coordinate axis that the post is parallel to
   Vec3 center = Vec3::Zero();
   int around = 24;           ///< number of elements around it
   std::optional<int> along;  ///< number of elements along its period
@@ -28,8 +28,8 @@ struct Post {
 /// Returns the lattice vector along the axis of a post, units length; zero if there is none.
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
-/// Removes the cylinders from the kinds of a scene and adds them to its posts. Sets whether its walls are plates, also for its flow, and the default
-/// of Adaptation/film resolution where there are films. Throws UserError if a cylinder has keys that only particles have.
+/// Moves the cylinders from the particles of a scene to its posts. Also sets whether the walls are plates, in the options of wall and flow, and the
+/// default of Adaptation/film resolution if the scene has a wall, tube or lattice. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 
 /// Throws UserError if posts do not fit into the scene.

@@ -1,5 +1,5 @@
 #pragma once
-// Registry of parts (loads, fields, flows, series) that a program adds to the parts of the library.
+// Registry of user-defined parts (loads, fields, flows, series), which a program adds to the parts of the library.
 
 #include <functional>
 #include <span>

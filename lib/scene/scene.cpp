@@ -87,7 +87,7 @@ double wall_points(const Scene& scene) {
 }
 
 /// Returns the bytes per pair of control points of the assembled layers of the particle: rows of doubles, and frozen operators of six entries of 16
-/// bits. `auto` is not counted because it does not assemble operators that are too large.
+/// bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
 double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
@@ -96,8 +96,8 @@ double bytes_a_pair(const Scene& scene) {
          coupling::FrozenOperator::bytes_a_pair * frozen;
 }
 
-/// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten: the solver
-/// stagnates at a ratio of 1e15 times the tolerance, first in a tube.
+/// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
+/// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without one.
 void check_viscosity_ratio(const Scene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
@@ -106,7 +106,8 @@ void check_viscosity_ratio(const Scene& scene) {
                               most, ratio));
 }
 
-/// Throws UserError if the operators of `n_points` points are too large. The message says what `keys`, which determine this number, `must` be.
+/// Throws UserError if the assembled operators for `n_points` control points are too large. The message begins "<keys> must <must>", where `keys` are
+/// the keys of the deck that determine this number.
 void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
   if (bytes * n_points * n_points > most_bytes)
     throw UserError(keys + " must " + must +
@@ -130,7 +131,7 @@ void check_size(const Scene& scene) {
               formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }
 
-/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their products, are too large.
+/// Throws UserError if the vectors that each rank stores for an iterative solver, and the matrix of their inner products, are too large.
 void check_vectors(const Scene& scene, const std::string& path, const std::shared_ptr<Teuchos::ParameterList>& list) {
   const double unknowns = 3 * (points(scene) + (scene.tube.present ? wall_points(scene) : 0));
   double vectors = 1;
@@ -283,8 +284,8 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// The choice of `auto`: to resolve a film of a tenth of the radius, the equation for tractions needs a third of the control points, and a
-/// factorisation of up to 4500 unknowns takes less time than the iterations on the finer mesh.
+/// For Solvers/rigid bodies `auto`, chooses `first kind` (tractions) up to 4500 unknowns. To resolve a film of a tenth of the radius, `first kind`
+/// needs a third of the control points of `second kind`, and factorising up to 4500 unknowns takes less time than the iterations on the finer mesh.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto") return solvers.rigid_bodies == "first kind";

@@ -41,7 +41,7 @@ struct Scene;
 /// `Particle/motion`.
 enum class Motion { deforming, prescribed, free };
 
-std::string text(Motion motion);  ///< returns its name in the deck, in `quotes`
+std::string text(Motion motion);  ///< returns the name of the motion in the deck, in backquotes
 
 /// Options `Particle/*` of the deck: the resting shape, the inner fluid and the motion.
 struct ParticleOptions {
@@ -69,7 +69,7 @@ struct ParticleKind {
   surface::MeshOptions surface;
   coupling::InterfaceOptions interface;
   std::optional<membrane::SurfactantOptions> surfactant;  ///< Interface/surfactant; not set for a clean interface
-  const Registry* registry = &no_parts;                   ///< parts that the program adds
+  const Registry* registry = &no_parts;                   ///< user-defined loads, fields, flows and series
   std::vector<membrane::LoadParts::Chosen> loads;         ///< Membrane/loads
   std::vector<membrane::FieldParts::Chosen> fields;       ///< Interface/fields
   motion::AdaptationOptions adaptation;
@@ -87,7 +87,8 @@ struct ContactOptions {
   bool limiter = false;  ///< true if forces between the particles keep the gaps at this limit
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of `limit`; the run ends if a gap is smaller
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of the smallest particle; the run ends if a gap is
+                                                                        ///< smaller
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;
@@ -97,7 +98,7 @@ struct ContactOptions {
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
-  std::vector<ParticleKind> particles;  ///< Particles/<name>; if empty, the scene has one particle, with the options of the base class
+  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, whose options are in the base class
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
@@ -127,13 +128,15 @@ struct Scene : ParticleKind {
 
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
-  void reject(Rejections& to) const;  ///< adds combinations of choices that the program rejects, of a scene with one particle
-  void reject_power(Rejections& to) const;  ///< adds choices with which the power balance (6.11) of all particles is not available
+  void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
+  void reject_power(Rejections& to) const;  ///< adds the choices with which the power balance (6.11) of all particles is not available
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
-  /// Returns the section that replaces the run in time.
+  /// Returns the section of the deck that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
-  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for rejections
-  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for rejections
+  Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for messages about rejected
+                                                                            ///< combinations
+  Chosen duct_choice() const { return {tube.list(), "Tube or Channel"}; }  ///< returns the section that describes a duct, for messages about rejected
+                                                                           ///< combinations
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does
@@ -166,7 +169,7 @@ struct Scene : ParticleKind {
   std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
   double snapshot_interval() const;  ///< simulated time between snapshots
-  double next_snapshot(double now) const;  ///< next multiple of this interval after `now`, or the final time
+  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, or the final time
 };
 
 /// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all

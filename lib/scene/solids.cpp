@@ -21,7 +21,7 @@ int elements_along(const Post& post, const Vec3& period) {
 
 Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
 
-/// Returns the plates, each with the velocity of the ambient flow on it, which is fitted to them.
+/// Returns the plates, each with the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// Returns the directions in which the mean velocity is free (2.46).
+/// Returns the directions in which the mean velocity over the cell is not prescribed (2.46).
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
@@ -118,7 +118,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
     row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
   } else {
     const Vec3& n = of.planes.front().normal();
-    Vec3 across = particle_force;  // force on the fluid along the normal
+    Vec3 across = particle_force;  // force of particles and posts on the fluid; its component along the normal is needed
     for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {
@@ -136,7 +136,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
       row.mean_velocity += carried / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the fluid in the post, which the pressure gradient drives along it
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the flow inside the post, which exists only in the integral equation and is
+                                                          // driven by the pressure gradient
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];

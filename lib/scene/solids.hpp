@@ -23,7 +23,7 @@ void check_outside_of_posts(const coupling::SolidScene& solids, const std::vecto
 /// Returns the line of the plan that describes the plates and posts.
 std::string solids_line(const Scene& scene, int ranks);
 
-/// Data of plates and posts in one row.
+/// Data of plates and posts for one row of the results.
 struct SolidsRow {
   Vec3 wall_force = Vec3::Zero(), second_wall_force = Vec3::Zero();  ///< forces of the fluid on the plates
   std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
@@ -32,8 +32,8 @@ struct SolidsRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the row for a flow of the solids. `particle_force`: force of the particles on the fluid. `carried`: integral over the cell of the velocity
-/// that solids and particles add to the ambient flow (SolidResponse::carried), only between two plates.
+/// Returns the data of plates and posts for the flow `flow` around them. `particle_force`: force of the particles on the fluid. `carried`: integral
+/// over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only if there are two plates.
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const coupling::Solids::Flow& flow, const Vec3& particle_force,
                      const Vec3& carried);
 

@@ -27,25 +27,25 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
 /// Returns the tube around `body`, which contains all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
-/// Data of the tube in one row of the series. For a periodic train, pressure drops refer to one period.
+/// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.
 struct TubeRow {
   double pressure_drop = 0, gap = 0, flow_rate = 0, channel_pressure_drop = 0, channel_extra_pressure_drop = 0;
   coupling::Tube::Checks checks;
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns what a row of the series records about the tube (pressure drop, gap) for the particle shapes of `e`. Collective.
+/// Returns the data of the tube (pressure drop, gap) for the particle shapes of `e`. Collective.
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e);
 
-/// Returns what a row of the series records about the tube (pressure drop, gap) for a rigid body at the position last set in `tube`, from the force
-/// density on the fluid and the pressure drop. Collective.
+/// Returns the data of the tube (pressure drop, gap) for a rigid body at the position last set in `tube`, from the force density on the fluid and the
+/// pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop);
 
-/// Returns the smallest position of a particle's centroid in a row: x1, or in a channel the coordinate along the centre line.
+/// Returns the smallest position of a particle's centroid in a row of the results: x1, or in a channel the coordinate along the centre line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
-/// Returns a warning if the gap to the wall in a row is smaller than 0.6 of the element size of the wall, because the error of the wall traction then
-/// exceeds 1e-4. Otherwise returns an empty text.
+/// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the element size of the wall, because the error of the
+/// wall traction then exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
 /// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing in a

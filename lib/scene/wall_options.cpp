@@ -82,7 +82,8 @@ void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::Plan
 
 void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
-  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // `check` tells where the flow is not
+  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // general row for the table of combinations; for a given flow,
+                                                                                    // check() throws
   to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
   to.pair(scene.tube.present, "Wall", scene.duct_choice(), "images are of one plane in a fluid that is unbounded otherwise");
   to.pair(scene.quadrature.rule != "adaptive", "Wall",

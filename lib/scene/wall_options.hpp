@@ -29,18 +29,18 @@ struct WallOptions {
 
   void declare(deck::Section& section);
 
-  /// Throws UserError, with one sentence, if the normal is zero, if the flow is not tangential to the walls and uniform on them, or
-  /// if the cell does not repeat along both directions in the walls. `cell`: of the scene, if it repeats.
+  /// Throws UserError, with one sentence, if the normal is zero, if the flow is not tangential to the walls and uniform on them, or if the cell does
+  /// not repeat along both directions in the walls. `cell`: periodic cell of the scene, if any.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes
 
-  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall, if there is one that is an image plane
+  std::optional<stokes::PlaneWall> plane() const;  ///< returns the wall if it acts by images, otherwise nothing
   std::vector<stokes::PlaneWall> planes() const;   ///< returns the walls, one or two
-  std::optional<stokes::Plates> plates() const;    ///< returns the walls as plates, if they are solids
+  std::optional<stokes::Plates> plates() const;    ///< returns the plates if the walls are plates in a periodic cell, otherwise nothing
 
-  /// Returns the numbers of elements of a plate along the two periods. By default elements are as long as a twelfth of the distance of the plates, or
-  /// beside a single plate of `radius`, but at most 48 per period.
+  /// Returns the numbers of elements of a plate along the two periods. By default the length of an element is a twelfth of the distance of the
+  /// plates, or a twelfth of `radius` if there is only one plate, but a period has at most 48 elements.
   std::array<int, 2> elements(const stokes::PeriodicCell& cell, double radius) const;
 
  private:

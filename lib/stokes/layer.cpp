@@ -189,8 +189,9 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Sets the positions of the tree, and for a double layer computes sum_q T_ijk n_k at the targets. Both are reused if nothing has changed, because
-/// Krylov solvers apply one shape many times. Row k + g n of the sums belongs to image g of target k of n.
+/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. Both are reused if nothing has
+/// changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums belongs to image g of target k, where n is the
+/// number of targets.
 void Layer::place_tree(const Targets& targets) {
   std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;

@@ -159,8 +159,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Computes the values of a field at the far nodes, and the transpose: int N_A g dG for every A, where `g` is the product of g and the area at each
-  /// far node.
+  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG for every A, where `g` holds h
+  /// times the area at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
@@ -191,12 +191,12 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
-    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at rest_at, by the images that are not near
+    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at the targets rest_at, due to the images that are not near
   };
 
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier, weight;  // Bezier points; weights of the far nodes, areas included
+    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its weights at the far nodes, areas included
     std::vector<bool> present;           // true for elements for which Measure::by_element means the current area
   };
 
@@ -258,8 +258,8 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: f, times weight_ in a single layer; normal times area
-                                                                   // and factor k
+  std::vector<double> density_[3], normal_[3];                     // at far nodes: density f (in a single layer times weight_); normal times area and
+                                                                   // factor k
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall

@@ -55,7 +55,7 @@ class LayerSurface {
   void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;
-  int n_points, n_sites;  ///< control points, and targets on the surfaces
+  int n_points, n_sites;  ///< numbers of control points and of targets on the surfaces
   Panels panels;
   NearField near_field;
   SelfField self_field;

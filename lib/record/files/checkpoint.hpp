@@ -46,7 +46,7 @@ struct Picture {
   std::string run;  ///< text "run" of the checkpoint, the identifier of the run
 };
 
-/// Returns time and run of a snapshot file; nothing if the file cannot be read.
+/// Returns the time and the run identifier of a snapshot file; nothing if the file cannot be read.
 std::optional<Picture> pictured(const std::filesystem::path& path);
 
 struct Damaged {

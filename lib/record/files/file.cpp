@@ -30,7 +30,7 @@ bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
 }
 
-/// Returns whether the entry of a directory is the folder of a level of a ladder.
+/// Returns whether the entry of a directory is the folder `level_<k>` of a run of an accuracy ladder (lib/accuracy).
 bool is_level(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename();
   return entry.is_directory() && name.size() > level.size() && name.starts_with(level) && name[level.size()] >= '0' && name[level.size()] <= '9';

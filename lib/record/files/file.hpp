@@ -55,11 +55,12 @@ std::filesystem::path set_aside(const std::filesystem::path& path);
 /// Throws UserError if a directory holds results of a run.
 void check_vacant(const std::filesystem::path& directory);
 
-/// Prepares `directory` for a run: creates it, and removes the results of an earlier run, of the levels of a ladder, and unfinished files
-/// (only names that a run writes). Throws UserError if that fails.
+/// Prepares `directory` for a run: creates it, and removes the results of an earlier run, the runs of an accuracy ladder (lib/accuracy), and
+/// unfinished files (only names that a run writes). Throws UserError if that fails.
 void start_directory(const std::filesystem::path& directory);
 
-/// Removes the results in `directory`, but not those of the levels of a ladder (lib/accuracy). Throws UserError if that fails.
+/// Removes the results in `directory`, but keeps the runs of an accuracy ladder (lib/accuracy: one deck at increasing resolution). Throws UserError
+/// if that fails.
 void start_results(const std::filesystem::path& directory);
 
 /// Prepares `directory` for `--resume`: removes only unfinished files. Throws UserError if that fails.

@@ -27,8 +27,8 @@ class Id {
 };
 
 /// Return a new file in memory, and its bytes as they would be on the disk. They are written to the disk in one piece (write_whole). So write errors
-/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes belong to the file, are no copy, and
-/// are valid until it is written to again or closed.
+/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not a copy. They are valid until
+/// the file is written to again or closed.
 Id new_file();
 std::string_view image(const Id& file);
 

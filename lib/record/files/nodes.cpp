@@ -105,7 +105,7 @@ std::vector<double> jet_table(int p) {
 /// Returns normals of an element, not normalised, from the jets at the nodes of its cell.
 std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surface::Jet> jets) {
   constexpr double degenerate = 1e-6;  // nodes with a smaller |a1 x a2|, divided by |a1|_max |a2|_max of the element, are poles
-  constexpr double inset = 1e-4;       // distance by which the evaluation point at a pole moves towards the middle, as a fraction
+  constexpr double inset = 1e-4;       // fraction of the way to the middle of the element by which the evaluation point at a pole is moved
   double longest_1 = 0, longest_2 = 0;
   std::vector<Vec3> normals;
   for (const surface::Jet& here : jets) {
@@ -146,7 +146,7 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
 }
 
 /// Calls use(patch, nodes, jets) for every element, the last element first. A node shared by several elements thus ends with the value of the first
-/// of them.
+/// of these elements.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;

@@ -22,14 +22,15 @@ namespace tanktread::output {
 struct LagrangeMesh {
   std::vector<std::int64_t> connectivity;  ///< node numbers, cell after cell
   std::vector<std::int64_t> offsets;       ///< (n_cells + 1) index in `connectivity` at which the nodes of each cell begin
-  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are no spline fields
+  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are not spline
+                                           ///< fields
 };
 
 /// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it
 /// does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
-/// Returns (i, j) of the nodes of a cell of degree p, in their order.
+/// Returns the indices (i, j) of the nodes of a cell of degree p, in VTK's order (LagrangeMesh).
 std::vector<std::array<int, 2>> node_order(int p);
 
 /// Evaluates fields at the nodes of a surface's Lagrange mesh.

@@ -10,7 +10,8 @@ namespace tanktread::output {
 /// Options of the results: `Output/*` of the deck.
 struct Options {
   std::optional<double> interval;          ///< simulated time between snapshots; empty: a twentieth of the final time
-  std::optional<std::string> between_steps;  ///< land or interpolate; empty: interpolate with a fixed step, land otherwise
+  std::optional<std::string> between_steps;  ///< `land`: steps end at snapshots; `interpolate`: snapshots interpolate between steps; empty:
+                                             ///< `interpolate` with fixed step and mesh, otherwise `land`
   std::optional<double> wall_clock_limit;  ///< seconds after which the run stops with a checkpoint; empty: none
 
   bool power_balance = false;              ///< true if each row holds the balance of power

@@ -12,7 +12,7 @@
 
 namespace tanktread::output {
 
-/// One quantity as a function of the step. Scripts outside the project rely on the names.
+/// One quantity as a function of the step. Scripts outside the project rely on the names of series.
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one value per row; row 0 is the initial state
@@ -21,7 +21,7 @@ struct Series {
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
 /// `unit`, `description` and, if the deck sets its units, `SI`, for example `1e-06 m/s`;
-/// `/error/<name>`, the estimated error of `/series/<name>` if the run is the finest one of a ladder (lib/accuracy): the same shape and attributes;
+/// `/error/<name>`, the estimated error of `/series/<name>` if the run is the finest of an accuracy ladder (lib/accuracy): equal shape and attributes;
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///

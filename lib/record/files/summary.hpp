@@ -23,7 +23,7 @@ struct Summary {
   Entries<long> memory;       ///< peak memory in bytes: the largest of any rank, and the sum of all ranks
   Entries<std::string> plan;  ///< plan of the run: methods and sizes that it chose, one line each
   Entries<double> numbers;    ///< derived and dimensionless numbers of the scene
-  Entries<std::string> errors;  ///< what is known of the errors of a run without a request (lib/accuracy), one line each
+  Entries<std::string> errors;  ///< error estimates of a run without the section Accuracy, one line each
   Entries<std::string> modes;  ///< kind of each mode of a spectrum
   std::vector<std::string> warnings;  ///< warnings about limits of the method that the run came close to
 };

@@ -57,7 +57,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// Records the displacement `moved` of the surfaces by the mesh change in the result, divided by R_C.
+/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
@@ -159,8 +159,8 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }
 
-/// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in the paper,
-/// such elements are then refined only if the refinement of a neighbour requires it.
+/// Removes the marks of T-mesh elements with a side at a pole, if the poles are degenerate or `Adaptation/indicator` is not `error`. As in Maestre et
+/// al. (2017), such elements are then refined only if the refinement of a neighbour requires it.
 void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>& marks) {
   if (body.mesh.lattice->pad == 0 || (scene.surface.poles != "plain" && scene.adaptation.indicator == "error")) return;
   const spline::Tiling tiling = spline::elements(body.mesh);

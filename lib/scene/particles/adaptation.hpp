@@ -14,7 +14,7 @@
 
 namespace tanktread {
 
-/// Body on a changed mesh, and the state of all particles with it.
+/// Body of a particle on its adapted mesh, and the state of all particles with this mesh.
 struct Adapted {
   std::unique_ptr<Body> body;  ///< null if the mesh does not change
   motion::State state;
@@ -24,10 +24,11 @@ struct Adapted {
   bool full = false;    ///< true if bisections were left out because of `Adaptation/largest number of points`
 };
 
-/// Refines the elements that the indicator marks; if none is refined, merges elements that it allows to be longer. Transfers every field of the
-/// state: both surfaces, the slopes of the time scheme, and the geometry of the frozen operator. Rows of other particles than `block` do not change.
-/// `load`: control values of this particle's load at state.x, per area of the unstressed surface if `per_unstressed_area`. `films`: film width at
-/// each element of body.nested(), or empty. `fields`: values of the fields on the surface, scaled to order 1. Returns the same on every rank.
+/// Refines the elements that the indicator marks; if none is refined, merges elements that the indicator allows to be longer. Transfers every field
+/// of the state: both surfaces, the slopes of the time scheme, and the geometry of the frozen operator. `block`: rows of this particle; the rows of
+/// other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed surface if
+/// `per_unstressed_area`. `films`: film width at each element of body.nested(), or empty. `fields`: values of the fields on the surface, scaled to
+/// order 1. Returns the same on every rank.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
                 bool per_unstressed_area, std::span<const double> films, const surface::FieldsAt& fields = {});
 
@@ -35,9 +36,10 @@ Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block
 /// change of the mesh has moved the surface.
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
-/// Refines the mesh of an isolated rigid body in its initial position, as Adaptation requires for its shape, the film to a wall and the traction, and
-/// fits the shape again. The mesh does not change afterwards because the body does not deform. `force_density` returns control values, shape (N, 3),
-/// force/area, on the mesh of its argument. It is called only if Adaptation limits the error or the variation of the load. Collective.
+/// Refines the mesh of an isolated rigid body in its initial position, as the section Adaptation requires for the shape of the body, the film to a
+/// wall and the traction. Then fits the shape again. The mesh does not change afterwards because the body does not deform. `force_density` returns
+/// control values, shape (N, 3), force/area, on the mesh of its argument. It is called only if Adaptation limits the error or the variation of the
+/// load. Collective.
 void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

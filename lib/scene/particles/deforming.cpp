@@ -148,7 +148,8 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if ((body().wall || solids_) && !accurate(state)) here->solve();  // the flow of tubes and solids depends on the velocity
+    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the flow due to a tube or
+                                                                      // solids depends on it
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -248,7 +249,7 @@ class Deforming : public ParticleSystem {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
-  /// Returns the data of particle p for a row, except tank-treading. Adds the columns of its fields.
+  /// Returns the data of particle p for a row of the results, except tank-treading. Adds the columns of its fields.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
     if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
@@ -300,7 +301,7 @@ class Deforming : public ParticleSystem {
     return now;
   }
 
-  /// Adapts the mesh of particle p if the indicator asks for it.
+  /// Adapts the mesh of particle p if the indicator requires it.
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
@@ -344,7 +345,7 @@ class Deforming : public ParticleSystem {
         ((body.rest.rowwise() - centre.transpose()) * placed_->turn(p).transpose()).rowwise() + placed_->centre(p).transpose();
   }
 
-  /// Builds the system again for the current bodies of the members, in the shape x.
+  /// Rebuilds the coupled system for the current meshes of the members, in the shape x. Counts of work are kept.
   void settle(const Net& x) {
     if (!all_) members_.front().body->symmetry = symmetry(members_.front().scene, body(), x);
     if (capsule_) work_ = capsule_->work(), kernel_evaluations_ = kernel_evaluations();
@@ -364,7 +365,7 @@ class Deforming : public ParticleSystem {
   motion::State pictured_;  // state of the latest snapshot, to which its fields refer
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::Work work_;                     // work (solves, iterations) of the systems on earlier meshes
-  stokes::Evaluations kernel_evaluations_;  // kernel evaluations on earlier meshes
+  stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes
   std::vector<std::pair<std::size_t, std::unique_ptr<Body>>> before_;  // particles whose mesh the latest step changed, and their previous bodies
   std::optional<coupling::RigidParticles> placed_;  // positions of rigid particles, stored before their meshes change
   std::vector<Warning> remarks_;

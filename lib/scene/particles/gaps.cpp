@@ -34,7 +34,7 @@ struct Placed {
 struct Pair {
   double bound;  ///< lower bound of the gap
   std::size_t first, second;
-  Vec3 beyond;  ///< lattice vector by which the second one is shifted
+  Vec3 beyond;  ///< lattice vector by which the second particle is shifted
 };
 
 /// Returns the lattice vectors that move particle q to images that may be close to p. If q is p itself, only one of each pair of opposite vectors is
@@ -127,7 +127,7 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns the net q and its lattice images, as far as their bounding boxes are within `reach` of the bounding box of the net p. If q is p itself
+/// Returns those of the net q and its lattice images whose bounding boxes are within `reach` of the bounding box of the net p. If q is p itself
 /// (`same`), p is not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;

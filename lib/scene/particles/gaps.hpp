@@ -42,7 +42,7 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
 /// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the width of the film at each element of particle p at x, on its nested space. Widths that are not computed, because the elements of the
+/// Returns the width of the film at each element (of Body::nested()) of particle p at x. Widths that are not computed, because the elements of the
 /// first mesh resolve such wide films, are infinite. `cell`: cell of the lattice, whose images bound films too. `wall`: wall of the tube around the
 /// particle, in whose coordinates x is given, or null.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},

@@ -11,7 +11,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double tolerance = 1e-6;  // error of gaps at contacts, divided by the limit
+constexpr double tolerance = 1e-6;  // largest permitted deviation of a gap from its required value, divided by the limit
 constexpr int most_rounds = 40;
 constexpr double slack = ContactOptions::slack;
 
@@ -90,7 +90,8 @@ double Limiter::target(const Approach& found) const {
   return std::max((1 - slack) * limit_, found.gap + std::min(1., rate_ * step_) * (limit_ - found.gap));
 }
 
-/// Returns the largest error of the gaps, divided by the limit.
+/// Returns the largest deviation of a gap from its required value, divided by the limit. At a contact without force, only a smaller gap counts as a
+/// deviation.
 double Limiter::error() const {
   double most = 0;
   for (const Held& one : held_) most = std::max(most, (one.force > 0 ? std::abs(one.gap - one.target) : one.target - one.gap) / limit_);

@@ -18,13 +18,13 @@ struct RigidSolution {
   Vec3 integral;       ///< force computed only as the integral of the traction
   int iterations = 0;  ///< iterations of the solver for this traction
   double pressure_drop = unknown;  ///< additional pressure drop caused by the body in a tube (2.7)
-  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of force, `integral` and torque
+  double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of `force`, of `integral` and of `torque`
   SurfaceErrors surface{unknown, unknown, 0};
 
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Data of a prescribed body for its row of results, except the data of walls.
+/// Data of a body with prescribed motion for its row of the results, except the data of walls.
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};

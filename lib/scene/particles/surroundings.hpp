@@ -1,5 +1,5 @@
 #pragma once
-// Data of what surrounds the particles of a coupled system, for a row: tube, cell, walls, posts, gaps.
+// Data about the surroundings of a coupled system of particles (tube, cell, walls, posts, gaps) for a row of the results.
 
 #include <vector>
 
@@ -10,8 +10,8 @@
 
 namespace tanktread {
 
-/// Adds the columns of the surroundings at the shape of `here`. `all`: body of all members. `stresslet`: sum of their stresslets. Throws RunFailure
-/// if the particles have spread too far in a tube. Collective.
+/// Adds the columns of the surroundings at the shape of `here`. `all`: body of all members. `stresslet`: sum of the stresslets of all members. Throws
+/// RunFailure if the particles have spread too far in a tube. Collective.
 void add_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
                       const Mat3& stresslet, const coupling::Ranks& ranks, Columns& row);
 

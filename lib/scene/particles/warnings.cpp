@@ -15,10 +15,11 @@ namespace {
 
 constexpr double grown = 5;         // growth of waves on a compressed membrane at which the user is warned, in e-folds: they soon become visible
 constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; fewer can occur at the start
-constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is 0.5 and more on even elements, 0.1 at a degenerate pole
+constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
-constexpr double stiff_area = 3e4;  // warning threshold of global area stiffness divided by the other stiffnesses: steps become many above it
+constexpr double stiff_area = 3e4;  // warning threshold of global area stiffness divided by the other stiffnesses; above it, time steps become very
+                                    // small
 
 
 /// Returns the largest wave number that a mesh of element size h can represent.

@@ -25,7 +25,7 @@ struct StepFindings {
 
   StepFindings() = default;
 
-  /// Reads the data from a row. `first`: scene of the first deforming particle.
+  /// Reads the data from a row of the results. `first`: scene of the first deforming particle.
   StepFindings(const Scene& scene, const Scene& first, const Columns& row, const surface::Quality& quality, int n_elements);
 };
 

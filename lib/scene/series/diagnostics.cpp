@@ -69,7 +69,7 @@ std::vector<double> slots(const coupling::Ranks& ranks, double mine) {
   return all;
 }
 
-/// Returns the smallest number of the ranks that own blocks of elements. Ranks without blocks have no value of their own.
+/// Returns the smallest of the numbers `all` (one per rank) over the ranks that own blocks of elements, because other ranks have no value.
 double least(const std::vector<double>& all, const coupling::Ranks& ranks, int n_blocks) {
   double result = std::numeric_limits<double>::infinity();
   for (int k = 0; k < n_blocks; ++k) result = std::min(result, all[static_cast<size_t>(ranks.owner(k, n_blocks))]);

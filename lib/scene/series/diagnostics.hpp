@@ -13,7 +13,7 @@
 
 namespace tanktread {
 
-/// Data of a moving particle for one row. Vectors are in the axes of space; units as the columns state.
+/// Data of a moving particle for one row of the results. Vectors have components in the laboratory frame. The columns state the units.
 struct ParticleRow {
   int n_points = 0;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
@@ -46,7 +46,7 @@ struct RigidRow : ParticleRow {
   void add_columns(const Scene& one, Columns& to) const override;
 };
 
-/// Sums over all particles, and their mean velocity.
+/// Totals over all particles: control points, energy and stresslet. Also their mean velocity.
 struct Together {
   int n_points = 0;
   double energy = 0;

@@ -17,7 +17,7 @@ namespace tanktread {
 
 namespace {
 
-/// Order of columns in a row and in the manual. Columns with components are listed by the part of their name before the component.
+/// Order of columns in a row of the results and in the manual. Columns with components are listed by the part of their name before the component.
 constexpr const char* order =
     "time time_step taylor_inertia taylor_surface inclination volume volume_error refit_error area energy membrane_dissipation smallest_tension "
     "compressed_area local_area_change flow_power force_power fluid_dissipation power_residual stresslet_ length_ normal_velocity shape_velocity "

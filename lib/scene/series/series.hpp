@@ -1,5 +1,5 @@
 #pragma once
-// Series of a run: the columns of its progress, and the order of all columns in a row.
+// Series of a run: the columns of its progress, and the order of all columns in a row of the results.
 
 #include <optional>
 #include <span>
@@ -15,7 +15,7 @@
 
 namespace tanktread {
 
-/// Data of the progress of a run for one row.
+/// Data about the progress of a run, for one row of the results.
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
@@ -25,7 +25,7 @@ struct ProgressRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Data of a steady shape on a branch, of a periodic motion and of a spectrum for one row.
+/// Data of a steady shape on a branch, of a periodic motion or of a spectrum, for one row of the results.
 struct SteadyRow {
   motion::BranchPoint point;
   double period = 0;
@@ -52,7 +52,8 @@ void put_in_order(Columns& columns);
 /// Sorts the columns of a row in the order of the manual and checks them. Throws RunFailure like Columns::check.
 void finish(Columns& row);
 
-/// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the numbers of a scene, each with its unit.
+/// Returns a page in Markdown with the series and fields of the results, the entries of the summary and the derived and dimensionless numbers of a
+/// scene, each with its unit.
 std::string series_manual(const Registry& registry);
 
 }  // namespace tanktread

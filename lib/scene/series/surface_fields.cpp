@@ -63,7 +63,8 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
   return state;
 }
 
-/// Returns the control net y of a state, whose rows after the shape are coefficients of fields, transferred to the current meshes.
+/// Returns the control net y of a state transferred to the current meshes, on which `shape` is the shape. The rows of y after the shape are
+/// coefficients of fields, which `before` holds on the previous meshes.
 Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);

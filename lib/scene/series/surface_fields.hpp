@@ -18,7 +18,7 @@
 
 namespace tanktread {
 
-/// Data of a particle's surfactant for one row.
+/// Data of a particle's surfactant for one row of the results.
 struct SurfactantRow {
   double mass = 0;                   ///< mass divided by the initial mass
   double smallest = 0, largest = 0;  ///< concentration divided by the initial one
@@ -42,11 +42,11 @@ class SurfaceFields {
   /// Returns time, slopes and shapes of a state without the coefficients of fields; the state itself if there are no fields. The result is valid
   /// until the next call.
   const motion::State& of_shape(const motion::State& state);
-  /// Copies shapes and slopes of `own`, a modified copy of of_shape(), back into the state.
+  /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
-  /// Returns the state `old` on the current meshes, with the shapes of `own` and the fields of `before`. The meshes of `before` and `old` are the
-  /// same. Slopes and secants are left out if there are fields. `bodies`: previous body of each particle; null if its mesh is unchanged.
+  /// Returns the state `old` on the current meshes, with the shapes of `own`. Fields are transferred from the previous meshes, on which `before`
+  /// holds them. If there are fields, the result has no slopes and secants. `bodies`: previous body of each particle; null if its mesh is unchanged.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
   /// Passes the state y to the capsule and the fields. If the capsule was last evaluated at a state within `distance` of y, passes the state only to
@@ -87,7 +87,7 @@ class SurfaceFields {
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns, at each node, the lattice vector by which its particle is moved so that the mean of its control points is in the cell around the
+/// Returns, for each node, the lattice vector that moves the particle of the node so that the mean of its control points is in the cell around the
 /// origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 

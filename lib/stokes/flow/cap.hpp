@@ -25,10 +25,10 @@ class Cap {
 
   double place() const { return place_; }
 
-  /// Returns c at any point, including points on the rim. Units length.
+  /// Returns the integral c (2.13) at any point, including points on the rim of the cap. Units length.
   Vec3 integral(const Vec3& x0) const;
 
-  /// Returns c at the rows of x; fast for points off the plane of the cap.
+  /// Returns the integral c (2.13) at the rows of x; fast for points off the plane of the cap.
   Net integral(const Net& x) const;
 
   /// Returns the flow rate along x1 through the cap due to a point source of a double layer at y with normal n, for each component j of its strength:
@@ -47,7 +47,7 @@ class Cap {
 
   surface::Outline outline_;
   double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest curve segment of the outline
-  std::vector<std::pair<double, Nodes>> rules_;  ///< pairs: smallest distance from the plane at which the nodes are used; the nodes
+  std::vector<std::pair<double, Nodes>> rules_;  ///< for each rule, the smallest distance from the plane at which it is used, and its nodes
 };
 
 }  // namespace tanktread::stokes

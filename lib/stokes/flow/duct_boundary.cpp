@@ -150,7 +150,7 @@ surface::PlaneJet OutlineSpace::at(int side, double t) const {
 namespace {
 
 constexpr int points = 8, points_far = 10,
-              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for the logarithm
+              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for its logarithmic singularity
 constexpr int sweeps = 2;
 using std::numbers::pi;
 using surface::PlaneJet;
@@ -265,7 +265,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // psi (2.16) at the start of the current element
+  double psi = 0;  // psi (2.17) at the start of the current element
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;

@@ -29,8 +29,7 @@ class EllipseProfile : public DuctProfile {
 
 /// Velocity profile of a rectangle with half sides A along y and B along z, where k_n = (2n + 1) pi/(2 B):
 ///   u = (B^2 - z^2)/2 - sum_n (-1)^n 2/(B k_n^3) cos(k_n z) cosh(k_n y)/cosh(k_n A)
-/// The terms decay like exp(-k_n (A - |y|)). The direction with the larger A - |y|, divided by the half side B of the other direction, is chosen as
-/// y.
+/// The terms decay like exp(-k_n (A - |y|)). The axis with the larger (A - |y|)/B is chosen as y.
 class RectangleProfile : public DuctProfile {
  public:
   explicit RectangleProfile(const surface::Vec2& sides) : half_(sides / 2) {}

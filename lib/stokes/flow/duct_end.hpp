@@ -19,7 +19,7 @@ namespace tanktread::stokes {
 class DuctEnd {
  public:
   /// `flow`: flow of the straight duct with this section. `inward`: 1 if `along` points into the fluid (inlet), -1 otherwise (outlet). Throws
-  /// UserError if a ray meets the outline twice.
+  /// UserError if a ray from the centroid meets the outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
   /// Returns the velocity P (2.29) that the end causes at each row of x, points in the fluid or on the wall, units length/time.

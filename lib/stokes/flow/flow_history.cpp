@@ -21,9 +21,10 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// Returns F(1) of dF/ds = (A + s B) F, F(0) = I. The Taylor series of F converges everywhere; it is used on parts short enough that it does so fast.
+/// Returns F(1) of dF/ds = (A + s B) F, F(0) = I. A = `first`, B = `change`. The interval is divided into parts so short that the Taylor series of F
+/// converges fast on each.
 Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
-  constexpr int terms = 20;  // with a norm of at most 1/2 the next term is below 1e-16
+  constexpr int terms = 20;  // number of Taylor terms; the next term is below 1e-16, because the norm of the gradients on a part is at most 1/2
   const int parts = 1 + static_cast<int>(2 * (first.norm() + change.norm()));
   const double h = 1. / parts;
   Mat3 whole = Mat3::Identity();
@@ -122,7 +123,7 @@ void FlowHistory::check() const {
 
 FlowHistory::Moment FlowHistory::at(double time, double start) const {
   if (type == "sine") return {*mean + *amplitude * std::sin(2 * std::numbers::pi * *frequency * time + *phase * degree)};
-  // Selects the piece in which the step began. Times of steps equal those of the table up to round-off.
+  // Selects the interval of the table in which the step began. `start` may differ from a time of the table by round-off.
   const auto after = static_cast<std::size_t>(std::ranges::upper_bound(*times, start * (1 + 1e-12)) - times->begin());
   const std::size_t j = std::min(after, times->size() - 1), i = after == 0 ? 0 : after - 1;
   const double t = i == j ? 0 : std::clamp((time - (*times)[i]) / ((*times)[j] - (*times)[i]), 0.0, 1.0);
@@ -133,8 +134,8 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
   return now;
 }
 
-/// Without rotation the gradients of all times commute. In a piece of a table Q rotates at a constant rate W: Q^T F satisfies an equation with the
-/// gradient a L - W, which is linear in time.
+/// Without rotation the gradients at all times commute, so that F is one exponential. With rotation, Q rotates at a constant rate W between two times
+/// of the table. There Q^T F satisfies an equation with the gradient a L - W, which is linear in time.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
     const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;

@@ -24,7 +24,7 @@ struct FlowOptions {
                                       ///< parabolic, duct, or a registered one
   double shear_rate = 1.0;            ///< rate of every flow with a gradient except `linear` and `parabolic`, units 1/time
   double viscosity = 1.0;             ///< mu of the outer fluid
-  std::optional<double> roll_parameter;  ///< a of (P-48); set for `four-roll`
+  std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (P-48)
   std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`
   std::optional<Vec3> velocity;          ///< set for `uniform`
   std::optional<Vec3> gravity;           ///< gravitational acceleration, for particles with a density difference
@@ -36,8 +36,8 @@ struct FlowOptions {
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
   std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
-  const UserFlows* registered = nullptr;   ///< further types, with keys in `Flow/<type>`; null if there are none
-  std::shared_ptr<const UserFlow> user;    ///< set for a registered type
+  const UserFlows* registered = nullptr;   ///< user-defined types of flow, with keys in `Flow/<type>`; null if there are none
+  std::shared_ptr<const UserFlow> user;    ///< set if the type is user-defined
 
   void declare(deck::Section& section);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Interface for ambient flows that a program adds.
+// Interface for user-defined ambient flows.
 
 #include <memory>
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int packs = far_block / lanes;
 
-/// Coefficients of the image Stokeslet G^I (2.35) for a register of pairs of node and target.
+/// Coefficients of the image Stokeslet G^I (2.35) for as many pairs of node and target as fit into a register.
 struct ImageOfForce {
   Register z, i, i3, h, c, isotropic, dyadic, normal;
 
@@ -32,7 +32,7 @@ struct ImageOfForce {
   }
 };
 
-/// Coefficients of the image stresslet T^I (2.36) for a register of pairs of node and target.
+/// Coefficients of the image stresslet T^I (2.36) for as many pairs of node and target as fit into a register.
 struct ImageOfStress {
   Register z, i5, i7, h;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Evaluation of a panel at a register of points of a table; only for use in kernels.
+// Evaluation of a panel at as many quadrature points as fit into a SIMD register; only for use in kernels.
 
 #include "base/register.hpp"
 #include "stokes/kernels/point_table.hpp"
@@ -7,7 +7,8 @@
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 
-/// One pack of points of a PointTable. Degree: polynomial degree for common degrees, known at compile time; 0 if it is known at run time only.
+/// Bernstein polynomials at one pack of points (as many as fit into a register) of a PointTable. Degree: polynomial degree for common degrees, known
+/// at compile time; 0 if it is known at run time only.
 template <int Degree>
 struct Points {
   const int n;

@@ -1,5 +1,5 @@
 #pragma once
-// Bernstein polynomials at the points of a quadrature rule, in registers of points, for targets with a panel-specific rule.
+// Bernstein polynomials at the points of a panel-specific quadrature rule, stored in packs of as many points as fit into a register.
 
 #include <vector>
 

@@ -55,7 +55,7 @@ class ImageSum {
   std::vector<double> node_[3];  // far nodes in the axes of the wall
   std::vector<Vec3> targets_;    // targets in the laboratory frame
   std::vector<int> wanted_;
-  bool placed_ = false;          // true if the targets were set after the nodes were set last
+  bool placed_ = false;          // true if the targets have been set for the current nodes
   long long interactions_ = 0;
 };
 

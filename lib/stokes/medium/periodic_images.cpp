@@ -37,10 +37,10 @@ void reduce(Mat3& vectors, int n) {
   }
 }
 
-/// Coefficients of the smooth part G - A of the Stokeslet (a of I, b of r r) and of the smooth part of the stresslet T (g and slope). The function g
-/// is defined in (2.25).
+/// Coefficients of the smooth parts of the kernels in Ewald's sum, with A and g of (2.25). Stokeslet: a multiplies I and b multiplies r r in G - A.
+/// Stresslet: g and `slope`.
 struct Smooth {
-  double a, b, g, slope;  // G - A = a I + b r r;   T = -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k
+  double a, b, g, slope;  // G - A = a I + b r r;   smooth part of T = -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k
 
   Smooth(double xi, double r) {
     const double x = xi * r, square = x * x;
@@ -50,7 +50,7 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // term m + 1 of the series, (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // term m + 1 of the series of the slope, where (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);
@@ -109,8 +109,8 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // long enough, because modes with an in-plane wave number k != 0 decay like |k| z
-                                                         // e^{-|k| z}
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // third period, so long that modes with an in-plane wave number k != 0, which decay like |k|
+                                                         // z e^{-|k| z}, do not reach across it
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
@@ -201,7 +201,7 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images in a row with one period except the near images, in pairs +n and -n, minus the limits of their Stokeslets far along the row. The
+/// Adds all images in a row with one period except the near images, in pairs +n and -n, and subtracts (I + e e)/|n h| from each Stokeslet (2.43). The
 /// next `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
@@ -222,7 +222,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
-/// Adds the constant of (2.43) minus the limits of the near images.
+/// Adds the constant of (2.43), minus (I + e e)/|n h| for each near image n.
 void PeriodicKernel::add_constant(double* values) const {
   if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
   const double h = cell_.vectors().col(0).norm();

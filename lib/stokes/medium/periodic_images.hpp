@@ -27,7 +27,7 @@ class PeriodicCell {
   /// Returns the lattice vector that must be subtracted from x to move it into the cell around the origin.
   Vec3 shift(const Vec3& x) const;
 
-  /// Returns the distance between neighbouring lattice planes that contain all vectors except vector d, d < n.
+  /// Returns the distance between neighbouring lattice planes that are parallel to all lattice vectors except vector d, d < n.
   double spacing(int d) const { return 1 / inverse_.row(d).norm(); }
 
   /// Returns the lattice vectors with up to `most[d]` steps along vector d in both directions.
@@ -66,7 +66,7 @@ class PeriodicKernel {
   enum class Kind { stokeslet, stresslet };
 
   /// Positions are r = box s with |s_d| <= 1. `box`: columns are the vectors of the cell, or multiples of them in directions that do not repeat.
-  /// `tolerance`: error of the sum times a length of the cell (stresslet: its square).
+  /// `tolerance`: error of the Stokeslet sum times the length of the cell, or error of the stresslet sum times the square of this length.
   PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& box, const std::array<int, 3>& near, double tolerance);
 
   /// Returns the number of components. Stokeslet: 11, 12, 13, 22, 23, 33. Stresslet: T_ijk at index 6 i + jk, where jk = 11, 22, 33, 12, 13, 23, and

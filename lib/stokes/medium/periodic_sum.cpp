@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns, for each lattice vector, the number of steps up to which images count as near, and the distance of the nearest image that does not. For
-/// any two points in the box this distance is about `far` box lengths.
+/// Returns, for each lattice vector, the number of steps up to which images count as near, and the distance of the nearest image that does not count
+/// as near. For any two points in the box this distance is about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -108,7 +108,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Indices in the table of the differences between two nodes.
+/// Finds the table index of the difference between two nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;

@@ -1,5 +1,6 @@
 #pragma once
-// Far sums over a lattice of images. Near images are treated like other sources; the smooth rest is evaluated between Chebyshev nodes of the cell.
+// Far sums over a lattice of images. Near images are treated like other sources. The sum over all other images is smooth and is interpolated at
+// Chebyshev nodes of the cell.
 
 #include <array>
 #include <span>
@@ -18,14 +19,14 @@ namespace tanktread::stokes {
 /// rho^(-p), rho = y + sqrt(1 + y^2), cf. (2.9).
 class PeriodicSum {
  public:
-  /// `tolerance`: error of the sum relative to one term at half a cell. `extent`: lowest and highest lattice coordinates of all positions, for
-  /// directions that do not repeat.
+  /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all
+  /// positions, for directions that do not repeat.
   PeriodicSum(PeriodicKernel::Kind kind, const PeriodicCell& cell, double tolerance, const std::array<Vec3, 2>& extent);
 
   const PeriodicCell& cell() const { return cell_; }
   const std::vector<Vec3>& images() const { return images_; }  ///< lattice vectors H n of the near images, including 0
 
-  /// Returns whether this sum is also valid for the given extent, that is, equal to a sum constructed for it.
+  /// Returns whether a PeriodicSum constructed for `extent` would be equal to this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
   /// Returns the position moved into the cell. The cell is far from the origin, because near the origin kernels would treat close points as
@@ -50,13 +51,14 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box, lattice coordinates
+  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box in lattice coordinates
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // index of the difference of nodes a, b of one direction, at n a + b
-  std::array<std::size_t, 3> differences_;      // number of differences
-  std::vector<double> table_;  // smooth rest: components_ values per node difference (i, j, k), from components_ ((n_1 i + j) n_2 + k) on
+  std::array<std::vector<int>, 3> difference_;  // for each direction, index of the difference of nodes a and b, at n a + b
+  std::array<std::size_t, 3> differences_;      // number of differences in each direction
+  std::vector<double> table_;  // kernel of the smooth rest: components_ values for the node difference (i, j, k), from components_ ((n_1 i + j) n_2 +
+                               // k) on
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Points in nested boxes. Each box has Chebyshev nodes that represent its points at a distance.
+// Points in nested boxes. Each box has Chebyshev nodes that replace its points for distant targets or sources.
 
 #include <span>
 #include <vector>
@@ -15,15 +15,15 @@ struct Cluster : ChebyshevBox {
   int child[2] = {-1, -1};       ///< indices of the children; -1 for a leaf
   int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
   int first_block = 0;           ///< index of its first block of nodes among the blocks of all clusters; a block has far_block nodes
-  double radius = 0, reach = 0;  ///< half the box's diagonal; distance from the centre beyond which the nodes are accurate
+  double radius = 0, reach = 0;  ///< half the box's diagonal; distance from the centre beyond which interpolation at the Chebyshev nodes is accurate
   bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are
                                  ///< used instead
 
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }
 
-  /// Returns whether the nodes of this box are accurate for targets in `other` shifted by `beyond`, or for sources in `other` if this is a box of
-  /// targets.
+  /// Returns whether the Chebyshev nodes of this box are accurate for targets in `other` shifted by `beyond`, or for sources in `other` if this is a
+  /// box of targets.
   bool serves(const ChebyshevBox& other, const Vec3& beyond) const;
 };
 

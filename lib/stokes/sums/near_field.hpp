@@ -65,7 +65,7 @@ class NearField {
   std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from it beyond which the far rule suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
-  std::map<std::pair<int, int>, PointTable> whole_;  ///< (degree, order) -> tensor Gauss on the whole panel
+  std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)
   PointTable parts_;
   quadrature::Rule points_;
 };

@@ -21,9 +21,9 @@ using Sites = std::vector<std::vector<spline::Site>>;
 /// A site on one of the panels that contain it.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;         ///< interval of metrics (shear of the element at the site) for which the rule was constructed
-  quadrature::PolarOrders orders;  ///< higher orders if the element is distorted, otherwise 0; if only the radial order is set, no polar
-                                   ///< rule is used
+  quadrature::Shear shear;         ///< rounded metric of the panel at the site, for which the rule was constructed
+  quadrature::PolarOrders orders;  ///< raised orders if the panel is distorted, otherwise 0; if only the radial order is not 0, the rule is tensor
+                                   ///< Gauss of this order
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site
@@ -31,7 +31,7 @@ struct SelfPair {
 };
 
 /// All pairs of a site and a panel that contains it, for a set of sites, and the polar rules that the pairs share: one rule for each position on a
-/// panel, degree and interval of metrics.
+/// panel, degree and rounded metric.
 class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);

@@ -86,7 +86,7 @@ void TreeSum::place(const double* x, const double* y, const double* z, std::span
   }
 }
 
-/// Returns the row (index of the target in the caller's order) of position k in the order of the target trees; each tree starts at a new block.
+/// Returns the row of the sums that belongs to position k in the order of the target trees. Each tree starts at a new block of far_block targets.
 int TreeSum::row(std::size_t k) const {
   const std::size_t n = target_tree_.order().size(), size = static_cast<std::size_t>(far_block) * blocks_of(static_cast<int>(n));
   return target_tree_.order()[k % size] + static_cast<int>(n * (k / size));
@@ -205,7 +205,8 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced to one of their images, act on the targets in `target`.
+/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced by lattice vector images_[image], act on the targets in
+/// `target`.
 void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];

@@ -80,15 +80,15 @@ class TreeSum {
 
   Precision precision_;
   int part_ = 0, parts_ = 1;
-  int in_ = 3, out_ = 3;  // numbers of components of the kernel
+  int in_ = 3, out_ = 3;  // numbers of components of a source strength, and of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
   int n_trees_ = 1;                             // number of target trees: one, and one per reflection
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
-  std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of their Chebyshev nodes
-  std::vector<double> target_at_, node_at_;     // targets and their Chebyshev nodes, in blocks
-  std::vector<double> target_u_, node_u_;       // values at targets and at their Chebyshev nodes
+  std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
+  std::vector<double> target_at_, node_at_;     // positions of targets and of the Chebyshev nodes of target clusters, in blocks of far_block
+  std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
   std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at
                                                 // Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
