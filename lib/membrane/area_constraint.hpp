@@ -16,7 +16,8 @@ namespace tanktread::membrane {
 ///   P = (1 + time m D'D)^-1 = 1 - time m D'(1 + time D m D')^-1 D                                                                 (4.25)
 ///
 /// removes from a displacement the part that changes these areas; it removes more of that part the stiffer the membrane is. In the stiff directions,
-/// P approximates the inverse of the system of an implicit step. The same operator moves a shape until its t equal those of another shape.
+/// P approximates the inverse of the matrix of an implicit step. P is also used to move a shape until its conditions t have the values of another
+/// shape.
 class AreaConstraint {
  public:
   /// Sets up one area condition per Gauss point. `mobility`: velocity per force m_A of each control point.
@@ -25,7 +26,7 @@ class AreaConstraint {
   /// Returns true if no material of the membrane integrates its area elasticity separately.
   bool empty() const { return points_.empty(); }
 
-  /// Evaluates the scaled gradient D and the conditions t at the shape x.
+  /// Evaluates the area conditions t and their scaled gradient D at the shape x.
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
   /// Factors the matrix 1 + time D m D' that the operator P (4.25) contains.
@@ -34,8 +35,8 @@ class AreaConstraint {
   /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves x by two steps so that t(x) is close to t(`like`). The remaining difference is of second order in the initial difference. P is formed with
-  /// `time`. Afterwards D and t refer to the new x.
+  /// Moves x by two steps so that the area conditions t(x) are close to t(`like`). The remaining difference is of second order in the initial
+  /// difference. P is formed with `time`. Afterwards D and t refer to the new x.
   void bring(Net& x, const Net& like, double time);
 
  private:

@@ -24,9 +24,9 @@ class DirectSolver {
   DirectSolver(DirectSolver&&) noexcept;
   DirectSolver& operator=(DirectSolver&&) noexcept;
 
-  /// Factors A (square). If diagonal blocks are equal, for example those of equal particles, only one of them is factored. Then a system with a known
-  /// solution is solved. If its relative residual exceeds 1e-8, this throws RunFailure for a singular matrix, or UserError if the chosen solver does
-  /// not suit the matrix (Tacho requires a symmetric positive definite one).
+  /// Factors A (square). If diagonal blocks are equal, for example the blocks of equal particles, only one of them is factored. Then a system with a
+  /// known solution is solved. If its relative residual exceeds 1e-8, this throws RunFailure for a singular matrix, or UserError if the chosen solver
+  /// does not suit the matrix (Tacho requires a symmetric positive definite one).
   void factor(const Eigen::SparseMatrix<double>& a);
 
   /// Computes x = A^-1 b. b and x have the same shape and may be the same object.

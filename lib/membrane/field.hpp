@@ -17,22 +17,23 @@
 namespace tanktread::membrane {
 
 /// A field with the coefficients q on a surface with the control net x, for example a surfactant concentration or a viscoelastic strain. q is scaled
-/// to order 1. The slip is the velocity of the fluid minus that of the control points, as control values of shape (N, 3); an empty slip is 0. Uses no
-/// MPI: every rank holds the whole field.
+/// to order 1. The slip is the velocity of the fluid minus the velocity of the control points, as control values of shape (N, 3); an empty slip is 0.
+/// Uses no MPI: every rank holds the whole field.
 class Field {
  public:
   virtual ~Field() = default;
 
   virtual Eigen::Index size() const = 0;                      ///< number of coefficients
-  virtual Eigen::VectorXd start(const Net& shape) const = 0;  ///< q at the start of a run with this shape
+  virtual Eigen::VectorXd start(const Net& shape) const = 0;  ///< initial coefficients q of a run that starts with this shape
 
   /// Sets the shape x and the coefficients q to which load(), rate() and energy() refer. Throws RunFailure if the state is not admissible.
   virtual void set_state(const Net& x, const Eigen::VectorXd& q) = 0;
 
-  virtual Net load() const = 0;                              ///< virtual work (3.6), shape (N, 3), added to dE/dx
+  virtual Net load() const = 0;                              ///< load as virtual work (3.6), shape (N, 3), added to dE/dx
   virtual Eigen::VectorXd rate(const Net& slip) const = 0;   ///< dq/dt
   virtual double energy() const = 0;                         ///< energy stored in the field
-  virtual double dissipation() const { return 0; }           ///< power that the field turns into heat in the membrane, not in the surface flow
+  /// power that the field dissipates as heat in the membrane; dissipation in the surface flow is not included
+  virtual double dissipation() const { return 0; }
 
   /// Stores the state set last and the slip (fluid minus control-point velocity) for the four linearised functions value_change() to solve().
   virtual void linearise(const Net& slip) = 0;
@@ -59,19 +60,19 @@ class Field {
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
 
   /// Returns the coefficients q on this space, for the surface with the shape x, transferred from the field `from` of the same kind on another mesh
-  /// of the same surface. The state of `from` must be set. The function maps a site of this space to the site at the same position in the other
-  /// space.
+  /// of the same surface. The state of `from` must be set. `site` maps a parametric point of this space to the parametric point at the same position
+  /// in the other space.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
   /// Returns the gradient with respect to q of a sum that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns the values, at the state set last, of the columns that were registered together with the field. snapshot() returns the fields that are
-  /// written to snapshots.
+  /// Returns the values, at the state set last, of the columns of the time series that are registered with the field. snapshot() returns the fields
+  /// that are written to snapshots.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
-  /// Returns a function that evaluates the field at a site of its space, scaled to order 1, in the state set last. Refinement reduces the
+  /// Returns a function that evaluates the field, scaled to order 1, at a parametric point in the state set last. Refinement reduces the
   /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 

@@ -94,7 +94,7 @@ Eigen::MatrixX3d MaxwellElement::logarithms() const {
   return all;
 }
 
-/// Interpolates the logarithms of the strain from the Gauss points to a site.
+/// Interpolates the logarithms of the strain from the Gauss points to a parametric point.
 Eigen::Vector3d MaxwellElement::interpolated(const Eigen::MatrixX3d& logarithms, const spline::Site& site) const {
   const auto element = static_cast<std::size_t>(site.element);
   const int n = order(element);

@@ -1,7 +1,7 @@
 #pragma once
 // Materials of membranes. A constitutive law is the stored energy per unstressed area, Psi, as a function of the two surface invariants
 //
-//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, less 2 there
+//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, where -2 is missing
 //
 // with the principal stretches l1 and l2. Psi is a force per length (energy per area), and so are all of its derivatives.
 
@@ -24,7 +24,7 @@ struct Response {
   Number psi11, psi12, psi22;  ///< second derivatives
 };
 
-/// Psi = G_s/2 (I1 - 1 + 1/(I2 + 1)); strain softening. (3.3)  P-7
+/// Neo-Hookean law, Psi = G_s/2 (I1 - 1 + 1/(I2 + 1)), with the shear modulus G_s; strain softening. (3.3)  P-7
 struct NeoHookean {
   double shear_modulus = 1;
 
@@ -44,7 +44,8 @@ struct NeoHookean {
   friend bool operator==(const NeoHookean&, const NeoHookean&) = default;
 };
 
-/// Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2); strain hardening. C sets the resistance to area changes. (3.3)  P-8
+/// Skalak's law, Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2), with the shear modulus G_s; strain hardening. C sets the resistance to area changes.
+/// (3.3)  P-8
 struct Skalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< C, dimensionless resistance to area changes
@@ -64,11 +65,11 @@ struct Skalak {
   friend bool operator==(const Skalak&, const Skalak&) = default;
 };
 
-/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)): a thin sheet of incompressible Mooney-Rivlin rubber. m = 1 is the
-/// neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
+/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)), with the shear modulus G_s: a thin sheet of incompressible
+/// Mooney-Rivlin rubber. m = 1 is the neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
 struct MooneyRivlin {
   double shear_modulus = 1;
-  double share = 1;  ///< m, fraction of the neo-Hookean term
+  double share = 1;  ///< fraction m of the neo-Hookean term
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -86,11 +87,11 @@ struct MooneyRivlin {
   friend bool operator==(const MooneyRivlin&, const MooneyRivlin&) = default;
 };
 
-/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area and dilatation are independent. Evans & Skalak, *Mechanics and
-/// Thermodynamics of Biomembranes*, 1980.
+/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area, with the modulus G_s, and dilatation, with the modulus K_s, are
+/// independent. Evans & Skalak, *Mechanics and Thermodynamics of Biomembranes*, 1980.
 struct EvansSkalak {
   double shear_modulus = 1;
-  double area_dilatation = 1;  ///< C: K_s = (1 + 2 C) G_s, as in Skalak's law at small strains
+  double area_dilatation = 1;  ///< area dilatation C: the area modulus is K_s = (1 + 2 C) G_s, as in Skalak's law at small strains
 
   template <class Number>
   Number energy(const Number& i1, const Number& i2) const {
@@ -133,9 +134,9 @@ struct AreaElasticity {
   friend bool operator==(const AreaElasticity&, const AreaElasticity&) = default;
 };
 
-/// Psi = G_s times a strain energy given by the user.
+/// Psi = G_s times a strain energy given by the user, with the shear modulus G_s.
 struct UserLaw {
-  double unit = 1;  ///< G_s of the deck, the unit of the energy and its moduli
+  double unit = 1;  ///< shear modulus G_s of the deck, the unit of the energy and its moduli
   std::shared_ptr<const StrainEnergy> strain_energy;
 
   template <class Number>
@@ -175,7 +176,8 @@ struct MaxwellSpring {
   friend bool operator==(const MaxwellSpring&, const MaxwellSpring&) = default;
 };
 
-/// Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma g^ab. (3.4)
+/// Interface with the surface tension sigma, Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma
+/// g^ab. (3.4)
 struct SurfaceTension {
   double tension = 1;  ///< sigma, force per length
 
@@ -215,7 +217,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 /// The law that the deck selects, as a variant. It is visited once per batch of elements, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law written as the sum of two: the area elasticity, which is integrated separately, and the rest.
+/// A law written as a sum of two laws: the area elasticity, which is integrated separately, and the remaining energy of shear.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;
@@ -224,7 +226,7 @@ struct SplitLaw {
 /// Returns Skalak's or Evans & Skalak's law as a sum of two laws; empty for all other laws.
 std::optional<SplitLaw> split(const Law& law);
 
-/// Returns the modulus by which reported tensions are divided: G_s, or sigma of an interface. Force per length.
+/// Returns the modulus by which reported tensions are divided: the shear modulus G_s, or the tension sigma of an interface. Force per length.
 double modulus(const Law& law);
 
 /// Returns the area modulus K_s = dT/d(ln A) of an unstressed membrane (T: tension, A: area), 0 for an interface. Force per length.
@@ -241,9 +243,10 @@ std::array<double, 2> principal_tensions(const Law& law, double stretch1, double
 /// Helfrich's bending energy E_b/2 int (2 chi - c0)^2 dGamma, chi = 1/2 div n, in the weak form. It needs a surface that is geometrically C1 across
 /// every element side. The Gaussian curvature term is constant on a closed surface and is left out.
 struct Bending {
-  double modulus = 0;               ///< E_b, force x length; 0: no bending
-  bool curved_when_relaxed = true;  ///< if true, c0 is twice the mean curvature chi of the unstressed surface at each material point
-  double spontaneous_curvature = 0;  ///< c0 if curved_when_relaxed is false, 1/length
+  double modulus = 0;               ///< bending modulus E_b, force x length; 0: no bending
+  /// if true, the spontaneous curvature c0 is twice the mean curvature chi of the unstressed surface at each material point
+  bool curved_when_relaxed = true;
+  double spontaneous_curvature = 0;  ///< spontaneous curvature c0 if curved_when_relaxed is false, 1/length
 
   friend bool operator==(const Bending&, const Bending&) = default;
 };

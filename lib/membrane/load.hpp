@@ -18,10 +18,10 @@ namespace tanktread::membrane {
 /// Surface of a particle, from which loads and fields are created. It must outlive them.
 struct ParticleSurface {
   const spline::Space& space;
-  const Net& unstressed;  ///< control net, shape (N, 3), length
+  const Net& unstressed;  ///< control net of the unstressed surface, shape (N, 3), length
   const Net& rest;        ///< control net of the resting shape
   double radius;          ///< R_C, length
-  double modulus;         ///< G_s, or sigma of an interface, force/length
+  double modulus;         ///< shear modulus G_s, or tension sigma of an interface, force/length
 };
 
 /// A quantity on the surface that is written to snapshots, as control values of shape (N, 1) or (N, 3).
@@ -44,11 +44,11 @@ class Load {
  public:
   virtual ~Load() = default;
 
-  virtual std::size_t n_sums() const { return 0; }  ///< number of nets that are summed in addition to the work
+  virtual std::size_t n_sums() const { return 0; }  ///< number of nets in `sums`, which the caller sums in addition to `work`
 
   /// Adds contributions of these elements: to dE/dx in `work`, and to the nets that the global phase needs in `sums`. Shape of each net: (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
-  /// Adds to dE/dx the terms that depend on the complete sums.
+  /// Adds to dE/dx, in the global phase, the terms that depend on the sums over all ranks.
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}
 
   /// Returns whether the membrane stores the energy. An external force stores none.
@@ -65,14 +65,15 @@ class Load {
   /// Returns whether the load is symmetric under this image. If not, the scene is not reduced by this image.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns the dimensionless conditions under which the load moves with a particle in the rigid motion U + W x r. The search for steady shapes uses
-  /// them. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
+  /// Returns dimensionless conditions on a rigid motion U + W x r of the particle. If they hold, the load moves with the particle, and the search for
+  /// steady shapes leaves this motion free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.
   virtual bool depends_on_labels() const { return true; }
 
-  /// Returns the values, at x, of the columns registered with the load. snapshot() returns the fields that the load writes to snapshots.
+  /// Returns the values, at x, of the columns of the time series that are registered with the load. snapshot() returns the fields that the load
+  /// writes to snapshots.
   virtual std::vector<double> values(const Net& /*x*/) const { return {}; }
   virtual std::vector<SurfaceValues> snapshot(const Net& /*x*/) const { return {}; }
 };

@@ -20,12 +20,12 @@ namespace tanktread::membrane {
 ///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dG,   t = C^ab g_ab,   J^2 = |C| |g|                                            (3.23)
 ///   T dC^ab/dt = (2 J^2/t) g^ab - (2 - 1/J) C^ab                                                                           (3.24)
 ///
-/// The power lost in the relaxation is dissipated as heat (3.25). If T is short, the element tends to the surface viscosity (3.10). The energy is
-/// that of the law `MaxwellSpring` on the reference surface of metric C^-1. The unknowns are the components of C at the Gauss points, scaled by those
-/// of the contravariant metric of `initial`. Uses no MPI.
+/// The power lost in the relaxation is dissipated as heat (3.25). If T is short, the element tends to the surface viscosity (3.10). The energy is the
+/// energy of the law `MaxwellSpring` on the reference surface of metric C^-1. The unknowns are the components of C at the Gauss points, scaled by the
+/// components of the contravariant metric of `initial`. Uses no MPI.
 class MaxwellElement : public Field {
  public:
-  /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: T.
+  /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: relaxation time T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
   Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< number of coefficients: C^11, C^12, C^22 at each Gauss point of each element
@@ -51,7 +51,7 @@ class MaxwellElement : public Field {
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
-  /// Metric, strain and tangents at a Gauss point, together with their changes for given changes of x and q.
+  /// Metric, strain and tangents at a Gauss point as dual numbers, for given changes of x and q.
   struct Point;
   int order(std::size_t element) const;
   Eigen::MatrixX3d raised_metric(const Net& x) const;
@@ -68,7 +68,7 @@ class MaxwellElement : public Field {
   MaxwellSpring spring_;
   double time_;
   std::vector<Group> groups_;
-  std::vector<Eigen::Index> first_;                     // for each element, index of the first row with its Gauss points
+  std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
   Net unit_;  // g^11, sqrt(g^11 g^22), g^22 of the surface `initial`, one row per Gauss point: the scales of C
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch

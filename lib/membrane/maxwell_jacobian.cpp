@@ -18,7 +18,7 @@ using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
 Changing determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
 
-/// Returns the vector made of three consecutive packs, in one lane, together with its change.
+/// Returns the vector made of three consecutive packs, in one lane, as dual numbers with the directional derivatives in `changes`.
 Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, int lane) {
   const int lanes = pack_lanes();
   const auto number = [&](int k) { return Changing{numbers(packs)[(first + k) * lanes + lane], numbers(changes)[(first + k) * lanes + lane]}; };
@@ -27,7 +27,8 @@ Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, in
 
 }  // namespace
 
-/// Quantities at a Gauss point: tangents, g_ab, g^ab, C^ab, sqrt |g|, sqrt |C|, J and t, all with their changes.
+/// Quantities at a Gauss point: tangents, metric g_ab, inverse metric g^ab, strain C^ab, sqrt |g|, sqrt |C|, and J and t of (3.23), all as dual
+/// numbers.
 struct MaxwellElement::Point {
   Vector<Changing> a_s, a_t;
   Symmetric g, up, c;
@@ -46,7 +47,7 @@ struct MaxwellElement::Point {
     return spring.shear_modulus * (c[k] / kappa - metric) + dilatation * metric;
   }
 
-  /// Returns the change of T dC^ab/dt (3.24).
+  /// Returns the directional derivative of T dC^ab/dt (3.24), with T the relaxation time.
   Eigen::Vector3d rate_change() const {
     const auto rate = [&](std::size_t k) { return 2.0 * (j * j / t * up[k]) + (1.0 / j - 2.0) * c[k]; };
     return {rate(0).slope, rate(1).slope, rate(2).slope};

@@ -23,10 +23,10 @@ constexpr int max_gauss = max_order * max_order;
 struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< material of each group: the materials of the surface, then area elasticities in groups of their own
-  std::vector<Law> whole;           ///< per material: complete law, including separate area elasticity, for tensions
+  std::vector<Law> whole;           ///< per material: complete law for the computation of tensions, including separate area elasticity
   std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of its group
   std::vector<Group> groups;
-  std::vector<std::vector<ReferencePoint>> reference;  ///< per group; point q of batch k at n_gauss k + q
+  std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending
 
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);

@@ -15,8 +15,8 @@ namespace tanktread::membrane {
 struct Part;
 
 /// Summary of tensions and area changes over the Gauss points, for the columns `smallest_tension`, `compressed_area` and `local_area_change` of the
-/// series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal tension is
-/// less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
+/// time series. smallest: smallest principal tension divided by the modulus. compressed_area: fraction of the current area in which a principal
+/// tension is less than -1e-9 of the modulus. area_change: largest |J - 1|, with J the ratio of current to unstressed area.
 struct TensionSummary {
   double smallest = 0, compressed_area = 0, area_change = 0;
 };
@@ -48,8 +48,8 @@ class Membrane {
   /// Returns the energy of each element of the space, zero for elements that are not given.
   std::vector<double> element_energies(const Net& x, std::span<const int> elements) const;
 
-  /// Computes d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, shape (N, 3); d is set to zero first. (3.6)  P-31, P-32 A row is complete if the whole
-  /// support of its function is in `elements`. Units force.
+  /// Computes the load d_A = int tau^ab R_A,a g_b dGamma = dE/dx_A, with R_A the spline functions, shape (N, 3); d is set to zero first (3.6, P-31,
+  /// P-32). A row is complete if the whole support of its function is in `elements`. Units force.
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
@@ -57,11 +57,11 @@ class Membrane {
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
-  /// Returns the strong form of the load, t = -div_s tau (P-3), at a site, from second derivatives of both nets and without bending. Force per
-  /// current area.
+  /// Returns the strong form of the load, t = -div_s tau (P-3), at a parametric point. It uses second derivatives of the current and the unstressed
+  /// net, and leaves out bending. Force per current area.
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
-  /// Evaluates the strong form of the load at the collocation sites `targets`, as the average over the elements that meet there. Sets only the rows
+  /// Evaluates the strong form of the load at the collocation points `targets`, as the average over the elements that meet there. Sets only the rows
   /// `targets` of t. The strong form fails in the cases shown in the paper and in `tests/stability`.
   void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
 
@@ -97,7 +97,8 @@ class Tangent {
   /// Linearises the load at x on the given elements.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Computes Hu = H u, shape (N, 3), set to zero first, from the elements of the last update. Complete rows are as in Membrane::load.
+  /// Computes Hu = H u, shape (N, 3), set to zero first, from the elements of the last update. A row is complete if the whole support of its function
+  /// is in these elements.
   void apply(const Net& u, Net& hu) const;
 
  private:
@@ -106,18 +107,19 @@ class Tangent {
   std::unique_ptr<Points> points_;
 };
 
-/// Viscous load (3.10) of the membrane in a given shape: (C v)_A = int J tau^ab R_A,a g_b for the velocity v. C is symmetric, and v.C v is the
-/// dissipated power.
+/// Viscous load (3.10) of the membrane in a given shape: (C v)_A = int J tau^ab R_A,a g_b for the velocity v, with R_A the spline functions. C is
+/// symmetric, and v.C v is the dissipated power.
 class ViscousLoad {
  public:
   explicit ViscousLoad(const Membrane& membrane);
   ~ViscousLoad();
   ViscousLoad(ViscousLoad&&) noexcept;
 
-  /// Sets the shape and the elements.
+  /// Sets the shape x and the elements that apply() uses.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Computes Cv = C v, shape (N, 3), set to zero first, from the elements of the last update. Complete rows are as in Membrane::load.
+  /// Computes Cv = C v, shape (N, 3), set to zero first, from the elements of the last update. A row is complete if the whole support of its function
+  /// is in these elements.
   void apply(const Net& v, Net& cv) const;
 
  private:

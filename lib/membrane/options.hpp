@@ -16,29 +16,29 @@ class StrainEnergy;
 /// Options of the membrane: the keys `Membrane/*`.
 struct Options {
   std::string law = "neo-Hookean";         ///< neo-Hookean (P-7), Skalak (P-8), Mooney-Rivlin, Evans-Skalak, expression, surface tension (3.4)
-  std::optional<double> capillary_number;  ///< Ca = mu rate R_C/G_s or mu rate R_C/sigma; 0.3 if none of the three is given
+  std::optional<double> capillary_number;  ///< capillary number Ca = mu rate R_C/G_s or mu rate R_C/sigma; 0.3 if Ca, G_s and sigma are not given
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
-  std::optional<double> area_dilatation;   ///< C of Skalak and Evans-Skalak, 1 if not given; empty for other laws
-  double global_area_dilatation = 0;        ///< K/G_s of the total area (3.26)
-  double leaf_modulus = 0;                  ///< kbar/E_b of the area difference of the leaflets (3.27)
-  std::optional<double> leaf_difference;    ///< stress-free area difference divided by the area difference of a sphere
-  std::optional<double> neo_hookean_share;  ///< m of Mooney-Rivlin, only for this law
-  std::optional<std::string> energy;        ///< Psi/G_s of the law `expression` as a text in I1, I2 and J, only for this law
+  std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if not given; empty for other laws
+  double global_area_dilatation = 0;        ///< K/G_s, with K the modulus of the total area (3.26)
+  double leaf_modulus = 0;                  ///< kbar/E_b, with kbar the modulus of the area difference of the leaflets (3.27)
+  std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets divided by the area difference of a sphere
+  std::optional<double> neo_hookean_share;  ///< fraction m of the neo-Hookean term; only for the law Mooney-Rivlin
+  std::optional<std::string> energy;        ///< strain energy Psi/G_s as an expression in I1, I2 and J; only for the law `expression`
   std::map<std::string, double> constants;  ///< named constants in `energy`
   std::string stress_free = "resting";     ///< the stress-free shape before pre-inflation: resting, sphere, spheroid, file
   std::optional<double> reduced_volume;    ///< reduced volume of a stress-free spheroid; only for that shape
   std::optional<std::string> stress_free_file;
   int area_order = 0;                      ///< Gauss points per direction for the area elasticity; 0: the rule of the other terms
-  double pre_inflation = 0.0;              ///< alpha: unstressed X = centre + (x - centre)/(1 + alpha)
-  std::string load = "weak";               ///< weak: virtual work (3.5); strong: -div_s tau (P-3)
-  std::string load_measure = "reference";  ///< area of the weak load: reference (unstressed, 3.7) or current (3.6)
-  std::optional<double> bending_modulus;   ///< E_b, force x length; no bending if this and bending_number are not given
+  double pre_inflation = 0.0;              ///< inflation alpha: the unstressed shape is X = centre + (x - centre)/(1 + alpha)
+  std::string load = "weak";               ///< form of the load: weak (virtual work, 3.5) or strong (-div_s tau, P-3)
+  std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
+  std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
   std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
-  std::optional<double> spontaneous_curvature;   ///< c0 if the bending reference is flat, 1/length
+  std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
-  std::optional<double> relaxation_time;                 ///< T of a Maxwell element (3.23), whose viscosities are `viscosity`
+  std::optional<double> relaxation_time;                 ///< relaxation time T of a Maxwell element (3.23), whose viscosities are `viscosity`
   PatchForces forces;                            ///< forces that hold or pull the membrane
 
   void declare(deck::Section& section);
@@ -49,12 +49,14 @@ struct Options {
 
   std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< energy of the law `expression`, otherwise null; throws UserError if it is invalid
 
-  bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }  ///< returns whether the law has a parameter C
+  /// returns whether the law has the parameter C, the resistance to area changes
+  bool dilates() const { return law == "Skalak" || law == "Evans-Skalak"; }
 
-  /// Returns G_s, or sigma of a surface tension, from the key that was given. `viscosity`: mu, `rate`: rate of the flow, `radius`: R_C.
+  /// Returns the shear modulus G_s, or the tension sigma of an interface, from the key that was given. `viscosity`: mu, `rate`: rate of the flow,
+  /// `radius`: particle radius R_C.
   double modulus(double viscosity, double rate, double radius) const;
 
-  /// Returns E_b from the key that was given. `modulus`: G_s or sigma, `radius`: R_C.
+  /// Returns the bending modulus E_b from the key that was given. `modulus`: G_s or sigma, `radius`: particle radius R_C.
   double bending(double modulus, double radius) const;
 };
 

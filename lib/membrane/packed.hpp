@@ -21,7 +21,8 @@ struct Batch {
   int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin, [A * pack_lanes() + lane]
-  std::size_t extraction = 0;         ///< index in Group::extraction at which the batch's matrices begin, [A * (p + 1)^2 + b]; equal batches share
+  /// index in Group::extraction at which the batch's matrices begin, [A * (p + 1)^2 + b]; batches with equal matrices share them
+  std::size_t extraction = 0;
 };
 
 /// All given elements of one degree and material, in ascending order, with the Gauss rule of the degree.

@@ -122,8 +122,8 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
   });
 }
 
-// Change of the invariants for a change e of the metric: dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The
-// stress is S = 2 area (Psi_1 G + Psi_2 K).
+// If the metric changes by e, the invariants change by dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The
+// stress is S = 2 area (Psi_1 G + Psi_2 K), with Psi_1 and Psi_2 the derivatives of the energy with respect to I1 and I2.
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* tangents, TangentPoint* points) {
   const Register* const a = registers(tangents);
   auto* const tangent = reinterpret_cast<TangentPointOf<Register>*>(points);
@@ -135,7 +135,7 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // part of the tangent that is due to the change of K
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // part of the moduli that is due to the dependence of K on the metric
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);

@@ -17,11 +17,12 @@ struct ReferencePointOf {
 };
 using ReferencePoint = ReferencePointOf<Pack>;
 
-/// Returns the address of the numbers of component `field` (0 .. 4) at point q of a batch, one per lane, contiguous.
+/// Returns the address of the values of component `field` (0 .. 4) at point q of a batch: one value per lane, contiguous.
 inline const double* numbers(const ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 
-/// The linearised stress at a Gauss point. With e = (a1.u1, a1.u2 + a2.u1, a2.u2), the change of the stress is dS = C e.
+/// The linearised stress at a Gauss point. With displacement gradients u1, u2 and the strain e = (a1.u1, a1.u2 + a2.u1, a2.u2), the change of the
+/// stress is dS = C e.
 template <class Number>
 struct TangentPointOf {
   Number a1[3], a2[3];                  ///< tangents at the linearisation
@@ -46,8 +47,8 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
 
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
-/// Stores the moduli of the viscous stress (3.10) in `moduli` in place of elastic ones, and zero stress. apply() then computes the viscous p_a = J
-/// tau^ab a_b from the velocity gradients.
+/// Stores the moduli of the viscous stress (3.10) in place of the elastic moduli, and zero stress. apply() then computes the viscous p_a = J tau^ab
+/// a_b from the velocity gradients.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
 /// Computes p = d^2E/da^2 u for displacement gradients u in the layout of a.

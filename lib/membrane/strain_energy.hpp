@@ -66,8 +66,8 @@ class StrainEnergy {
  private:
   friend class ExpressionParser;
   enum class Kind { sum, product, shifted, scaled, power, root, exponential, logarithm };
-  /// An operation on the results with the indices `first` and `second` and on a constant. Results 0 and 1 are I1 and I2; later ones are those of
-  /// earlier operations.
+  /// An operation on the results with the indices `first` and `second` and on a constant. Results 0 and 1 are I1 and I2; the results of all
+  /// operations follow in order.
   struct Operation {
     Kind kind;
     std::size_t first, second;

@@ -22,11 +22,11 @@ namespace tanktread::membrane {
 ///
 ///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
 ///
-/// Here u is the velocity of the control points and v that of the fluid; their normal components are equal. The coefficients are q_A = m_A/int N_A
-/// dG, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
+/// Here u is the velocity of the control points and v the velocity of the fluid; their normal components are equal. The coefficients are q_A =
+/// m_A/int N_A dG, with the integral over the surface `initial` on the same space, so q = 1 at the start of a run with that shape. Uses no MPI.
 class Surfactant : public Field {
  public:
-  /// `clean_tension`: sigma(0). `space` must outlive this object.
+  /// `clean_tension`: tension sigma(0) of the clean interface. `space` must outlive this object.
   Surfactant(const spline::Space& space, const Net& initial, const SurfactantOptions& options, double clean_tension, double diffusivity);
 
   Eigen::Index size() const override { return share_.size(); }  ///< one per control point
@@ -53,7 +53,7 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes diffusion on the frozen shape
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< accounts only for diffusion, on the shape of freeze()
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
@@ -99,14 +99,15 @@ class Surfactant : public Field {
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
-  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface
+  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface; concentration_: control values of c
   Eigen::VectorXd q_;                                     // coefficients set last
   Net x_, known_x_;                                       // shape set last, and shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation
   std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
   mutable MassMatrix known_mass_;                         // mass matrix at the linearisation
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
-  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;  // factors of mass + shift D stiffness, frozen shape
+  // factors of M + shift D K, mass M and stiffness K of the frozen shape
+  mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
   mutable double factored_shift_ = 0;
 };
 

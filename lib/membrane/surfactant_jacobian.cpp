@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
 constexpr double shift_ratio = 1.25;                           // ratio of neighbouring values of the shift for which solve() computes factors
 
-/// Returns the nearest value in a geometric sequence. Factors for this value, which depends only on the current shift, serve all shifts close to it.
+/// Returns the value of a geometric sequence that is nearest to the shift. Factors computed at this value serve all shifts close to it. The value
+/// does not depend on earlier shifts.
 double rounded(double shift) { return std::pow(shift_ratio, std::round(std::log(shift) / std::log(shift_ratio))); }
 
 using Changing = Dual<double>;
@@ -22,7 +23,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 }  // namespace
 
 /// Surface and concentration at a Gauss point with their derivatives with respect to s and t, the Gauss weight times J, and the contravariant metric,
-/// all as dual numbers with their changes.
+/// all as dual numbers.
 struct Surfactant::Point {
   Vector<Changing> s, t;
   Changing c, c_s, c_t, area, g11, g12, g22;
@@ -31,8 +32,8 @@ struct Surfactant::Point {
   Changing up_t(const Changing& along_s, const Changing& along_t) const { return g12 * along_s + g22 * along_t; }
 };
 
-/// Calls use(element, data of the element stored by linearise(), point) for every element. point(q) returns the quantities at Gauss point q with
-/// their changes.
+/// Calls use(element, data of the element stored by linearise(), point) for every element. point(q) returns the quantities at Gauss point q as dual
+/// numbers, with their derivatives along (dx, dc).
 template <class Use>
 void Surfactant::each_change(const Net& dx, const Eigen::VectorXd& dc, const Use& use) const {
   double s[4 * most_gauss_points], t[4 * most_gauss_points], c[most_gauss_points];

@@ -7,11 +7,11 @@ namespace tanktread::membrane {
 /// Evaluates k = 1, 3 or 4 fields at the Gauss points from their control values.
 void sample(int k, int n, int functions, const double* table, const double* control_values, double* fields);
 
-/// Computes rows[function k + field] = sum_q (N_A,s along_s + N_A,t along_t) for k = 1 or 3 fields.
+/// Computes the sums over Gauss points q, rows[function k + field] = sum_q (N_A,s along_s + N_A,t along_t) for k = 1 or 3 fields.
 void test(int k, int n, int functions, const double* by_s, const double* by_t, const double* along_s, const double* along_t, double* rows);
 
-/// Computes the contravariant metric g^11, g^12, g^22 of the tangents (three fields each), followed by the weights times J, one array after the
-/// other.
+/// Computes the contravariant metric g^11, g^12, g^22 of a surface and the Gauss weights times J, one array after the other. The tangents are arrays
+/// of three fields.
 void metric(int n, const double* tangents_s, const double* tangents_t, const double* weight, double* metric_and_area);
 
 }  // namespace tanktread::membrane

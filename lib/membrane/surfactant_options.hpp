@@ -10,9 +10,9 @@ namespace tanktread::membrane {
 /// Options of the surfactant, `Interface/surfactant` of the deck. Concentrations c are divided by the uniform concentration at the start of the run.
 struct SurfactantOptions {
   std::string equation_of_state = "linear";  ///< linear, Langmuir
-  double elasticity = 0.2;                   ///< elasticity E in the equation of state
+  double elasticity = 0.2;                   ///< elasticity number E in the equation of state (3.16)
   std::optional<double> coverage;            ///< coverage x: initial concentration divided by the largest one; only for Langmuir
-  std::optional<double> diffusivity;         ///< D_s, length^2/time; 0 if this and the Peclet number are not given
+  std::optional<double> diffusivity;         ///< surface diffusivity D_s, length^2/time; 0 if neither D_s nor the Peclet number is given
   std::optional<double> peclet_number;       ///< rate R_C^2/D_s
 
   void declare(deck::Section& section);
@@ -20,7 +20,8 @@ struct SurfactantOptions {
   /// Throws UserError, with a one-sentence message, if keys contradict each other or the surfactant removes all of the tension.
   void check() const;
 
-  /// Returns sigma(c)/sigma(0): 1 - E c, or 1 + E ln(1 - x c). The result is not positive, or NaN, if no tension is left.           (3.16)
+  /// Returns the relative tension sigma(c)/sigma(0): 1 - E c, or 1 + E ln(1 - x c) with the coverage x. The result is not positive, or NaN, if no
+  /// tension is left. (3.16)
   double tension(double c) const;
 
   /// Returns the derivative of tension(c).
@@ -29,7 +30,7 @@ struct SurfactantOptions {
   /// Returns f(c)/sigma(0), with f the free energy density of the surface, sigma = f - c f' (3.21).
   double free_energy(double c) const;
 
-  /// Returns D_s. `rate`: rate of the flow, `radius`: R_C.
+  /// Returns the surface diffusivity D_s. `rate`: rate of the flow, `radius`: particle radius R_C.
   double diffusivity_of(double rate, double radius) const;
 };
 

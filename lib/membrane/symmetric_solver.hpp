@@ -13,7 +13,7 @@
 namespace tanktread::membrane {
 
 /// Solves A x = b for symmetric fields with a scalar matrix A of a symmetric space (a mass matrix, the collocation matrix), A_{ga,gb} = A_ab for
-/// every image g. Component c of such a field is determined by its values at the fundamental points a, b, which satisfy
+/// every image g. Component c of a symmetric field is determined by its values at the fundamental points a, b, which satisfy
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
@@ -28,8 +28,8 @@ class SymmetricSolver {
   /// Factors A, shape (N, N). Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& a);
 
-  /// Returns the components in an order in which those that share a factor are adjacent. Solving for these together takes little more time than for
-  /// one.
+  /// Returns the components, ordered such that components that share a factor are adjacent. Solving for several components with one factor takes
+  /// little more time than for one component.
   std::vector<int> components() const;
 
   /// Returns the symmetric x with A x = b, shape (N, 3), from the fundamental rows of b.
@@ -41,9 +41,9 @@ class SymmetricSolver {
  private:
   /// Components that share a factor.
   struct Part {
-    std::vector<int> components, points;  // fundamental points where these components need not vanish
+    std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components need not vanish
     std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if left out
-    Eigen::VectorXd images;               // m_a, numbers of images of the points
+    Eigen::VectorXd images;               // m_a, number of images of each fundamental point
     DirectSolver solver;
   };
   Part part(const DirectSolverOptions& options, int component) const;

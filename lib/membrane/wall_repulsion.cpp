@@ -26,7 +26,8 @@ WallRepulsion::WallRepulsion(const spline::Space& space, const Net& unstressed, 
 
 /// Returns the Gauss points whose repulsion energy is not negligible.
 std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<const int> elements) const {
-  // Repulsion at gaps larger than `far` ranges is neglected. The slope of the wall is a difference quotient over `step` of its radius.
+  // Repulsion at gaps larger than `far` times the range is neglected. The slope of the wall is a central difference quotient of its radius, with the
+  // increment `step` times the radius.
   constexpr double far = 40, step = 1e-4;
   std::vector<Place> found;
   for (const int e : elements) {

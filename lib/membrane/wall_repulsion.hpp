@@ -24,7 +24,7 @@ class WallRepulsion : public Load {
   /// `space` must outlive this object.
   WallRepulsion(const spline::Space& space, const Net& unstressed, Repulsion repulsion);
 
-  double potential(const Net& x, std::span<const int> elements) const;  ///< energy (3.22), force x length; the membrane does not store it
+  double potential(const Net& x, std::span<const int> elements) const;  ///< energy (3.22), force x length; not part of the membrane's elastic energy
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;
@@ -44,7 +44,8 @@ class WallRepulsion : public Load {
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;  // per element: values, one row per Gauss point
+  // per element: values of its functions, one row per Gauss point
+  std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;
   std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
   std::vector<Place> latest_;                                                                  // points at the linearisation
 };

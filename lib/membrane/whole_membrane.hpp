@@ -15,9 +15,10 @@ namespace tanktread::membrane {
 
 /// Stiffnesses of the global elasticity; a stiffness of 0 means that the term is absent.
 struct WholeStiffness {
-  double area = 0;                        ///< K of the total area (3.26), force/length
-  double leaves = 0;                      ///< kbar of the area difference of the leaflets (3.27), force x length
-  std::optional<double> leaf_difference;  ///< Q0 divided by the Q of a sphere of equal area; if not given, Q0 is the Q of the unstressed shape X
+  double area = 0;                        ///< K, modulus of the total area (3.26), force/length
+  double leaves = 0;                      ///< kbar, modulus of the area difference of the leaflets (3.27), force x length
+  /// reference area difference Q0 divided by the area difference of a sphere of equal area; if not given, Q0 is taken from the unstressed shape X
+  std::optional<double> leaf_difference;
 
   bool any() const { return area > 0 || leaves > 0; }
 };
@@ -30,7 +31,7 @@ struct WholeStiffness {
 /// A0 is the area of the unstressed surface. Q is homogeneous of degree m in x, so Q follows from its gradient q. Only q is summed over ranks.
 class WholeMembrane : public Load {
  public:
-  /// `space` must outlive this object. `radius`: R_C.
+  /// `space` must outlive this object. `radius`: particle radius R_C.
   WholeMembrane(const spline::Space& space, const Net& unstressed, double radius, const WholeStiffness& stiffness);
 
   std::size_t n_sums() const override { return measures_.size(); }
@@ -47,11 +48,11 @@ class WholeMembrane : public Load {
 
  private:
   struct Measure {
-    int degree;                                      // m, degree of homogeneity of Q in x
-    std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy
+    int degree;                                      // m, degree of homogeneity in x of Q, the total area or the area difference
+    std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy of the membrane
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
-    double tension = 0;                              // k (Q - Q0) at the shape of linearise(), a tension if Q is the area
+    double tension = 0;                              // k (Q - Q0) of (3.26), (3.27) at the shape of linearise(); a tension if Q is the area
     Net q = {};                                      // q at the linearisation
 
     double operator()(const Net& x, const Net& gradient) const { return x.cwiseProduct(gradient).sum() / degree; }

@@ -15,21 +15,24 @@ class Section;
 
 namespace tanktread::motion {
 
-/// Options of mesh adaptation, `Adaptation/*` of the deck. Lengths and fields are in the units of the deck. Before `declare`, default lengths are in
+/// Options of mesh adaptation, `Adaptation/*` of the deck. Lengths and fields are in the units of the deck. declare() multiplies default lengths by
 /// R_C.
 struct AdaptationOptions {
-  double radius = 1;                                       ///< R_C; not a key of the deck
+  double radius = 1;                                       ///< particle radius R_C; not a key of the deck
   bool enabled = false;
   std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
   double surface_tolerance = 4e-4;                         ///< tolerance of the surface error e(x), length
   std::optional<double> load_tolerance;                    ///< tolerance of the load error e(phi), force/length^2; if empty, this error is not used
-  std::optional<double> reference_length;  ///< L_ref, length; this and the next five members are set only if the indicator is `variation`
-  std::optional<double> reference_curvature_variation;     ///< chi_ref, reference variation of the mean curvature, 1/length^2; empty: not in use
-  std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction per current area, traction per length
+  /// L_ref, reference length of an element; this and the next five members are set only if the indicator is `variation`
+  std::optional<double> reference_length;
+  /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: the curvature is not used
+  std::optional<double> reference_curvature_variation;
+  std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction: force per current area, per length
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
-  std::optional<double> film_resolution;                   ///< longest element next to a film divided by sqrt(width x R_C); set if there are films
+  /// longest element next to a film of the given width, divided by sqrt(width x R_C); set if there are films
+  std::optional<double> film_resolution;
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
   int interval = 1;                                        ///< accepted steps between checks
   int levels = 4;                                          ///< how many times an element of the initial mesh may be halved in one direction
@@ -48,18 +51,19 @@ struct AdaptationOptions {
   AdaptationOptions coarser(double factor) const;
 };
 
-/// Returns the elements and directions to refine (P-37), in the order of elements(mesh):
+/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). L_a is the length of the element along the direction a, L_b
+/// its length along the other direction, and phi_a the variation of a quantity along a:
 ///
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa over the quantities in use}  or  L_a / L_b > D_ref )
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// Returns the elements that stay below `coarsening margin` of every limit of (P-37) when they are twice as long, with the directions in which they
-/// do.
+/// Returns the elements and directions in which an element may become twice as long: it then stays below `coarsening margin` times every limit of
+/// (P-37).
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Adds marks for elements next to a film, and removes merges that would be undone. An element is refined if it is longer than `film resolution`
-/// times sqrt(width x R_C), with the width of the film. An element is not merged if the merged one would be too long. `lengths` (along s and t) and
-/// `widths` are those of elements(mesh). Marks of the same element are united. L_min does not apply.
+/// times sqrt(width x R_C), with the width of the film. An element is not merged if the merged one would be too long. `lengths` (of elements, along s
+/// and t) and `widths` (of films) are in the order of elements(mesh). Marks of one element are united. L_min does not apply.
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,

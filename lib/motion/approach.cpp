@@ -17,7 +17,8 @@ std::string Approach::text() const {
 
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x) {
-  constexpr double least_step = 1. / 512, coarse = 1e-4, far = 0.5;  // `far`: change of shape in one step, over R_C
+  // smallest step of the amplitude; tolerance at amplitudes below 1; largest change of shape in one step, divided by the particle radius
+  constexpr double least_step = 1. / 512, coarse = 1e-4, far = 0.5;
   constexpr int few = 25, most_searches = 60;
   Approach way;
   const auto found_at = [&](double amplitude, Net& y) {
@@ -29,7 +30,7 @@ Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(do
     return way.last.converged && equations->dynamics().norm(y - from) < far;
   };
   double amplitude = 0, step = 0.5;
-  Net before;  // the shape at the amplitude before
+  Net before;  // shape at the previous amplitude
   for (int k = 0; k < most_searches && amplitude < 1 && step > least_step; ++k) {
     const double next = std::min(1., amplitude + step);
     Net y = x;

@@ -10,13 +10,13 @@
 
 namespace tanktread::motion {
 
-/// Steady shapes that were found on the way to the flow of a scene.
+/// Result of approach_steady: the weaker flows for which a steady shape was found on the way to the full flow.
 struct Approach {
   std::vector<double> amplitudes;  ///< factors of the flow at which a steady shape was found, ascending; 1 is the flow of the scene
-  SteadyReport last;               ///< search at amplitude 1, or the last one that failed
+  SteadyReport last;               ///< report of the last search, which either was at amplitude 1 or failed
 
   bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }
-  std::string text() const;  ///< returns a sentence about the way
+  std::string text() const;  ///< returns a sentence that lists the amplitudes at which a steady shape was found
 };
 
 /// Finds a steady shape by natural continuation in the amplitude a of the flow, from a first a <= 1/2 at which the search from x succeeds, to a = 1.

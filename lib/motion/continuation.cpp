@@ -105,7 +105,7 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // estimate of the error because G(x, p) was linearised in the parameter p: change of x times change of p
+    solved.rest = moved * turned;  // estimated error due to the linearisation of G(x, p) in the parameter p: change of x times change of p
     if (solved.rest < steady_.tolerance) return solved;
   }
   return {};
@@ -125,7 +125,7 @@ bool Branch::ends(const Solved& solved) const {
   return gone >= 1 - rounding || (last_.size() > 2 && gone < rounding);
 }
 
-/// Returns the value of the parameter at the end of the branch that this point has passed, if any.
+/// If the point lies beyond an end of the branch, returns the value of the parameter at this end.
 std::optional<double> Branch::end_before(const Place& place) const {
   const double gone = (place.q * unit_ - start_) / (options_.to - start_);
   if (gone > 1) return options_.to;
@@ -198,7 +198,7 @@ void Branch::adapt() {
   }
 }
 
-/// Two points are held back before they are returned, because a fold may lie between the last two points.
+/// Keeps back the two latest points before it returns a point, because a fold may lie between them.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
@@ -218,7 +218,7 @@ std::optional<BranchPoint> Branch::next() {
   return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
-/// Finds the first or the second point, at given values of the parameter.
+/// Finds the first or the second point of the branch. Their values of the parameter are given.
 void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);
@@ -240,7 +240,7 @@ void Branch::begin() {
 void Branch::advance() {
   ++count_;
   if (last_.size() < 2) return begin();
-  // Iterations depend on the tolerance too; a prediction that was close says that the branch bends little.
+  // The number of iterations depends on the tolerance too. If the prediction was close, the branch bends little, and the step may grow.
   const int iterations = last_.back().iterations;
   const double change = iterations < 25 || missed_ < 0.05 ? 1.5 : iterations < 45 || missed_ < 0.2 ? 1 : 0.7;
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);

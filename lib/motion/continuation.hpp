@@ -17,12 +17,12 @@ namespace tanktread::motion {
 
 /// Options of the continuation, `Continuation/*` of the deck.
 struct ContinuationOptions {
-  bool present = false;              ///< true if the deck has this section
+  bool present = false;              ///< true if the deck has the section Continuation
   std::string parameter;             ///< path of a numerical key of the deck
   double to = 0;                     ///< value of the parameter at which the branch ends
   std::string method = "arclength";  ///< arclength, natural
-  std::optional<double> step;        ///< first step of the parameter; empty: 1/20 of the interval
-  double largest_change = 0.05;      ///< change of shape from point to point, in the norm of `Time/tolerance`
+  std::optional<double> step;        ///< first step of the parameter; empty: 1/20 of the interval from its start value to `to`
+  double largest_change = 0.05;      ///< largest change of shape from point to point, in the norm of `Time/tolerance`
   int points = 100;                  ///< largest number of points
   double fold_tolerance = 1e-6;      ///< relative tolerance of the parameter at a fold
   std::optional<std::string> second_parameter;      ///< path of another numerical key, along which the first fold is continued
@@ -35,7 +35,7 @@ struct ContinuationOptions {
 struct BranchPoint {
   double parameter = 0, second = 0;
   Net x;
-  bool fold = false;   ///< the parameter reverses its direction here
+  bool fold = false;   ///< true if the parameter reverses its direction here
   int iterations = 0;  ///< number of NOX iterations
   double rest = 0;     ///< estimated error of the shape
 
@@ -48,27 +48,28 @@ struct BranchPoint {
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
-/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both are solved like (4.17); a change of p moves each iterate
-/// onto the plane. During the iteration G is linearised in p. It is evaluated again at the resulting p until p no longer changes. A fold is the
-/// vertex of the parabola p(arclength) through three points. It is solved for and replaces one of the three points until its p no longer changes.
+/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both equations are solved like (4.17); a change of p moves each
+/// iterate onto the plane. During the iteration G is linearised in p. It is evaluated again at the resulting p until p no longer changes. A fold is
+/// the vertex of the parabola p(arclength) through three points. It is solved for and replaces one of the three points until its p no longer changes.
 ///
 /// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
 /// if the values were evenly spaced. Equation (4.20) then gives three points at, before and after the prediction, where t is the direction of the
-/// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh stays that of the first fold.
+/// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh of the first fold is kept.
 class Branch {
  public:
   /// Returns the equations at a value of the parameter and of the second parameter. Without a second parameter, the second value is 0. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Transfers shapes to a mesh that fits the last shape better, and changes the family to that mesh. The last shape is steady at this parameter.
-  /// Returns false if there is no better mesh. Collective.
+  /// Transfers shapes to a mesh that fits the last shape better, and makes Family return equations on that mesh. The last shape is steady at this
+  /// parameter. Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
   /// Starts at `parameter` with the steady shape reached from `x`. `second`: value of the second parameter if the first fold is continued.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 
-  /// Another way to the first point, which is tried if the search from x fails: it returns its report, and replaces the best iterate. Collective.
+  /// Alternative search for the first point, used if the search from x fails. Replaces x, the best iterate, and returns the report. `failed`: report
+  /// of the search that failed. Collective.
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 
@@ -118,14 +119,14 @@ class Branch {
   double start_, second_, unit_ = 1;  // q = parameter/unit
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
-  std::vector<Solved> last_;  // up to three points, latest last
+  std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
-  double last_share_ = 1;         // distance between the two latest folds, as a fraction of the interval between two values
+  double last_share_ = 1;         // distance between the two latest folds, as a fraction of the interval between two second values
   std::size_t values_ = 0;        // number of values of the second parameter that have been reached
   std::string failure_;
-  double step_ = 0, missed_ = 1;  // `missed_`: distance of the latest point from its prediction, divided by the step
-  double heading_ = 0;  // change of the scaled parameter q in the last step; its sign, kept on mesh changes, shows a fold
+  double step_ = 0, missed_ = 1;  // length of the next step; distance of the latest point from its prediction, divided by the step
+  double heading_ = 0;  // last change of the scaled parameter q; a change of its sign shows a fold. It is kept when the mesh changes
   int count_ = 0;
   bool ended_ = false;
 };

@@ -8,7 +8,8 @@
 namespace tanktread::motion {
 
 Net FixedPointError::operator()(const Net& x, const Net& f) {
-  constexpr double independent = 1e-6;  // columns of dF whose independent part is a smaller fraction of their length are ignored
+  // a column of dF is ignored if the part that is independent of the other columns is a smaller fraction of its length
+  constexpr double independent = 1e-6;
   Eigen::MatrixXd dx(x.size(), static_cast<Eigen::Index>(before_.size())), df(x.size(), dx.cols());
   for (Eigen::Index j = 0; j < dx.cols(); ++j) {
     const auto& [other_x, other_f] = before_[static_cast<std::size_t>(j)];

@@ -16,7 +16,7 @@ namespace tanktread::motion {
 /// about 1/100. The estimate is exact if g is affine and differs from the identity in m directions only. Anderson acceleration uses it as its step.
 class FixedPointError {
  public:
-  /// `most`: m, the largest number of earlier iterates.
+  /// `most`: largest number m of earlier iterates.
   explicit FixedPointError(int most) : most_(most) {}
 
   /// Stores x_k and f_k, which must be finite, and returns the estimate of x_k - x*. Cost: a least-squares problem with m columns, no evaluation of

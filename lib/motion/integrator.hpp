@@ -28,7 +28,7 @@ struct State {
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, latest first; the first is the slope at x
   std::vector<Place> places;    ///< earlier positions that a multistep scheme keeps, latest first
   double slope_error = 0;       ///< bound of the error of the first slope, in the norm of `Time/tolerance` per unit of time
-  Net direction;                ///< direction in which the stiffness (4.7) was found; empty if it was not measured
+  Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if it was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if there are none
@@ -59,7 +59,7 @@ class Integrator {
   virtual ~Integrator() = default;
 
   /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. Throws RunFailure if the step falls below the minimum. The
-  /// state is then unchanged, except for cross_kink.
+  /// state is then unchanged, except for the effect of cross_kink().
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 
@@ -82,7 +82,7 @@ class DenseOutput {
   DenseOutput(const State& before, const State& after);
 
   Net place(double time) const;
-  Net slope(double time) const;  ///< the derivative of `place`, third order
+  Net slope(double time) const;  ///< derivative of place() with respect to time, of third order
 
  private:
   double start_, step_;

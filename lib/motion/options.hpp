@@ -13,22 +13,25 @@ namespace tanktread::motion {
 struct TimeOptions {
   std::string scheme = "tr-bdf2";          ///< see motion/integrator.cpp
   double final_time = 1.0;                 ///< the run ends here
-  double tolerance = 1e-4;                 ///< error of a step: root mean square displacement of the control points divided by R_C
+  /// allowed error of a step: root mean square displacement of the control points divided by the particle radius R_C
+  double tolerance = 1e-4;
   std::optional<double> initial_step;      ///< empty: the scheme finds one
   std::optional<double> fixed_step;        ///< size of all steps; if set, there is no error control, and only the last step is shortened
   std::optional<double> maximum_step;      ///< empty: no limit
-  std::optional<double> minimum_step;      ///< smallest controlled step; the run fails if it must be smaller; empty: 1e-9 of `unit`
+  std::optional<double> minimum_step;      ///< smallest step of the step control; the run fails if a smaller step is needed; empty: 1e-9 of `unit`
   double unit = 1;                         ///< unit of time of the scene, the inverse rate of its flow; not a key of the deck
-  std::optional<double> steady_tolerance;  ///< the run ends if the shape velocity (6.8) divided by (rate R_C) is less; empty: never
-  std::optional<double> end_when_past;     ///< stop if x1 of the centroids of all particles is larger than this; empty: never
+  /// the run ends if the shape velocity (6.8), divided by the rate of the flow times R_C, is less; empty: never
+  std::optional<double> steady_tolerance;
+  std::optional<double> end_when_past;     ///< the run ends if x1 of the centroids of all particles is larger than this; empty: never
   double iteration_tolerance = 1e-7;       ///< tolerance of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< for crank-nicolson: plain, anderson, newton-krylov
-  std::optional<std::string> step_control;  ///< for crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain
+  /// step control of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain
+  std::optional<std::string> step_control;
   bool count_euler_step = true;             ///< true if the Euler step counts as a sub-iteration of crank-nicolson
-  double newton_tolerance = 0.2;           ///< error of the quasi-Newton iteration of a stage, divided by `tolerance`
+  double newton_tolerance = 0.2;           ///< allowed error of the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< largest number of iterations of a stage before the step is halved
-  double linear_tolerance = 0.05;          ///< relative residual of the linear solves of a stage
-  double contraction_limit = 0.3;          ///< largest contraction rate of the iteration with which the frozen layer operator is used further
+  double linear_tolerance = 0.05;          ///< allowed relative residual of the linear solves of a stage
+  double contraction_limit = 0.3;          ///< largest contraction rate of the iteration for which the frozen layer operator is not assembled again
   double largest_operator = 32;             ///< largest frozen operator that `auto` uses, in GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2

@@ -22,13 +22,13 @@ namespace tanktread::motion {
 
 /// Options of the search for periodic motions, `Periodic/*` of the deck.
 struct PeriodicOptions {
-  bool present = false;       ///< true if the deck has this section
+  bool present = false;       ///< true if the deck has the section Periodic
   double period = 0;          ///< expected period
   double turn = 0;            ///< rotation of the shape about x2 after a period, degrees
   double tolerance = 1e-5;    ///< tolerance of the distance between start and return, in the norm of `Time/tolerance`
   int iterations = 20;        ///< largest number of iterations
-  double difference = 1e-2;   ///< size of the displacements in the finite differences for the multipliers, divided by R_C
-  bool driven = false;        ///< true if the flow is periodic with this period; a return then occurs after one period
+  double difference = 1e-2;   ///< size of the displacements in the finite differences for the multipliers, divided by the particle radius R_C
+  bool driven = false;        ///< true if the flow has the period `period`; a return then occurs after one period
 
   void declare(deck::Section& section);
 };
@@ -41,7 +41,7 @@ struct PeriodicOptions {
 /// is its period, and there is no plane.
 class ReturnMap {
  public:
-  /// Defines the plane through c. Motion and options must outlive this object. Collective, like all other functions.
+  /// Defines the plane of (4.27) through the shape c. Motion and options must outlive this object. Collective, like all other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 

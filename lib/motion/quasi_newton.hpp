@@ -38,7 +38,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
 /// Decision on an attempted step.
 struct Verdict {
   bool accepted = false;
-  double factor = 0.5;  ///< next step divided by this one
+  double factor = 0.5;  ///< next step divided by this step
 };
 
 /// Decides on an attempted step that ended with the stage `last`. `error` is its local error divided by the tolerance, which scales with the given

@@ -15,7 +15,7 @@ constexpr int most_stages = 200;
 /// Content of State::memory.
 struct StiffnessMemory {
   double stiffness = 0;  ///< measured stiffness
-  double age = 0;        ///< number of steps since the measurement
+  double age = 0;        ///< number of steps since the stiffness was measured
   double error = 0;      ///< error of the last accepted step divided by the tolerance
   double points = 0;     ///< number of control points of the mesh on which the stiffness was measured
 };
@@ -43,7 +43,7 @@ struct Chebyshev {
   }
 };
 
-/// Computes the step from x with slope v at `start` to start + dt, with s - 1 velocity evaluations at start + c dt.
+/// Computes the step from x with slope v at `start` to start + dt, with s - 1 velocity evaluations, at the times start + c_j dt of the stages j.
 Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start, double dt, int s) {
   const double w0 = 1 + 2. / 13 / (s * s);  // damping parameter 2/13
   const Chebyshev c(s, w0);

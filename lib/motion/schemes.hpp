@@ -35,7 +35,7 @@ double step_factor(double error, double previous, int power);
 ///   min(1, (tolerance/1e-3)^(1/order))                                                                                            (4.31)
 double step_share(double tolerance, int order);
 
-/// The attempts at one step towards `limit`: their sizes and the report.
+/// Chooses the sizes of the attempts at one step towards `limit`, and prepares the report of the step.
 class Attempts {
  public:
   Attempts(const TimeOptions& options, State& state, double limit)
@@ -110,10 +110,11 @@ double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& 
 /// The paper's Crank-Nicolson scheme (P-38), by default with its sub-iteration and its step rule (4.1):
 ///
 ///   x^{k+1} = x_n + dt/2 (v(x_n) + v(x^k))   until  |x^{k+1} - x^k|_2 / (R_C sqrt(m_C)) <= 1e-7;
-///   more than 8 sub-iterations: dt x 0.75 and the step again; fewer than 4: dt x 1.33 for the next.
+///   after more than 8 sub-iterations, the step is repeated with 0.75 dt; after fewer than 4, the next step is 1.33 dt.
 ///
-/// The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If it is counted, as the paper's text says, steps
-/// stay near the first one. If it is not counted, the mean step is that of the paper's Table 3. The sub-iteration contracts only for dt rho < 2.
+/// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If it is
+/// counted, as in the text of the paper, steps stay near the first step. If it is not counted, the mean step agrees with Table 3 of the paper. The
+/// sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
 ///
 /// `Time/nonlinear solver` accelerates this fixed-point iteration (Anderson) or replaces it by matrix-free Newton-Krylov iteration, both by NOX.
 /// `Time/step control: error` chooses steps by the difference to the explicit formula of the same order (Gresho, Lee & Sani 1980):
@@ -161,7 +162,7 @@ class TrBdf2 : public Scheme {
 ///
 /// One stage per step, predicted by the cubic through the last four positions. The local error is the difference to this prediction times
 /// shift/(t_{n+1} - t_{n-3}); its limit is reduced by (4.31). Steps grow by at most a factor of 1.5 (zero-stable below 1.53; Hairer, Norsett &
-/// Wanner, Solving ODEs I, III.5). The first three steps, and those after repeated failures of the iteration, are TR-BDF2 steps.
+/// Wanner, Solving ODEs I, III.5). The first three steps, and three steps after repeated failures of the iteration, are TR-BDF2 steps.
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}

@@ -101,8 +101,8 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Returns an orthonormal basis, in shape coordinates, of those of the given fields that the symmetry admits. Fields that do not change the shape are
-/// left out: rotations of a sphere, and relabellings of the interface of a drop.
+/// Returns an orthonormal basis, in shape coordinates, of the given fields, as far as the symmetry admits them. Fields that do not change the shape
+/// are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
@@ -126,7 +126,7 @@ Eigen::MatrixXd rigid_motions(const coupling::ShapeCoordinates& shapes, const Ne
   return orthonormal(shapes, fields);
 }
 
-/// Detects modes that are translations, rotations or relabellings, and so do not change the shape.
+/// Detects modes that do not change the shape: translations, rotations, and relabellings (motions of points along the surface).
 class Recognition {
  public:
   Recognition(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x)
@@ -147,7 +147,7 @@ class Recognition {
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
-/// Returns the change of a conserved quantity with the gradient b = `kept` by a mode d, b.d/(|b| |d|). It is zero for all modes of nonzero rate,
+/// Returns by how much a mode d changes a conserved quantity with the gradient b = `kept`: b.d/(|b| |d|). It is zero for all modes of nonzero rate,
 /// because conservation implies rate x b.d = 0.
 double gain(const Net& kept, const Mode& mode) {
   const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
@@ -183,7 +183,8 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
   return coupling::eigenpairs(Eigen::Map<const Eigen::MatrixXd>(first.data(), n, n));
 }
 
-/// Computes the eigenpairs with the largest (1 - rate/shift)^-1: applies (I - J/shift)^-1 by GMRES, preconditioned as an implicit step.
+/// Computes the eigenpairs with the largest |1/(1 - rate/shift)| by shift-and-invert: applies (I - J/shift)^-1 by GMRES, preconditioned as an
+/// implicit step.
 Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
               const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
@@ -237,7 +238,7 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
-    // Near a fold, the shape of this mode hardly differs from that of a true mode, so its kind follows from the conserved quantity.
+    // Near a fold, the mode due to a conserved quantity has nearly the shape of another mode, so its kind follows from the conserved quantity.
     modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;
   }
   return modes;

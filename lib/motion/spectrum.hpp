@@ -22,24 +22,25 @@ namespace tanktread::motion {
 
 /// Options of the linear stability analysis, `Spectrum/*` of the deck.
 struct SpectrumOptions {
-  bool present = false;            ///< true if the deck has this section
+  bool present = false;            ///< true if the deck has the section Spectrum
   int number = 12;                 ///< number of modes to report
   std::optional<double> near;      ///< rate near which modes are reported, 1/time; empty: the fastest-growing modes are reported
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< shift for krylov, 1/time
   int block = 3;                   ///< block size for krylov
   std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: parity of the shape
-  double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by R_C
+  double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by the particle radius R_C
 
   void declare(deck::Section& section);
 };
 
-/// Kind of a mode: a change of shape, or a neutral mode of another kind.
+/// Kind of a mode: a change of shape; a neutral mode that translates, rotates or only relabels the surface; or a mode due to a conserved volume or
+/// mass.
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
-/// Mode of a displacement, or of the change of a state with fields, Re(mode e^{rate t}). It is scaled to a largest displacement of 1; if nothing
-/// moves, to a largest component of 1.
+/// Mode of the linearised motion: a displacement, or a change of a state with fields, Re(mode e^{rate t}). It is scaled to a largest displacement of
+/// 1; if nothing moves, to a largest component of 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
@@ -53,7 +54,7 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 
 /// Computes J y, with y the coordinates of a displacement d of x, by a central difference of velocities:
 ///
-///   J y = (v(x + e d) - v(x - e d))/2e,   e |d| = difference x R_C at the largest                                        (4.16)
+///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
 ///
 /// The relabellings (Dynamics::relabellings) that make up the velocity of a steady shape are subtracted from v, because modes are changes of the
 /// shape, not of the control points along it. Displacements and results are projected so that they do not change the conserved quantities, the volume
@@ -61,7 +62,7 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 /// square root of the errors.
 class Linearised {
  public:
-  /// Linearises about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
+  /// Linearises the motion about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
   Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept, double difference);
 
   /// Returns J y. Throws RunFailure if a velocity cannot be evaluated. Collective.
@@ -75,8 +76,8 @@ class Linearised {
   const coupling::ShapeCoordinates& shapes_;
   const Net& x_;
   double difference_;            // length of the largest displacement
-  Eigen::VectorXd relabelling_;  // components of v(x) along the relabellings
-  Eigen::MatrixXd kept_;         // orthonormal gradients with respect to y, one per column
+  Eigen::VectorXd relabelling_;  // coefficients of v(x) with respect to the fields Dynamics::relabellings, which move points along the surface
+  Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to y, one per column
 };
 
 /// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved

@@ -41,8 +41,8 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  // Least fraction of a field that must be independent of the others: above round-off, or above the mesh error of an axisymmetric drop on a rotated
-  // mesh.
+  // Least part of a field that must be independent of the fields before it, as a fraction of its norm: above round-off for rigid motions; for
+  // relabellings, above the mesh error of an axisymmetric drop on a rotated mesh.
   constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
@@ -114,7 +114,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
-  // Norm of the error for NOX. The first correction alone is no error estimate, so it ends the iteration only if it is 0.
+  // Norm of the error for NOX. A single correction gives no error estimate, so the first correction ends the iteration only if it is 0.
   const coupling::FixedPoint::Norm left = [&](const Net&) {
     return latest == 0 || error.known() ? latest : std::numeric_limits<double>::max();
   };

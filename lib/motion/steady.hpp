@@ -19,7 +19,7 @@ namespace tanktread::motion {
 
 /// Options of the search for steady shapes, `Steady/*` of the deck.
 struct SteadyOptions {
-  bool present = false;             ///< true if the deck has this section
+  bool present = false;             ///< true if the deck has the section Steady
   std::string method = "anderson";  ///< anderson, newton-krylov
   double tolerance = 1e-8;          ///< tolerance of the estimated error of the shape (4.32), in the norm of `Time/tolerance`
   int iterations = 100;             ///< largest number of iterations
@@ -37,7 +37,7 @@ struct SteadyReport {
 
 /// Equations of the steady shape x reached from x0. Q is the projection onto the neutral directions, along which steady shapes map to other steady
 /// shapes: the rigid motions about the origin in `free`, and the relabellings of surface points (Dynamics::relabellings). x_V is x with its volume
-/// restored:
+/// restored, and s is the implicit step of the preconditioner:
 ///
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
 class SteadyEquations {
@@ -46,13 +46,14 @@ class SteadyEquations {
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
   Net residual(const Net& x);                          ///< returns s G(x) of (4.17); not finite if the evaluation fails. Collective
-  Net precondition(const Net& x, const Net& r);  ///< returns (1 - s J)^{-1} r with the frozen Jacobian (4.3) linearised at x. Collective
-  double unit_length() const;                          ///< Euclidean norm of a displacement that has norm 1 in the norm of the motion
+  /// returns (1 - s J)^{-1} r with s of (4.17) and the frozen Jacobian J (4.3), linearised at x. Collective
+  Net precondition(const Net& x, const Net& r);
+  double unit_length() const;                          ///< Euclidean norm of a displacement for which Dynamics::norm is 1
   std::vector<Net> neutral(const Net& x);  ///< returns the orthonormal fields that Q projects onto. Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
 
-  /// Returns these equations with another s.
+  /// Returns these equations with another step s of (4.17).
   SteadyEquations with_step(double step) const { return {dynamics_, free_, step, start_}; }
 
  private:

@@ -100,8 +100,8 @@ struct Remover {
     return any;
   }
 
-  /// Returns the edges that must be removed to double the spacing h at an extraordinary point: those within the distance 6 h in each of its three
-  /// faces that are not on the lattice of spacing 2 h.
+  /// Returns the edges that must be removed to double the spacing h at an extraordinary point: in each of its three faces, all edges within the
+  /// distance 6 h that are not on the lattice of spacing 2 h.
   std::vector<Ray> ring_edges(int point) const {
     const Lattice& l = lattice();
     const int P = l.extraordinary[point], h = mesh.spacing[point];
@@ -141,8 +141,8 @@ struct Remover {
     return group;
   }
 
-  /// Doubles the spacing h of the elements around every extraordinary point where the edges to be removed may be removed. Returns whether any was
-  /// doubled.
+  /// Doubles the spacing h of the elements around every extraordinary point where all edges that this removes are removable. Returns whether any
+  /// spacing was doubled.
   bool double_rings() {
     bool any = false;
     for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {

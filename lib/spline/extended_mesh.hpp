@@ -39,8 +39,8 @@ class ExtendedMesh {
   int crossings() const { return crossings_; }
   int missing() const { return int(missing_.size()); }
 
-  /// Returns the two T-junctions whose extensions cross at the first such vertex with an index above `cursor` (cyclically). Sets `cursor` to this
-  /// vertex.
+  /// Finds the first vertex with an index above `cursor` (cyclically) at which two extensions cross, and returns their T-junctions. Sets `cursor` to
+  /// this vertex.
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
   /// Returns the T-junctions (one or two) next to the first missing edge on its line, whose extensions could be lengthened to contain it.
   std::vector<TJunction> around_missing() const;
@@ -83,9 +83,8 @@ class ExtendedMesh {
 };
 
 /// Returns the indices of the extraordinary points whose zone a path of new edges breaks. The zone of an extraordinary point with spacing h is the
-/// area within `rings` h of it, where the distance is the larger coordinate in the faces at the point. In this zone the mesh must be the uniform
-/// lattice of spacing h. A path breaks the zone if it has an edge there that is not on the lattice of spacing h. Spline spaces are nested under
-/// refinement only with three rings.
+/// square within `rings` h of it in each of the faces at the point. In this zone the mesh must be the uniform lattice of spacing h. A path breaks the
+/// zone if it has an edge there that is not on the lattice of spacing h. Spline spaces are nested under refinement only with three rings.
 std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings);
 
 /// Returns the lines that bisect the twelve elements in the two innermost rings around an extraordinary point. If these lines are added, the rings

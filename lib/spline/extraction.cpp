@@ -92,7 +92,8 @@ struct TileElements {
   bool one(int tile) const { return first[tile + 1] - first[tile] == 1; }
 };
 
-/// Returns the Bezier elements of all mesh elements. Those at extraordinary points are complete; regular ones have only their positions.
+/// Returns the Bezier elements of all mesh elements. Elements at extraordinary points are complete. Regular elements have only their positions, not
+/// yet their functions.
 TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRule rule) {
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
@@ -101,7 +102,8 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   // 2^-max(levels, 4) of an element of the initial mesh. It does not depend on the refinement, so that spaces before and after a refinement are
   // nested.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
-  std::map<std::pair<int, int>, std::vector<Element>> patterns;  // by corner and spacing; control points are OneRing indices
+  // Bezier elements by corner and width of the mesh element; control points are OneRing indices
+  std::map<std::pair<int, int>, std::vector<Element>> patterns;
   std::array<int, OneRing::size> numbers;
   std::iota(numbers.begin(), numbers.end(), 0);
   TileElements out;
@@ -131,7 +133,7 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   return out;
 }
 
-/// Converts sites on mesh elements (tiles) to sites on all Bezier elements whose closure contains them.
+/// Converts points given by mesh element (tile) and local coordinates to local coordinates on all Bezier elements whose closure contains them.
 std::vector<Site> on_elements(const Lattice& l, const Tiling& tiling, const TileElements& elements, const std::vector<Site>& on_tiles) {
   std::vector<Site> found;
   for (const Site& site : on_tiles) {

@@ -17,7 +17,7 @@ constexpr int N = 3;
 
 Row unit(int point) { return Row::Unit(point); }
 
-/// Returns the coefficients of the 19 control points for face j from those for face 0, by rotation about the extraordinary point.
+/// Converts coefficients of the 19 control points from face 0 to face j, by rotation about the extraordinary point.
 Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
@@ -135,7 +135,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// Returns the change of Bezier point (v, u) of the 5 x 5 points of face j, as a row of coefficients of the unknowns.
+/// Returns how Bezier point (v, u) of face j (5 x 5 points) depends on the unknowns: one coefficient per unknown.
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;

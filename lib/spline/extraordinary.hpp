@@ -34,18 +34,20 @@ Eigen::MatrixXd averaged_bicubic();
 /// partition of unity.
 Eigen::MatrixXd constrained_biquartic();
 
-/// One bicubic piece of face 0 of a one-ring. The face is the unit square, with the extraordinary point at u = v = 0.
+/// Bicubic piece of one face at an extraordinary point (face 0). The face is the unit square, with the extraordinary point at u = v = 0.
 struct Piece {
   double u, v, size;           ///< lower left corner, side
   Eigen::MatrixXd extraction;  ///< extraction matrix, shape (19, 16): points in the order of OneRing, column 4 j + i with i along u
 };
 
 /// Returns 3 depth + 1 pieces of face 0: `depth` rings of three pieces with sides 1/2, 1/4, ... 2^-depth, which represent the limit surface exactly,
-/// and one averaged bicubic on the square of side 2^-depth at the point. Coefficients are >= 0 and columns sum to 1.
+/// and one averaged bicubic on the square of side 2^-depth at the extraordinary point. Entries of the extraction matrices are >= 0, and their columns
+/// sum to 1.
 ///
 /// Masks (Catmull and Clark 1978): face = mean; edge = (two ends + two face points) / 4; vertex = (Q + 2 R + (N - 3) P) / N, with Q the mean of the
-/// face points and R the mean of the edge midpoints around it. C1 at the point, otherwise C2. Two spaces are nested if the averaged square has the
-/// same side in both. With the same `depth` they are not nested: the surface changes by 0.41^depth.
+/// face points and R the mean of the edge midpoints around it. The surface is C1 at the extraordinary point, otherwise C2. The spaces of a mesh and
+/// of its refinement are nested if the averaged squares of both have the same side. If both have the same `depth` instead, they are not nested: the
+/// surface changes by 0.41^depth.
 std::vector<Piece> catmull_clark_pieces(int depth);
 
 /// Returns the matrix of one subdivision of the 19 points of the ring, to the ring of half the spacing. Shape (19, 19).

@@ -196,8 +196,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
   return {};
 }
 
-/// Returns a collocation point for each control point, where its function is large, as sites on all elements that contain the point. Candidate points
-/// are assigned in descending order of the value of the function, each to one function. Throws UserError if no candidate is left for a function.
+/// Returns a collocation point for each control point, where its function is large. A point is given by its local coordinates on every element that
+/// contains it. Candidate points are assigned in descending order of the value of the function, each to one function. Throws UserError if no
+/// candidate is left for a function.
 std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net& net) {
   const std::vector<int> places = numbered_places(space, net);
   std::vector<std::vector<Site>> at_place(places.size());
@@ -209,7 +210,8 @@ std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net
   for (std::size_t p = 0; p < places.size(); ++p) {
     const Site site = place_of_element(p);
     std::vector<Site>& sites = at_place[places[p]];
-    if (!sites.empty() && sites.back().element == site.element) continue;  // second site on a side that is collapsed to a pole
+    // skips a second occurrence of the element, on a side that is collapsed to a pole
+    if (!sites.empty() && sites.back().element == site.element) continue;
     sites.push_back(site);
     if (sites.size() > 1) continue;
     const Element& e = space.elements[site.element];

@@ -13,7 +13,7 @@ struct Place {
   double x = 0, y = 0;
 };
 
-/// Returns the parametric point of a lattice vertex (on the face of lowest index that contains it) or of a site.
+/// Returns the parametric point of a lattice vertex (on the face of lowest index that contains it) or of a site (element and local coordinates).
 Place place(const Lattice& lattice, int vertex);
 Place place(const Space& space, const Site& site);
 

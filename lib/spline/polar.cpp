@@ -143,8 +143,8 @@ class Shares {
 /// Returns knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
 
-/// Returns the order in which the transform of degenerate elements expects the Bezier points of an element at a pole, with the pole at u = 1: Q_(v
-/// u) = element[order[4 v + u]]. `ahead`: pole at the end of the meridian.
+/// Returns the permutation of the Bezier points of an element at a pole after which the pole is at u = 1, as the transform of degenerate elements
+/// requires: Q_(v u) = element[order[4 v + u]]. `ahead`: pole at the end of the meridian.
 std::array<int, 16> seen_from_base(bool ahead) {
   std::array<int, 16> order;
   for (int v = 0; v < 4; ++v)
@@ -152,7 +152,8 @@ std::array<int, 16> seen_from_base(bool ahead) {
   return order;
 }
 
-/// Replaces the degenerate elements at the poles by non-degenerate pieces, and converts sites on these elements to sites on the pieces.
+/// Replaces the degenerate elements at the poles by non-degenerate pieces, and converts sites (element and local coordinates) on these elements to
+/// sites on the pieces.
 class Transform {
  public:
   explicit Transform(int subdivisions) : pieces_(pole_pieces(subdivisions)) {}
@@ -184,7 +185,7 @@ class Transform {
   std::vector<PolePiece> pieces_;
 };
 
-/// Returns the sites of the pole: one on every element that has a side collapsed to the pole.
+/// Returns the pole as one site (element and local coordinates) on every element that has a side collapsed to the pole.
 std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
   std::vector<Site> out;
   for (int k = 0; k < int(tiling.tiles.size()); ++k) {
@@ -194,7 +195,7 @@ std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahe
   return out;
 }
 
-/// Returns the generalised Greville points of the control points as sites on the mesh elements (tiles).
+/// Returns the generalised Greville points of the control points, by mesh element (tile) and local coordinates.
 std::vector<std::vector<Site>> sites_on_tiles(const TMesh& mesh, const TileFunctions& f, const Shares& shares) {
   const Lattice& l = *mesh.lattice;
   std::vector<std::vector<Site>> out(shares.n_points());

@@ -27,17 +27,17 @@ struct PolarMesh {
 };
 
 /// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (first pole, "behind") to r (last pole,
-/// "ahead"), azimuth v in elements, and its distance from the axis divided by the distance of its row of control points. With `c1`, the three
-/// control points of a pole replace row 1 of the tensor net, at distances from the axis that differ from row 1.
+/// "ahead"), and azimuth v in elements. `distance`: distance of the control point from the axis divided by the distance of its row from the axis.
+/// With `c1`, the three control points of a pole replace row 1 of the tensor net, at distances from the axis that differ from row 1.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
 /// Returns the space. Order of control points: the pole at the beginning of the meridian ("behind"), rows along the meridian with azimuth fastest,
-/// the pole at its end ("ahead"). Elements: s along the azimuth, t along the meridian towards the pole ahead; the pieces of the transform come
-/// last. With `plain`, a pole is a whole side of m elements, and its sites are at s = 1/2 of each. `face` is 0, and `origin` and `size` are
-/// fractions of the whole domain; the pieces of an element divide its size in azimuth.
+/// the pole at its end ("ahead"). Elements: s along the azimuth, t along the meridian towards the pole ahead; the pieces of the transform come last.
+/// With `plain`, a pole is a whole side of m elements, and its collocation point is at s = 1/2 on each of them. `face` is 0, and `origin` and `size`
+/// are fractions of the whole domain; the pieces of an element divide its size in azimuth.
 ///
 /// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions, d_j =
 /// (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then
@@ -46,7 +46,7 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 ///
 /// The triangle has three of the d_j as the midpoints of its sides. They are chosen such that the triangle is as large as possible, so it contains
 /// all d_j, and all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of these three d_j, so the
-/// condition numbers of collocation are those of tensor-product splines.
+/// condition numbers of collocation are equal to the condition numbers of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
 /// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the
@@ -69,7 +69,7 @@ constexpr std::array<std::array<int, 3>, 10> triangle_points{
 /// becomes a curve of degree 3 - i in v by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
 Eigen::MatrixXd triangle_of_degenerate();
 
-/// Barycentric coordinates of the corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in the triangle.
+/// Corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in a triangle, as barycentric coordinates with respect to the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
 /// Returns the matrix of (P-A.2), shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the Bezier points of a bicubic
 /// quadrilateral in the triangle, U fastest. The representation is exact, because the quadrilateral is a bilinear map, and a cubic polynomial of a
@@ -82,8 +82,8 @@ const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of the coordinate v, of the degenerate element, over the triangle that contains the piece
-  Corners corners;             ///< corners of the piece in barycentric coordinates of this triangle
+  double from = 0, to = 1;     ///< range, in the coordinate v of the degenerate element, of the triangle that contains the piece
+  Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
   /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.

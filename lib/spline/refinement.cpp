@@ -42,8 +42,8 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   return path;
 }
 
-/// Returns the number of rule violations, crossings + missing / 2, after a trial insertion of the edges, plus a penalty if they enter the uniform
-/// rings of an extraordinary point.
+/// Returns the number of rule violations after a trial insertion of the edges: crossings + missing / 2, as counted by ExtendedMesh. Adds a penalty if
+/// the edges enter the uniform rings of elements around an extraordinary point.
 double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
   extended.insert(bay);
@@ -52,8 +52,8 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   return score;
 }
 
-/// Returns, of the first parts (bays) of the candidates' face extensions, the one whose insertion leaves the fewest rule violations. If several do,
-/// returns the shortest, then the one with the lowest vertex.
+/// Compares the first parts (bays) of the candidates' face extensions, and returns the part whose insertion leaves the fewest rule violations. Among
+/// equal parts, returns the shortest, then the part with the lowest vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;

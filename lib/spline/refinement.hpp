@@ -47,7 +47,7 @@ struct Mark {
 /// off to show this.
 struct RepairRules {
   bool no_overlaps = true;        ///< no lattice vertex is on the face extensions of two T-junctions that point at each other
-  bool nested_extensions = true;  ///< the mesh with its extensions contains the mesh with its extensions before refinement
+  bool nested_extensions = true;  ///< the extended mesh (T-mesh with extensions) still contains all edges that it had before the refinement
   int rings = 3;                  ///< number of rings of equal elements required around each extraordinary point
   std::vector<LatticeMap> images = {};  ///< symmetries of the mesh to keep, a group without the identity; bisections are applied to all images
 };
@@ -60,11 +60,10 @@ struct Refinement {
 };
 
 /// Bisects the marked elements and repairs the mesh. The repair adds one bay after the other, where a bay is the part of a line between two
-/// successive perpendicular edges, until no extensions cross, none of the earlier extensions is missing, and none overlap. It extends one of the
-/// T-junctions involved by a bay, the T-junction for which this leaves the fewest violations. If a bisection enters the three uniform rings of
-/// elements around an extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of
-/// marks but not on their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all
-/// images.
+/// successive perpendicular edges, until no extensions cross, none of the earlier extensions is missing, and none overlap. Each bay extends one of
+/// the T-junctions involved: the T-junction for which the fewest violations remain. If a bisection enters the three uniform rings of elements around
+/// an extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of marks but not on
+/// their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
 /// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and in addition the rule on overlaps and
 /// extraordinary points.

@@ -36,7 +36,7 @@ struct Site {
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;
-  /// For each collocation point, the sites on all elements whose closure contains it. The first one is used for evaluation.
+  /// For each collocation point, its local coordinates on all elements whose closure contains it. The first element is used for evaluation.
   std::vector<std::vector<Site>> collocation;
   std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };

@@ -29,8 +29,7 @@ void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
 
 int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
 
-/// Returns the number of lattice cells between `cell` and the side of its mesh element that is behind it for a viewer who looks in direction
-/// `turn`.
+/// Looks in the direction `turn` from `cell`, and returns the number of lattice cells behind `cell` in its mesh element.
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   const int x = l.x_of(cell) - r.x, y = l.y_of(cell) - r.y;
   const int cells[4] = {x, y, r.width - 1 - x, r.height - 1 - y};
@@ -54,7 +53,8 @@ struct Builder {
   const Lattice& l;
   TileFunctions& out;
 
-  /// Returns the mesh element that contains a cell. A cell of zero height is an element of its own.
+  /// Returns the mesh element that contains a cell, and sets `number` to its index. A cell of zero height is an element of its own; `number` is then
+  /// negative.
   Rectangle tile(int cell, int& number) const {
     number = out.tiling.tile_of_cell[cell];
     return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
@@ -163,7 +163,7 @@ std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const Ce
   } else {
     add(p.cell, {p.x, p.y});
     if (on_vertical || on_horizontal) {
-      // Adds the cell on the other side of the edge on which the point lies. In this cell the edge has the opposite direction.
+      // If the point lies on an edge, also adds the cell on the other side of the edge. In this cell the edge has the opposite direction.
       const int edge = on_vertical ? (p.x == 0 ? 3 : 1) : (p.y == 0 ? 0 : 2), along = turned(p.x, p.y, 3, 4 - edge)[0];
       const int u = l.corners[p.cell][edge], s = (l.slot[p.cell][edge] + l.valence(u) - 1) % l.valence(u);
       add(l.cell[u][s], turned(3 - along, 0, 3, (l.corner[u][s] + 3) & 3));

@@ -40,7 +40,7 @@ struct CellPoint {
 /// Returns the generalised Greville point of an anchor: the mean of its three inner knots in each direction.
 CellPoint greville(const TMesh& mesh, int anchor, const Knots& knots);
 
-/// Returns the sites of a point on all mesh elements (tiles) whose closure contains it, in ascending order of the elements.
+/// Returns the local coordinates of a point on all mesh elements (tiles) whose closure contains it, in ascending order of the elements.
 std::vector<Site> tiles_around(const TMesh& mesh, const Tiling& tiling, const CellPoint& point);
 
 }  // namespace tanktread::spline

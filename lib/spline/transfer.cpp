@@ -91,7 +91,8 @@ class Fit {
     if (!unknown_.empty()) factor_.compute(assemble(int(unknown_.size()), local));
   }
 
-  /// Computes the rows of the unknown control points in `net`. Returns the distances between both fields at the samples.
+  /// Computes the rows of the unknown control points in `net` by a fit to `field`. Returns the distances between `field` and the fit at the sample
+  /// points.
   std::vector<double> solve(const Net& field, Net& net) const {
     for (int p : unknown_) net.row(p).setZero();
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(Eigen::Index(unknown_.size()), 3);
@@ -127,7 +128,7 @@ struct Transfer::State {
   const Space& to;
   Sampling sampling;
   int straddling = 0;
-  std::vector<int> copied;         // old control point from which each control point is copied, or -1
+  std::vector<int> copied;         // for each new control point, the old control point from which it is copied, or -1
   std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
   mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
 

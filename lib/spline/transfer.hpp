@@ -23,7 +23,8 @@ class Transfer {
 
   struct Result {
     Net net;
-    double residual;  ///< largest |new - old| at the Gauss points of the changed elements; about 1e-13 (round-off) if nested and of order 1
+    /// largest |new - old| at the Gauss points of the changed elements; about 1e-13 (round-off) if the spaces are nested and the field is of order 1
+    double residual;
   };
   Result operator()(const Net& field) const;
 

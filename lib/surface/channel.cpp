@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr int n_samples = 4000;
-// least length of a straight end divided by R_T; perturbations of the flow decay to 1e-5 over this length
+// least length of a straight end divided by the tube radius R_T; perturbations of the flow decay to 1e-5 over this length
 constexpr double straight_end = 1.7;
 
 }  // namespace
@@ -327,7 +327,8 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  // With triple knots at a step, the sides of the elements on its transverse wall would be folded. A smooth spline keeps its control points apart.
+  // At a step of the profile, triple knots would fold the sides of the elements on its transverse wall. With simple knots, the control points stay
+  // apart.
   if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);

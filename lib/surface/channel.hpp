@@ -19,8 +19,8 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 /// modelled period, which is centred on the range of s in which the factors change.
 class Channel {
  public:
-  /// Throws UserError, with numbers in the message, if the channel is folded (cross-sections intersect), closed (a width is not above 0.02 R_T) or
-  /// has no straight ends.
+  /// Throws UserError, with numbers in the message, if the channel is folded (cross-sections intersect), closed (a width is not above 0.02 R_T, with
+  /// R_T the tube radius) or has no straight ends.
   explicit Channel(const TubeOptions& options);
 
   struct Section {
@@ -44,7 +44,7 @@ class Channel {
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
   /// this range. At a step of the profile, the factors f2 and f3 change with u while s is constant.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< number of elements along the wall with which their lengths are about their widths
+  int elements() const;  ///< number of elements along the wall for which elements are about as long as wide
   Section at(double u) const;
 
  private:
@@ -71,7 +71,7 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  // half widths of the outline along x2 and x3; half width by which the depth of a `step` is multiplied
+  // half widths of the outline along x2 and x3; half width that is multiplied by the relative depth of a `step`
   double half_[2] = {1, 1}, height_ = 1;
   double first_ = 0, last_ = 0;           // smallest and largest s at which the cross-section or the direction of the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;

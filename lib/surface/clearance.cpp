@@ -93,7 +93,7 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// Collects the elements that may contain the nearest point, as judged by a disc about the outline's centroid.
+  /// Collects the elements that may contain the nearest point, according to lower bounds from a disc about the outline's centroid.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {

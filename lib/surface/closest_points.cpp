@@ -56,7 +56,7 @@ struct Part {
                          (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
     const int step = along_s ? 1 : n, across = along_s ? n : 1;
     std::array<Part, 2> result{Part{degree, points, low, sides}, Part{degree, points, low, sides}};
-    // `right` is computed in place: after round k, the first p - k + 1 points of a row are those of round k of the algorithm
+    // `right` is computed in place: after round k of the algorithm, the first p - k + 1 points of a row hold the results of this round
     auto& [left, right] = result;
     left.sides[along_s ? 0 : 1] /= 2, right.sides = left.sides;
     (along_s ? right.low.s : right.low.t) += left.sides[along_s ? 0 : 1];
@@ -139,7 +139,7 @@ class PairSearch {
     }
   }
 
-  /// Updates the closest pair of points found with the corners of the parts, which are points of the surfaces.
+  /// Replaces the closest pair of points found so far if two corners of the parts are closer. Corners are points of the surfaces.
   void meet(const Part& a, const Part& b) {
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {

@@ -15,7 +15,7 @@ namespace tanktread::surface {
 struct ClosestPoints {
   Vec3 first, second;
   double gap = 0;
-  std::array<spline::Site, 2> sites{};  ///< sites of the closest points on the two surfaces, if points were found
+  std::array<spline::Site, 2> sites{};  ///< element and local coordinates of the closest points on the two surfaces, if points were found
 };
 
 /// Binary tree of bounding boxes around the Bezier points of a surface's elements. If the surface moves, a new tree must be built.
@@ -24,7 +24,7 @@ class ElementBoxes {
   struct Box {
     Eigen::Array3d low, high;
     int first, last;    ///< the box contains element(first) .. element(last - 1)
-    int child[2] = {};  ///< children of a box with several elements
+    int child[2] = {};  ///< indices in boxes() of the two halves of a box with several elements
   };
 
   /// `surface` must outlive the tree.
@@ -39,7 +39,7 @@ class ElementBoxes {
 
   const Patches& surface_;
   std::vector<int> order_;
-  std::vector<Box> own_, boxes_;  // bounding boxes of the single elements; bounding boxes of the tree
+  std::vector<Box> own_, boxes_;  // bounding box of each element; all bounding boxes of the tree
 };
 
 /// Returns a lower bound of the distance between the contents of two boxes.
@@ -53,7 +53,7 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 
 /// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the
 /// line that connects the points is normal to both surfaces. The points may lie up to a tenth of an element beyond its edges. If the method fails,
-/// returns the points at the sites of `near`.
+/// returns the points at the local coordinates given by `near`.
 ClosestPoints nearest_points(const Patch& first, const Patch& second, const ClosestPoints& near);
 
 /// Returns, for each element of a surface, the width of the film between it and the other surfaces. The width is the smallest distance from 3 x 3

@@ -151,7 +151,8 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
     if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
     if (length < 1e-9) break;
   }
-  // tolerance for points beyond the element's side; at distance d beyond it, neighbouring elements differ by O(d^3)
+  // tolerance, in local coordinates, for points beyond the element's side; at distance d beyond it, the polynomials of neighbouring elements differ
+  // by O(d^3)
   constexpr double slack = 1e-7;
   if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
   const Vec3 y = place(patch, at[0], at[1]) - centre;
@@ -182,7 +183,7 @@ struct Candidate {
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// Extends the range found by the distances at those candidates that may contain the maximum of sign * distance.
+/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
@@ -250,7 +251,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // distances of minima and maxima: samples of a nearly circular section do not distinguish them
+  Range range;  // one range for minima and maxima, because samples of a nearly circular section do not distinguish them
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

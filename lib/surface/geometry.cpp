@@ -150,7 +150,7 @@ Deformation Geometry::deformation(const Measures& measures, const std::array<Ran
   const double longest = std::sqrt(mean + radius), shortest = std::sqrt(mean - radius);
   result.taylor_inertia = (longest - shortest) / (longest + shortest);
   result.inclination = std::atan2(m(0, 2), difference) / 2 * 180 / std::numbers::pi;
-  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // an axis along x3: round-off would choose between -90 and 90 degrees
+  if (result.inclination < -90 + 1e-6) result.inclination += 180;  // if the axis is along x3, round-off would choose between -90 and 90 degrees
   const double to_semi_axis = std::sqrt(5 / measures.volume);
   if (!distinct(to_semi_axis * longest, to_semi_axis * shortest, measures.volume)) result.inclination = std::numeric_limits<double>::quiet_NaN();
 

@@ -22,7 +22,7 @@ struct Point {
 };
 Point point(const spline::Space& space, const Net& net, const spline::Site& site);
 
-/// Returns the value at a site of the field with control values `net`.
+/// Returns the value of the field with control values `net` at a site (element and local coordinates).
 Vec3 value(const spline::Space& space, const Net& net, const spline::Site& site);
 
 /// Returns the mean curvature chi = 1/2 div n (P-36); 1/R for a sphere. Units 1/length.
@@ -78,15 +78,15 @@ Vec3 lowest(const Patches& surface, int c);
 /// The range is empty if the plane misses the surface.
 Range section_distances(const Patches& surface, const Vec3& centre);
 
-/// Deformation measures of the series (6.2): D in the x1 x3 plane; inclination in degrees, from -90 (not included) to 90. The inclination is NaN if
-/// the two semi-axes in that plane are not distinct.
+/// Deformation measures of the time series (6.2): Taylor parameter D in the x1 x3 plane, by two definitions; inclination in degrees, from -90 (not
+/// included) to 90. The inclination is NaN if the two semi-axes in that plane are not distinct.
 struct Deformation {
   double taylor_inertia = 0, taylor_surface = 0, inclination = 0;
   Vec3 lengths;  ///< extents along x1, x2, x3
 };
 
 /// Computes measures of any number of control nets on one space; everything that depends only on the space is computed once. Every sum runs over the
-/// elements in one fixed order, so a subset of the elements gives bitwise the same rows.
+/// elements in one fixed order, so rows computed from a subset of the elements are bitwise equal to rows computed from all elements.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);
@@ -101,8 +101,8 @@ class Geometry {
   void volume_gradient(const Net& net, std::span<const int> elements, Net& b) const;
   Net volume_gradient(const Net& net) const;
 
-  /// Adds to b the derivative of int g.x dV with respect to the control points, int N_A (g.x) n dG, exactly, summed over the given elements. The
-  /// row of a control point is complete if they include all elements on which its function is not zero. x is relative to `origin`.
+  /// Adds to b the derivative of int g.x dV with respect to the control points, int N_A (g.x) n dG, exactly, summed over the given elements. The row
+  /// of a control point is complete if the given elements include all elements on which its function is not zero. x is relative to `origin`.
   void add_moment_gradient(const Net& net, const Vec3& g, const Vec3& origin, std::span<const int> elements, Net& b) const;
 
   Measures measures(const Net& net) const;
@@ -114,9 +114,9 @@ class Geometry {
 
   int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
 
-  /// Returns both Taylor parameters in the x1 x3 plane, the inclination and the extents. The inertia definition uses the second moments M_11, M_13,
-  /// M_33. The surface definition uses the longest and shortest distance of the centroid to the curve in which the plane x2 = centroid_2 cuts the
-  /// surface. Extreme points are found by Newton's method, to round-off.
+  /// Returns the Taylor parameter in the x1 x3 plane by two definitions, the inclination and the extents. The inertia definition uses the second
+  /// moments M_11, M_13, M_33. The surface definition uses the longest and shortest distance of the centroid to the curve in which the plane x2 =
+  /// centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 

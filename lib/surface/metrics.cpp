@@ -30,7 +30,7 @@ std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator&
   double at = end - length;
   while (at < end - 1e-9 * length) {
     spline::Place inside = start;
-    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // a point just past the border of the Bezier element that ends here
+    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // a point just past the border between two Bezier elements
     spline::Site site = locate(inside);
     const spline::Element& element = space.elements[site.element];
     const double from = element.origin[direction], size = element.size[direction], to = std::min(from + size, end);
@@ -129,7 +129,7 @@ class Samples {
       spline::Site site = locate_(spline::place(lattice_, vertex));
       const auto on = [&](const Patches& patches) { return place(patches[site.element], site.s, site.t); };
       found->second = {on(rest_), on(now_), Vec3::Zero(), {}};
-      // moved off the pole, where a load per area is only defined as a limit
+      // At a pole, moves the site off the pole, because a load per area is defined there only as a limit.
       if (on_pole(lattice_, vertex)) site.t = std::clamp(site.t, 1e-5, 1 - 1e-5);
       if (load_) found->second.load = load_(site);
       if (fields_) found->second.fields = fields_(site);

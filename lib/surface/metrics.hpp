@@ -25,7 +25,7 @@ struct ElementMetrics {
   double aspect_ratio(int alpha) const { return along[alpha].length / along[1 - alpha].length; }
 };
 
-/// A field on the surface as a function of a site of the space. If it is empty, its variation is 0.
+/// A field on the surface as a function of a site (element and local coordinates). If it is empty, its variation is 0.
 using FieldAt = std::function<Vec3(const spline::Site&)>;
 using FieldsAt = std::function<Eigen::VectorXd(const spline::Site&)>;
 
@@ -33,9 +33,9 @@ struct MetricFields {
   FieldAt traction, velocity;
 };
 
-/// Returns the metrics of elements(mesh), in its order, on the surface of `net`. These are the elements of the T-mesh, which are marked and
-/// refined, not the Bezier elements: a mid-line may cross several Bezier elements. If a mid-line ends at a pole, where most fields have no value,
-/// only its length is computed.
+/// Returns the metrics of elements(mesh), in the order of elements(mesh), on the surface of `net`. These are the elements of the T-mesh, which are
+/// marked and refined, not the Bezier elements: a mid-line may cross several Bezier elements. If a mid-line ends at a pole, where most fields have no
+/// value, only its length is computed.
 std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
                                             const MetricFields& fields);
 
@@ -53,14 +53,14 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 ///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
 /// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
-/// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to those of the current surface, and the
-/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points,
-/// do not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has
-/// no error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
+/// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to the tangents of the current surface, and the
+/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
+/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no
+/// error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
 struct Errors {
-  double surface = 0;  ///< e(x), length
-  double load = 0;     ///< e(phi), unit of phi; 0 without a load
-  double fields = 0;   ///< e(q), 1; 0 without fields
+  double surface = 0;  ///< error e(x) of the surface (1.5), length
+  double load = 0;     ///< error e(phi) of the load phi (1.5), in the unit of phi; 0 without a load
+  double fields = 0;   ///< error e(q) of the fields q (1.5), dimensionless; 0 without fields
 
   Errors operator+(const Errors& other) const { return {surface + other.surface, load + other.load, fields + other.fields}; }
   Errors operator*(double factor) const { return {surface * factor, load * factor, fields * factor}; }
@@ -68,11 +68,11 @@ struct Errors {
 struct Resolution {
   double length = 0;  ///< mean length of the edges
   Errors errors;
-  Errors merged;  ///< errors of the element of twice the length that contains this one; if there is none, 16 times `errors`
+  Errors merged;  ///< errors of the element of twice the length that contains this element; 16 times `errors` if there is none
 };
 
-/// Returns the estimated errors of elements(mesh), in its order, along s and along t. A line of sample points ends at an extraordinary point or a
-/// pole; if it has fewer than five points, the estimate is 0. A side of an element that is collapsed to a pole is ignored.
+/// Returns the estimated errors, along s and along t, of elements(mesh), in the order of elements(mesh). A line of sample points ends at an
+/// extraordinary point or a pole; if it has fewer than five points, the estimate is 0. A side of an element that is collapsed to a pole is ignored.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
                                                   const FieldAt& load, const FieldsAt& fields = {});
 

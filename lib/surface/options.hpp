@@ -24,7 +24,8 @@ struct MeshOptions {
   std::optional<std::string> poles;                            ///< rule at the poles: bezier transform, plain, c1
   bool of_cylinder = false;  ///< true if the surface is a cylinder (Particle/shape `cylinder`); it then has `azimuthal_elements` and `axial_elements`
   std::optional<int> axial_elements;                           ///< number of elements along the period of a cylinder
-  std::optional<int> pole_subdivisions;                        ///< number of bisections in azimuth of the elements at the poles before the transform
+  /// number of bisections in azimuth of the elements at the poles, before they are transformed to non-degenerate pieces
+  std::optional<int> pole_subdivisions;
 
   void declare(deck::Section& section);
 
@@ -46,11 +47,12 @@ struct MeshOptions {
 struct InitialShape {
   std::optional<Mat3> map;          ///< linear map applied to the resting shape about its centre
   std::optional<Vec3> stretch;      ///< factors of a linear map that stretches the resting shape along the particle's body-fixed axes
-  std::optional<std::string> file;  ///< Bezier-extraction text of a surface on the particle's mesh
-  std::optional<std::string> run;   ///< results of another run, or one of its snapshots
-  std::optional<int> mode;          ///< mode of the run's spectrum that is added to its shape, counted from 1
-  double mode_amplitude = 0.01;     ///< largest displacement of this mode, divided by R_C
-  std::string volume = "resting";   ///< volume that the particle has and keeps: of the `resting` shape, or the initial shape's `own`
+  std::optional<std::string> file;  ///< path of a Bezier-extraction text with a surface on the particle's mesh
+  std::optional<std::string> run;   ///< path of the results of another run, or of one of its snapshots
+  std::optional<int> mode;          ///< index, from 1, of a mode in the spectrum of `run`; this mode is added to the shape
+  double mode_amplitude = 0.01;     ///< largest displacement by the added mode, divided by the particle radius R_C
+  /// volume that the particle starts with and keeps: `resting` (of the resting shape) or `own` (of the initial shape)
+  std::string volume = "resting";
 
   void declare(deck::Section& section);
 
@@ -92,7 +94,7 @@ struct ParticleShape {
   /// Returns whether the size of the particle is known: its keys are set, or the file with the shape has been read.
   bool sized() const;
 
-  /// Returns R_C, the radius of the sphere of equal volume.
+  /// Returns the particle radius R_C, the radius of the sphere of equal volume.
   double equivalent_radius() const;
 
   /// Returns the radius of a sphere around the centre that contains the particle.
@@ -103,15 +105,17 @@ struct ParticleShape {
 /// line. The centre line starts along x1 and may bend.
 struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
-  std::optional<double> depth;           ///< d, largest deviation of the factor from 1; not set for the profiles `straight` and `file`
-  std::optional<double> half_length;     ///< w, distance along the centre line from the middle of the profile to where the factor is 1
+  /// d, largest deviation from 1 of the factor that scales the cross-section; not set for the profiles `straight` and `file`
+  std::optional<double> depth;
+  /// w, distance along the centre line from the middle of the profile to where the cross-section is not scaled
+  std::optional<double> half_length;
   std::optional<double> corner_radius;   ///< radius of the rounded edges of the profile `step`
-  std::string directions = "x2 x3";      ///< directions in which the factor scales the cross-section
-  std::optional<std::string> points;     ///< path of the file of factors; set for the profile `file`
+  std::string directions = "x2 x3";      ///< directions in which the cross-section is scaled
+  std::optional<std::string> points;     ///< path of the file with the factors that scale the cross-section; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
   double bend_start = 0, bend_angle = 90;  ///< coordinate at which the arc begins; angle of the arc, from x1 towards x2, degrees
   std::optional<double> start, end;      ///< ends of the modelled part, as coordinates along the centre line
-  std::optional<int> axial_elements;     ///< number of elements along the wall; if not set, it follows from the shape of the wall
+  std::optional<int> axial_elements;     ///< number of elements along the wall; if not set, it is chosen from the shape of the wall
 
   void declare(deck::Section& list);
   void check() const;
@@ -126,20 +130,21 @@ struct TubeOptions {
   std::optional<double> radius;              ///< radius of the circle; default 1
   std::optional<Eigen::Vector2d> semi_axes;  ///< semi-axes of the ellipse along x2 and x3
   std::optional<Eigen::Vector2d> sides;      ///< sides of the rectangle along x2 and x3
-  std::optional<std::string> outline;        ///< path of the file of points of the outline; set for `file`
+  std::optional<std::string> outline;        ///< path of the file with the points of the outline; set for the cross-section `file`
 
-  std::optional<double> length;  ///< length of the wall; if not set, 2 pi R_T, or more for a long particle
-  double period = 0;  ///< period of the duct along x1, as given by Domain; 0 if the duct is not periodic
-  /// L, period along x1 of tube and particles; not set if the tube is not periodic or Domain gives the period
+  std::optional<double> length;  ///< length of the wall; if not set, 2 pi times the tube radius, or more for a long particle
+  double period = 0;  ///< period of the duct along x1, as given by the section Domain; 0 if the duct is not periodic
+  /// period L along x1 of tube and particles; not set if the tube is not periodic, or if the section Domain gives the period
   std::optional<double> periodic_length;
-  /// M, number of periodic images; has no effect, because the kernels of a periodic tube contain all images
+  /// number M of periodic images; has no effect, because the kernels of a periodic tube contain all images
   std::optional<int> images;
   int azimuthal_elements = 24;   ///< number of elements around the wall
   static constexpr int default_axial_elements = 25;
   std::optional<int> axial_elements;  ///< number of elements along the wall, or along one period; an open wall has three more rows of control points
   double grading = 4;            ///< density of elements along the tube near the particle, divided by the density far from it
 
-  double contact_gap = 0.02;  ///< smallest allowed gap between particle and wall, divided by R_C; a run stops if the gap is smaller
+  /// smallest allowed gap between particle and wall, divided by the particle radius R_C; a run stops if the gap is smaller
+  double contact_gap = 0.02;
 
   /// stress by which the wall repels a membrane if the gap is zero; not set if there is no repulsion
   std::optional<double> repulsion;

@@ -45,7 +45,7 @@ PlaneJet jet(const PlaneCurve& curve, double u);
 CubicCurve interpolate_closed(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 
-/// Returns the open spline that also has the given derivatives with respect to u at its ends.
+/// Returns the open cubic spline that interpolates the points and has the given derivatives with respect to u at its two ends.
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points, const Vec2& first, const Vec2& last);
 
 /// Returns the B-spline control points. A closed curve with m pieces has m points; point i belongs to the B-spline with its middle knot at

@@ -93,7 +93,7 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-/// Returns parts of nearly equal cost, with the given points distributed among them.
+/// Returns a partition into parts of nearly equal cost. The given points are distributed among the parts; all other points have no owner.
 Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
   const int n = static_cast<int>(space.elements.size());
   if (parts > n)

@@ -58,8 +58,8 @@ Eigen::VectorXd first_profile(const spline::PolarMesh& mesh) {
   return Eigen::Map<Eigen::VectorXd>(profile.data(), Eigen::Index(profile.size()));
 }
 
-/// The misfit to the sphere, int |grad eps|^2 + eps^2 dG, over one sector between two meridians (all sectors are equal), with its gradient and
-/// Gauss-Newton matrix with respect to the profile.
+/// Misfit of a surface to the unit sphere, int |grad eps|^2 + eps^2 dG with eps = (|x|^2 - 1)/2, over one sector between two meridians (all sectors
+/// are equal), with its gradient and Gauss-Newton matrix with respect to the profile.
 struct Misfit {
   double value = 0;
   Eigen::VectorXd gradient;

@@ -1,5 +1,6 @@
 #pragma once
-// Control nets of resting shapes, fitted to the order of the space, and a smooth map from the surface of a cube to the sphere as a start for fits.
+// Control nets of resting shapes, fitted with the order of accuracy of the space, and a smooth map from the surface of a cube to the sphere as a
+// start for fits.
 
 #include "base/types.hpp"
 #include "spline/polar.hpp"
@@ -47,9 +48,9 @@ Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits 
 ///
 ///   int |grad eps|^2 + eps^2 dG,   eps = (|x|^2 - 1) / 2,
 ///
-/// over the surface itself. grad eps is the part of x in the tangent plane, which is zero if the normal is exact. The minimum also optimises the
+/// over the surface. grad eps is the part of x in the tangent plane, which is zero if the normal is exact. The minimum also optimises the
 /// distribution of the elements along the meridian. Compared with a least-squares fit of positions, the error in the normal is 0.6 times as large,
-/// in the radius half.
+/// and the error in the radius half as large.
 Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int axis = 2);
 
 /// Coefficients c of the half thickness sqrt(1 - r^2)/2 (c0 + c1 r^2 + c2 r^4) of a red cell with unit radius       (Evans & Fung 1972)

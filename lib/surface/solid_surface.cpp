@@ -19,7 +19,7 @@ struct Unit {
   std::vector<double> coordinate;
 };
 
-/// Returns the period around 0 with the seam at a quarter of an element.
+/// Returns a period of unit length around 0. The seam, where it begins and ends, lies at a quarter of a periodic element.
 Unit unit_period(int elements) {
   std::vector<double> knots;
   for (int k = 0; k < elements; ++k) knots.push_back((k + 0.5) / elements - 0.5);
@@ -60,7 +60,7 @@ SolidSurface plate(const Vec3& middle, const Vec3& first, const Vec3& second, co
 SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int around, int along) {
   const Outline circle = Outline({Ellipse{Vec2::Zero(), Vec2::Constant(radius)}}).spline(around);
   const CubicCurve& curve = std::get<CubicCurve>(circle.side(0));
-  const double wider = radius / circle.radius();  // gives the section the area of the circle
+  const double wider = radius / circle.radius();  // scales the spline section to the exact area of the circle
   const Vec3 axis = period.normalized(), a = axis.unitOrthogonal(), b = axis.cross(a);
   Line ring;
   add(ring, curve.breaks, true, false);

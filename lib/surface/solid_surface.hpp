@@ -11,14 +11,16 @@
 
 namespace tanktread::surface {
 
-/// One period of a surface of solids. The geometry is an open spline surface. Densities on it are periodic: their control values on the space are
-/// `open_from_periodic` times their own control values, one per collocation point in `sites`. No collocation point lies on the seam.
+/// One period of a surface of solids. The geometry is an open spline surface. Densities on it are periodic splines with one coefficient per
+/// collocation point in `sites`, and `open_from_periodic` maps these coefficients to control values on `space`. No collocation point lies on the
+/// seam.
 struct SolidSurface {
   spline::Space space;
   Net net;
   std::vector<std::vector<spline::Site>> sites;
   Eigen::SparseMatrix<double> open_from_periodic;
-  std::array<int, 2> grid{0, 0};  ///< numbers of equal elements of a plate, whose point i grid[1] + j has the indices i, j; 0 for other surfaces
+  /// numbers of equal elements along both directions of a plate; point i grid[1] + j has the indices i, j; 0 for other surfaces
+  std::array<int, 2> grid{0, 0};
 
   int n_points() const { return static_cast<int>(sites.size()); }  ///< number of control values of a density
 };
@@ -26,11 +28,11 @@ struct SolidSurface {
 /// Returns one period of a plane through `middle`, spanned by two lattice vectors with these numbers of equal elements. The normal is first x second.
 SolidSurface plate(const Vec3& middle, const Vec3& first, const Vec3& second, const std::array<int, 2>& elements);
 
-/// Returns one period of a circular cylinder through `middle`, along the lattice vector `period`, with these numbers of equal elements around and
+/// Returns one period of a circular cylinder through `middle`, along the lattice vector `period`, with `around` and `along` equal elements around and
 /// along it. The area of its section is pi radius^2. The normal points out of the cylinder.
 SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int around, int along);
 
-/// Returns surfaces side by side as one. Indices of each follow those of the previous one.
+/// Returns the surfaces stacked into one. The indices of each surface follow the indices of the previous one.
 SolidSurface stacked(const std::vector<SolidSurface>& surfaces);
 
 }  // namespace tanktread::surface

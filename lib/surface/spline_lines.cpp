@@ -29,7 +29,7 @@ void Line::add_site(double u, const std::vector<double>& knots, int first, bool 
 
 namespace {
 
-/// Adds the pieces between the knots. The function that begins at knot j of `extended` has the index number(j).
+/// Adds the intervals between the knots as pieces. The B-spline that begins at knot j of `extended` is function number(j) of the line.
 template <class Number>
 void add_pieces(Line& line, const std::vector<double>& extended, int m, const Number& number) {
   for (int e = 0; e < m; ++e) {

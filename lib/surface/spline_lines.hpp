@@ -29,19 +29,20 @@ struct Line {
 /// have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
 void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards);
 
-/// Splines over one period that a density uses. The geometry has the open splines of `open`, whose collocation points are those of the periodic
-/// splines. Control values of the density on `open` are `open_from_periodic` times its control values, one per periodic spline.
+/// Splines over one period: open splines for the geometry, and periodic splines for densities. `open` has the open splines and the collocation points
+/// of the periodic splines. `open_from_periodic` maps the coefficients of a density, one per periodic spline, to its control values on `open`.
 struct RepeatingLine {
   Line open;
   Eigen::MatrixXd open_from_periodic;
   std::vector<double> middles;  ///< middle of each periodic element, as a parameter of the piece with the same index
 };
 
-/// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all inside. The seam cuts the last of
-/// their elements in two; piece 0 of `open` is its second part.
+/// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all inside. The seam, where the period
+/// begins and ends, cuts the element between the last knot and the first knot of the next period in two; piece 0 of `open` is the second part of this
+/// element.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
-/// Returns the collocation points of a product, those of the second line running fastest.
+/// Returns the collocation points of a product of two lines; the index on the second line runs fastest.
 std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around);
 
 /// Returns the space of products of two lines: s runs along the first one, t along the second one. Control point i n + k belongs to function i of the

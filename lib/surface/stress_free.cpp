@@ -68,7 +68,7 @@ Meridian resting_meridian(const ParticleShape& shape, int axis) {
   return spheroid(semi_axes[(axis + 1) % 3], semi_axes[axis]);
 }
 
-/// Returns the oblate spheroid with this reduced volume whose surface area is 4 pi times `area`.
+/// Returns the oblate spheroid with this reduced volume and with the surface area 4 pi times `area`.
 Meridian spheroid_of(double reduced_volume, double area) {
   const auto of_ratio = [&](double ratio) {
     const Meridian unit = spheroid(1, ratio);
@@ -85,8 +85,7 @@ Meridian spheroid_of(double reduced_volume, double area) {
   return of_ratio((low + high) / 2);
 }
 
-/// Returns the height z on the unit sphere whose image on the meridian `other` encloses the same area with the equator as the image of height z
-/// does on `one`.
+/// Returns the height z' on the unit sphere with other.area(z') = one.area(z), so that both parallels enclose equal areas with the equator.
 double of_equal_area(const Meridian& one, const Meridian& other, double z) {
   const double sought = one.area(z);
   double found = z;

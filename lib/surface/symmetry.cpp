@@ -30,7 +30,8 @@ class ImageSearch {
         size_((nets[0]->colwise().maxCoeff() - nets[0]->colwise().minCoeff()).maxCoeff()), map_(space), bezier_(space.elements.size()),
         points_(rows(*nets[0]), exact * size_), centres_(centres(), close * size_) {}
 
-  /// Returns the image (reflection with its permutations of points and elements) with these signs, if the surface has it and `keeps` accepts it.
+  /// Returns the reflection with these signs of the coordinates, and its permutations of points and elements, if it maps the surface onto itself and
+  /// `keeps` accepts it.
   std::optional<Image> image(const Vec3& signs, const Keeps& keeps) {
     image_ = {signs, {}, {}, {}};
     if (!points() || !keeps(image_) || !elements() || !sites()) return {};
@@ -88,7 +89,7 @@ class ImageSearch {
     return true;
   }
 
-  /// Finds, for each control point of element e, its image on the element `other` by comparing basis functions. Positions alone are ambiguous where
+  /// Finds, for each control point of element e, its image on the element `other` by comparing basis functions. Positions are not sufficient where
   /// two sides of a wall with corners meet, because control points coincide.
   bool same_basis(const Turn& turn, int e, int other) {
     const spline::Element &from = space_.elements[e], &to = space_.elements[other];
@@ -274,8 +275,8 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
   return result;
 }
 
-/// Adds to the sums at the fundamental points what the images of the fundamental elements contribute. If an element contributes to a point p, its
-/// image under g contributes the reflected value to the point g p. The factor is the number of images that map the source of p onto itself.
+/// Completes the sums at the fundamental points. The image of an element under g contributes the reflected values at the points g p. So every row is
+/// reflected to the fundamental point of its orbit and added there, multiplied by the number of images that map this point onto itself.
 void fold(const Symmetry& symmetry, Net& sums) {
   if (symmetry.order() == 1) return;
   const std::vector<int>& source = symmetry.source();

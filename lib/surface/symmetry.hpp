@@ -63,8 +63,8 @@ class Symmetry {
   /// point, shape (N, 3): 1, -1, or 0 if an image maps the point onto itself and changes the sign of the component.
   const Net& signs() const { return signs_; }
 
-  /// Completes a symmetric field of vectors (control values or values at the sites) from its rows at the fundamental points. A component becomes zero
-  /// if an image maps the point onto itself and changes its sign.
+  /// Completes a symmetric field of vectors (control values, or values at the collocation points) from its rows at the fundamental points. A
+  /// component becomes zero if an image maps the point onto itself and changes its sign.
   void complete(Net& field) const;
 
   /// Returns the description, for example "mirror x2 and point symmetry", or "none".
@@ -88,7 +88,7 @@ struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;
 
-  bool whole() const;  ///< whether all weights are 1: no image except the identity maps an element onto itself
+  bool whole() const;  ///< returns whether all weights are 1: no image except the identity maps an element onto itself
 };
 
 /// Returns the fundamental elements. `points(e)`: the control points of element e.
@@ -98,7 +98,7 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
 void fold(const Symmetry& symmetry, Net& sums);
 
 /// Fields of one parity. The mirror plane across each axis maps them to themselves (1) or to their negative (-1). Half turns and the point symmetry
-/// multiply them by the product over their axes. The parity 1 for all planes is that of symmetric fields. Any field is a sum of one field of each
+/// multiply them by the product of the parities of their axes. Symmetric fields have parity 1 for all planes. Any field is a sum of one field of each
 /// parity.
 class Parity {
  public:

@@ -124,7 +124,8 @@ std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, cons
 double shape_velocity(std::span<const double> sums, bool along_x1) {
   std::vector<double> numbers(sums.begin(), sums.end());
   const Sums all(numbers.data());
-  // int x_i n_j dG / R^3, which is V/R^3 times the identity except for quadrature errors. With V itself, a translation would leave a residual.
+  // int x_i n_j dG / R^3, which is V/R^3 times the identity except for quadrature errors. With the exact V instead of this integral, a translation
+  // would leave a residual.
   const Mat3 moments = all.normals.block<3, 3>(1, 0);
   Vec3 frame = moments.partialPivLu().solve(Vec3(all.motion.segment<3>(1)));
   if (along_x1) frame.tail<2>().setZero();

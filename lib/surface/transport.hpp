@@ -16,14 +16,14 @@ struct Treading {
 };
 
 /// Returns the tank-treading of a surface whose centroid `centre` moves with velocity `of_centre`. Points of an elastic membrane are weighted by
-/// their length on the `unstressed` net. Without one, they are weighted by the time that a material point takes to pass, and the frequency is zero
-/// if some point of the curve is at rest. The curve is computed on a grid of flat triangles with six intervals per element and direction; the error
-/// is 1e-4 on coarse meshes. If the plane misses the surface, both values are zero.
+/// their length on the `unstressed` net. Without `unstressed`, they are weighted by the time that a material point takes to pass, and the frequency
+/// is zero if some point of the curve is at rest. The curve is computed on a grid of flat triangles with six intervals per element and direction; the
+/// error is 1e-4 on coarse meshes. If the plane misses the surface, both values are zero.
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre);
 
 /// Returns the sums over the given elements of the integrals that shape_velocity() needs, for a surface with control net x that moves with velocity
-/// v. The results for disjoint sets of elements add up to those for the whole surface. Three Gauss points per direction. `radius`: R_C, the radius
-/// of the sphere of equal volume.
+/// v. The results for disjoint sets of elements add up to the result for the whole surface. Three Gauss points per direction. `radius`: R_C, the
+/// radius of the sphere of equal volume.
 std::vector<double> shape_velocity_sums(const BezierMap& map, const Net& x, const Net& v, double radius, std::span<const int> elements);
 
 /// Returns the rate of change of the shape: the root mean square of the normal velocity v.n, projected onto solid harmonics of degree three at

@@ -36,8 +36,8 @@ std::vector<double> graded_knots(double length, int elements, double grading, do
   return knots;
 }
 
-/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. The elements along the wall are those between these knots, but the
-/// seam cuts the last one in two.
+/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. They divide the wall into elements, the last of which is cut in
+/// two by the seam.
 void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots) {
   const RepeatingLine along = repeating(knots, {wall.start, wall.end});
   wall.sites = sites_of(along.open, around);
@@ -95,7 +95,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    // x1 coordinates of the control points (Greville points), with which x1 is a linear function
+    // x1 coordinates of the control points (Greville points), which make x1 a linear function of the parameter
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
@@ -148,7 +148,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // the wall ends, one period after its start, at a quarter of the last periodic element
+  if (channel->repeats()) {  // the wall begins and ends at a quarter of a periodic element, one period apart
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);
@@ -164,7 +164,7 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    // equally narrow sections: the smallest, because elements are longer at the ends of a straight channel
+    // If several sections are equally narrow, uses the smallest length, because elements are longer at the ends of a straight channel.
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);
     narrowest = at.factor.minCoeff();
   }

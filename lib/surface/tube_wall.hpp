@@ -17,7 +17,7 @@ namespace tanktread::surface {
 /// splines. Around the outline they are periodic; if the outline has corners, each side has open splines that share no control point with other
 /// sides. Along x1 the knots are open and denser around x1 = 0. The normal x_,s x x_,t (s along x1, t around) points into the fluid.
 ///
-/// Control point i n_around + k is point k of ring i; rings ascend along x1. Collocation points are Greville points; those of the first and last
+/// Control point i n_around + k is point k of ring i; rings ascend along x1. Collocation points are Greville points; the points of the first and last
 /// ring lie on the rims. Collocation points at a corner, where two sides meet, are moved away from the corner by half of the distance to the next
 /// point.
 struct TubeWall {
@@ -26,12 +26,12 @@ struct TubeWall {
   Outline outline;  ///< cross-section of the wall (in a channel: at its inlet), with cubic sides
   double start = 0, end = 0;
   int n_around = 0, n_along = 0;
-  double widest = 0;                       ///< approximate largest side length of elements at x1 = 0, in a channel at its narrowest section
+  double widest = 0;                       ///< approximate largest side length of the elements at x1 = 0, or at the narrowest section of a channel
   std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
   /// collocation points of densities on the wall; if it is not periodic, these are the collocation points of the space
   std::vector<std::vector<spline::Site>> sites;
   std::vector<spline::Site> middles;  ///< midpoints of the elements on which densities are defined
-  /// for each element of the space, the index in `middles` of the midpoint of the density element that contains it
+  /// for each element of `space`, the index in `middles` of the midpoint of the density's element that contains it
   std::vector<int> middle_of;
   double period = 0;  ///< period L along x1; 0 for an open wall with two ends
   /// E, maps control values of a periodic density to control values on the space; empty if the wall is not periodic
@@ -41,30 +41,30 @@ struct TubeWall {
   double radius() const { return outline.radius(); }  ///< returns R_T = sqrt(area/pi)
 };
 
-/// Returns the wall of a section over [-length/2, length/2], with the numbers of elements and the grading g given in the options: the element
-/// density is proportional to 1 + (g - 1)/(1 + (x1/w)^4), where w is the larger of R_T and `half_length` of the particle.
+/// Returns the wall of a section over [-length/2, length/2], with the numbers of elements and the grading g given in the options: the element density
+/// is proportional to 1 + (g - 1)/(1 + (x1/w)^4), where w is the larger of the tube radius R_T and `half_length`, half the length of the particle.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
 /// Returns the wall of a section over one period, approximately [-period/2, period/2), with `elements` elements along it and the grading of the
-/// options. The geometry is an open spline surface. Densities on it are periodic splines: their control values on the space are the matrix E times
-/// their own control values. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of
-/// an element lies on its ends.
+/// options. The geometry is an open spline surface. Densities on it are periodic splines; the matrix E maps their coefficients to control values on
+/// the space. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of an element lies on
+/// its ends.
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
 
-/// Returns the wall of a channel (2.31): centre line C and scaled axes f2 N, f3 e3, interpolated by cubic splines at the channel's knots, in tensor
-/// product with the splines of the outline. `start` and `end` are arc lengths along its centre line.
+/// Returns the wall of a channel (2.31). The centre line C and the scaled axes f2 N and f3 e3 of the cross-section are interpolated by cubic splines
+/// at the channel's knots, in tensor product with the splines of the outline. `start` and `end` are arc lengths along the centre line.
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements);
 
-/// Returns the length given by the options. The default is the larger of 2 pi R_T and the particle's length plus 4.6 R_T (the disturbance decays like
-/// exp(-4.5 x1/R_T)).
+/// Returns the length given by the options. The default is the larger of 2 pi R_T, with R_T the tube radius, and the particle's length plus 4.6 R_T
+/// (the disturbance decays like exp(-4.5 x1/R_T)).
 double tube_length(const TubeOptions& options, double radius, double particle_length);
 
 /// Returns the number of elements along a period. If the options do not set it, the elements are as dense as around a short particle in a tube that
 /// is not periodic.
 int elements_per_period(const TubeOptions& options, double radius, double period, double half_length);
 
-/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 R_T to an end of the wall. At this distance the
-/// neglected disturbance is 1e-5.
+/// Throws UserError if the particle, which extends from x1 = `first` to `last`, is closer than 1.7 tube radii to an end of the wall. At this distance
+/// the neglected disturbance is 1e-5.
 void check_length(const TubeWall& wall, double first, double last);
 
 }  // namespace tanktread::surface
