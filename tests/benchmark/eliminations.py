@@ -8,7 +8,6 @@ solution of the linear systems. Prints a table: mean iterations per velocity sol
 seconds, and the largest difference of all series from the first choice, relative to their largest values.
 """
 
-import pathlib
 import sys
 
 from package import answer, numpy, tanktread
@@ -48,7 +47,7 @@ def difference(one, other):
 
 
 def main():
-    study = Study(pathlib.Path("results/eliminations"), program=sys.argv[1] if len(sys.argv) > 1 else None)
+    study = Study(sys.argv[1] if len(sys.argv) > 1 else None, "results/eliminations")
     print("| scene | choice | iterations per velocity | per implicit step | processor seconds | differs from the first choice by |\n"
           "|---|---|---|---|---|---|")
     for scene, (deck, settings, choices) in SCENES.items():
