@@ -43,11 +43,13 @@ std::string replaced(std::string_view kind, const std::vector<std::pair<std::str
 }  // namespace
 
 void UnitOptions::declare(Section& section) {
-  section.key("length", length, Choice{}, "unit of length of the deck: the length, a number and a unit, that the value 1 means");
-  section.key("time", time, Choice{}, "unit of time of the deck: the time, a number and a unit, that the value 1 means");
+  section.key("length", length, Choice{},
+              "physical length that the value 1 of a length in the deck stands for: a number and a unit, for example `1 um`");
+  section.key("time", time, Choice{},
+              "physical time that the value 1 of a time in the deck stands for: a number and a unit, for example `1 ms`");
   section.key("force", force, Choice{},
-              "unit of force of the deck: the force, a number and a unit, that the value 1 means. With the default units, stresses are in Pa, "
-              "surface moduli in uN/m, viscosities in Pa s");
+              "physical force that the value 1 of a force in the deck stands for: a number and a unit, for example `1 pN`. With the "
+              "default units 1 um, 1 s and 1 pN, stresses are in Pa, surface moduli in uN/m, viscosities in Pa s");
 }
 
 Units::Units(const UnitOptions& options) : options_(options) {

@@ -19,24 +19,29 @@ constexpr double noise = 30;  // a correction below this multiple of the toleran
 
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
-              "path of the numerical deck key that varies along the branch of steady shapes, for example Membrane/capillary number");
+              "path of the numerical key of the deck that varies along the branch of steady shapes, for example Membrane/capillary number");
   section.key("to", to, deck::any(), "that of the key",
-              "value of the parameter at which the branch ends. The branch starts at the value in the deck, and also ends if a fold leads it back "
-              "there");
+              "value of the continuation parameter at which the branch of steady shapes ends. The branch starts at the value in the deck, "
+              "and also ends if a fold leads it back there");
   section.key("method", method, deck::Choice{"arclength", "natural"},
-              "method of continuation. `arclength`: continues around folds, where the parameter turns back. `natural`: stops at the first fold");
-  section.key("step", step, deck::positive(), "that of the key",
-              "first step of the parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
+              "method of continuation along a branch of steady shapes. `arclength`: continues around folds, where the parameter turns "
+              "back. `natural`: stops at the first fold");
+  section.key(
+      "step", step, deck::positive(), "that of the key",
+      "first increment of the continuation parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
   section.key("largest change", largest_change, deck::between(1e-5, 1), "1",
-              "largest change of the shape between two points of the branch: root mean square displacement of the control points divided by R_C");
-  section.key("points", points, deck::between(2, 100000), "1", "largest number of points on the branch, folds included");
-  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative tolerance of the parameter at a fold of the branch");
+              "largest allowed change of the shape between two points of the branch of steady shapes: root mean square displacement of the "
+              "control points divided by R_C, the radius of the sphere with the particle's volume");
+  section.key("points", points, deck::between(2, 100000), "1",
+              "largest number of computed points on the branch of steady shapes, folds included");
+  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1",
+              "relative tolerance of the value of the continuation parameter at a fold, where the branch of steady shapes turns back");
   section.key("second parameter", second_parameter, deck::Choice{},
-              "path of a second numerical deck key, along which the first fold is continued, for example Particle/viscosity ratio. The branch ends "
-              "at this fold");
+              "path of a second numerical key of the deck, for example Particle/viscosity ratio. The first fold of the branch is computed "
+              "for each of its Continuation/second values, and the branch ends at this fold");
   section.key("second values", second_values, deck::any(), "that of the key",
-              "values of the second parameter, in this order; one fold is computed for each. Evenly spaced values, or values with a constant "
-              "ratio, need the least work");
+              "values of Continuation/second parameter for which the fold is computed, in this order. Evenly spaced values, or values with "
+              "a constant ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
 }

@@ -22,20 +22,22 @@ namespace tanktread::motion {
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
   section.key("period", expected, deck::positive(), "time",
-              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history: period of "
-              "the flow, which repeats its course from time 0 to this time");
+              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history, the "
+              "period of the flow: the history from time 0 to this time is repeated");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
-              "angle about x2 by which the shape is rotated after a period. With 180 a period is half a revolution of a membrane in shear, at half "
-              "the cost");
+              "angle about x2 by which the shape is rotated after a period before it is compared with the initial shape. With 180, a "
+              "period is half a revolution of a membrane in shear flow, at half the cost");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
-              "tolerance of the difference between the shape and its return after a period: root mean square displacement of the control points "
-              "divided by R_C; about ten times Time/tolerance. If disturbances decay within a period, the error of the shape is less than a "
-              "hundredth of the tolerance");
+              "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
+              "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "
+              "disturbances decay within a period, the error of the shape is less than a hundredth of the tolerance");
   section.key("iterations", iterations, deck::between(1, 1000), "1",
-              "largest number of iterations of NOX (a package of Trilinos), each of which integrates over one period");
+              "largest number of iterations of NOX (a package of Trilinos) in the search for the periodic motion, each of which integrates "
+              "over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
-              "largest displacement of the perturbed shapes whose returns after a period give the multipliers by finite differences, with Spectrum");
+              "largest displacement of the perturbed shapes from whose return after a period the Floquet multipliers are computed by "
+              "finite differences, if Spectrum is given; divided by R_C, the radius of the sphere with the particle's volume");
 }
 
 namespace {

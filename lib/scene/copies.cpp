@@ -243,24 +243,27 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "path of a file of comma-separated values with one row per copy: centre x1,x2,x3, optionally followed by a rotation vector of three "
-              "numbers in degrees. The first row may hold column names. The path is relative to the working directory or to the deck");
-  section.key("lattice", lattice, deck::at_least(1), "1", "number of copies along x1, x2 and x3 on a lattice centred at the particle's centre");
+              "path of a file with the positions of the copies, comma-separated, one row per copy: centre x1,x2,x3, optionally followed by "
+              "a rotation vector of three numbers in degrees. The first row may hold column names. The path is relative to the working "
+              "directory or to the deck");
+  section.key("lattice", lattice, deck::at_least(1), "1",
+              "numbers of copies of the particle along x1, x2 and x3 on a rectangular lattice, which is centred at the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length",
-              "distances along x1, x2 and x3 between the centres of neighbouring copies on a `lattice`");
-  section.key("number", number, deck::at_least(1), "1",
-              "number of copies at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain that is periodic "
-              "in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
+              "distances along x1, x2 and x3 between the centres of neighbouring copies of the particle on a `lattice`");
+  section.key(
+      "number", number, deck::at_least(1), "1",
+      "number of copies of the particle at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain "
+      "that is periodic in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
   section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
-              "volume fraction of the copies in `box`, `ball` or the periodic cell, from which their number follows. Spheres can be placed up to "
-              "about 0.3 in `box` or `ball`, up to about 0.55 in the cell");
+              "volume fraction of the copies of the particle in `box`, `ball` or the periodic cell, from which their number follows. At "
+              "random positions, spheres reach a volume fraction of about 0.3 in `box` or `ball` and about 0.55 in the cell");
   section.key("box", box, deck::positive(), "length",
-              "side lengths of a box that contains all copies at random positions; its centre is the particle's centre");
+              "side lengths of a box that contains all copies of the particle at random positions; its centre is the particle's centre");
   section.key("ball", ball, deck::positive(), "length",
-              "radius of a ball that contains all copies at random positions; its centre is the particle's centre");
+              "radius of a ball that contains all copies of the particle at random positions; its centre is the particle's centre");
   section.key("least gap", least_gap, deck::not_negative(), "R",
-              "smallest gap between the circumscribed spheres of two particles if copies are placed at random, divided by the radius R of the "
-              "larger sphere");
+              "smallest allowed gap between the circumscribed spheres of two particles when copies are placed at random, divided by the "
+              "radius R of the larger sphere");
   section.key("seed", seed, deck::at_least(0), "1",
               "seed of the random number generator for copies at random positions. Equal seeds give equal positions");
 }

@@ -16,14 +16,14 @@ namespace tanktread {
 
 void DomainOptions::declare(deck::Section& section) {
   section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
-              "directions in which the scene is periodic. If all three are periodic, the mean velocity over the cell, particles included, equals "
-              "the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");
+              "directions in which particles and flow are periodic. If all three are periodic, the mean velocity over the cell, particles "
+              "included, equals the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");
   section.key("side lengths", side_lengths, deck::any(), "length",
               "side lengths of a rectangular periodic cell along x1, x2, x3. The length along a direction that is not periodic has no effect. With "
               "Tube or Channel only the first length is used, the period along x1");
   section.key("lattice vectors", lattice_vectors, deck::any(), "length",
-              "lattice vectors of a cell that is not rectangular, at time zero: nine numbers, the vector of x1, the vector of x2, the vector of "
-              "x3. The flow convects the lattice");
+              "vectors of the periods of a cell that is not rectangular, at time zero: nine numbers, first the vector for x1, then for x2, "
+              "then for x3. The flow convects the lattice");
 }
 
 int DomainOptions::directions() const { return static_cast<int>(std::ranges::count(periodic, 'x')); }

@@ -41,29 +41,32 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
-              "lambda: inner over outer viscosity, at most 1e14 x Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle "
-              "use Particle/motion `free`");
+              "lambda: viscosity of the fluid inside the particle divided by the viscosity of the outer fluid, at most 1e14 x "
+              "Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle use Particle/motion `free`");
   section.key("motion", motion, motion_words,
-              "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves with "
-              "Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and moves under "
-              "Particle/force and Particle/torque, which are zero by default");
+              "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves "
+              "with Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and "
+              "moves such that Particle/force and Particle/torque, zero by default, balance the forces of the fluid");
   section.key("velocity", velocity, deck::any(), "length/time",
-              "velocity of the centre of a particle with Particle/motion `prescribed`; zero if not given");
+              "velocity of the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time",
-              "angular velocity about the centre of a particle with Particle/motion `prescribed`; zero if not given");
-  section.key("force", force, deck::any(), "force", "external force on a particle with Particle/motion `free`, three numbers; zero if not given");
+              "angular velocity about the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
+  section.key("force", force, deck::any(), "force",
+              "external force on a rigid particle with Particle/motion `free`, three numbers; zero if not given");
   section.key("torque", torque, deck::any(), "force x length",
-              "external torque on a particle with Particle/motion `free`, about the centre of its volume; zero if not given");
+              "external torque on a rigid particle with Particle/motion `free`, about the centre of its volume; zero if not given");
   section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
-              "density inside the particle minus density outside. Multiplied by Flow/gravity it is a force per unit volume; zero if not given");
-  section.key("drift", drift, deck::Choice{"free", "held"},
-              "`free`: the centroid moves with the flow. `held`: the centroid is put back after every step; in an affine flow this does not change "
-              "the shape. The default is `held` for a particle at the stagnation point of a flow with a diverging direction, where rounding errors "
-              "grow into a drift, and `free` otherwise");
+              "density of the particle minus density of the outer fluid. Multiplied by Flow/gravity it is a force per unit volume; zero if "
+              "not given");
+  section.key(
+      "drift", drift, deck::Choice{"free", "held"},
+      "treatment of the motion of the particle's centroid. `free`: the centroid moves with the flow. `held`: the centroid is put back to "
+      "its initial position after every step; in an affine flow this does not change the shape. The default is `held` for a particle at "
+      "the stagnation point of a flow with a diverging direction, where rounding errors grow into a drift, and `free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as in the "
-              "paper. `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule `adaptive`, because the other "
-              "rules are too coarse for it");
+              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as by "
+              "Maestre et al. (2017). `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule "
+              "`adaptive`, because the other rules are too coarse for it");
 }
 
 void ParticleKind::declare(deck::Section& section) {
@@ -112,7 +115,8 @@ void ParticleKind::declare_lists(deck::Section& section) {
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
   if (!deforms) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
   membrane_given = section.given("Membrane");
-  if (MembraneList list{*this}; deforms || membrane_given) section.section("Membrane", list, "material of the particle's surface");
+  if (MembraneList list{*this}; deforms || membrane_given)
+    section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
   else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
               "the spline space is the file's");
@@ -153,12 +157,12 @@ void ContactOptions::reject(const Scene& scene, Rejections& to) const {
 
 void ContactOptions::declare(deck::Section& section) {
   section.key("limit", limit, deck::between(1e-6, 1), "R_C",
-              "smallest allowed gap between two particles, divided by the R_C of the smallest particle. If a gap is smaller, the run ends with a "
-              "checkpoint");
+              "smallest allowed gap between two particles, divided by R_C, the radius of the sphere with the volume of the smallest "
+              "particle. If a gap is smaller, the run ends with a checkpoint");
   section.key("limiter", limiter,
-              "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act along the "
-              "normals at the nearest points of two particles and never pull (4.23). They are written as series and vanish while the fluid keeps "
-              "the gaps open. Gaps to a wall are not limited");
+              "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act "
+              "along the normals at the nearest points of two particles, are never attractive (4.23), and vanish while the fluid keeps the "
+              "gaps open. The series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))
     throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
 }

@@ -34,8 +34,8 @@ struct OutputList {
 /// Declares the sections Output, Expect and Accuracy.
 void declare_results(deck::Section& root, Scene& scene) {
   OutputList results{scene};
-  root.section("Output", results, "results");
-  root.section("Expect", scene.expect, "expected results");
+  root.section("Output", results, "output files of the run");
+  root.section("Expect", scene.expect, "expected values of output series, with tolerances");
   root.optional_section("Accuracy", scene.accuracy,
                         "requested accuracy: the run is repeated on finer meshes, with finer tolerances, until the estimated errors meet it");
 }
@@ -244,8 +244,8 @@ void Scene::declare(deck::Section& root) {
   refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one wall");
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
-  domain.present =
-      root.optional_section("Domain", domain, "the periodic lattice, which the flow convects; unbounded fluid without this section");
+  domain.present = root.optional_section(
+      "Domain", domain, "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section");
   if (tube.present && !tube.channel && tube.periodic_length) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
@@ -253,8 +253,8 @@ void Scene::declare(deck::Section& root) {
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
-  root.section("Quadrature", quadrature, "quadrature of the boundary integrals of the fluid");
-  root.section("Time", time, "integration in time");
+  root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
+  root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
   continuation.present =
       root.optional_section("Continuation", continuation,
@@ -267,7 +267,7 @@ void Scene::declare(deck::Section& root) {
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
   periodic.driven = flow.history.has_value();
-  root.section("Symmetry", symmetry, "use of the symmetries of the scene");
+  root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
   if (!root.documenting()) take_posts(*this);

@@ -21,19 +21,21 @@ void WallOptions::declare(deck::Section& section) {
   section.key("point", point, deck::any(), "length", "position of any point on the plane wall");
   section.key("normal", normal, deck::any(), "1", "normal vector of the plane wall, pointing into the fluid; its length has no effect");
   section.key("distance", distance, deck::positive(), "length",
-              "distance of a second wall along Wall/normal, so that the fluid is between two plates. It needs a Domain that is periodic along both "
-              "directions in the plates");
+              "distance between the wall and a second, parallel wall along Wall/normal, so that the fluid is between two plates. It needs "
+              "a Domain that is periodic along both directions in the plates");
   section.key("velocity", velocity, deck::any(), "length/time",
-              "velocity of a wall in a Domain, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
+              "velocity of the wall, or of the first of two walls, in a periodic Domain: three numbers, tangential to the wall. If not "
+              "given, the wall moves with the flow of Flow/type");
   section.key("second velocity", second_velocity, deck::any(), "length/time",
-              "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of "
-              "Flow/type");
+              "velocity of the second wall, which Wall/distance adds: three numbers, tangential to the wall. If not given, the wall moves "
+              "with the flow of Flow/type");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
-              "number of elements of each wall along the longer period of Domain; along the shorter one elements are about as long. If not given, "
-              "elements are as long as a twelfth of Wall/distance, or of R_C beside a single wall, but at most 48 per period");
+              "number of elements of each plane wall along the longer of its two periods; along the shorter one elements are about as "
+              "long. If not given, elements are as long as a twelfth of Wall/distance, or with a single wall a twelfth of R_C, the radius "
+              "of the sphere with the particle's volume, but at most 48 per period");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
-              "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
-              "run ends with a checkpoint");
+              "smallest allowed gap between a particle and the plane wall, divided by R_C, the radius of the sphere with the volume of the "
+              "smallest particle. If a gap is smaller, the run ends with a checkpoint");
 }
 
 void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const {
