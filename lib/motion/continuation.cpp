@@ -47,9 +47,9 @@ void ContinuationOptions::declare(deck::Section& section) {
 }
 
 void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
-  to.add(parameter, {"parameter", "of the key", "Continuation/parameter"});
-  to.add(fold, {"fold", "1", "1 where the parameter turns back along the branch, else 0"});
-  if (follows_fold) to.add(second, {"second_parameter", "of the key", "Continuation/second parameter"});
+  to.add(parameter, {"parameter", "of the key", "value of Continuation/parameter at this point of the branch of steady shapes"});
+  to.add(fold, {"fold", "1", "1 at a fold, where the continuation parameter turns back along the branch, otherwise 0"});
+  if (follows_fold) to.add(second, {"second_parameter", "of the key", "value of Continuation/second parameter at this fold"});
 }
 
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,

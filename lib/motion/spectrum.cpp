@@ -47,9 +47,12 @@ const char* name(ModeKind kind) {
 }
 
 void Mode::add_columns(const std::string& number, Columns& to) const {
-  to.add(rate.real(), {"rate_" + number, "1/time", "of mode k of the spectrum, as its displacement grows (Spectrum): the modes as Spectrum/number "
-         "and Spectrum/near order them"});
-  to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time", "of the same mode, 2 pi over the period with which it oscillates; not negative"});
+  to.add(rate.real(), {"rate_" + number, "1/time",
+                       "growth rate of eigenmode k of the steady shape: real part of the eigenvalue. Spectrum/number and Spectrum/near "
+                       "determine the order of the modes"});
+  to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
+                                 "angular frequency of eigenmode k of the steady shape, 2 pi divided by its period of oscillation: "
+                                 "magnitude of the imaginary part of the eigenvalue"});
 }
 
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
@@ -58,9 +61,10 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   for (const Mode& mode : modes)
     if (mode.kind == ModeKind::shape || (all_rigid && mode.kind == ModeKind::rotation))
       leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
-  to.add(leading, {"leading_rate", "1/time", "largest rate of the modes that change the shape, translations and rotations left out: negative where "
-         "it is stable"});
-  to.add(unstable, {"unstable_modes", "1", "of those modes, how many grow"});
+  to.add(leading, {"leading_rate", "1/time",
+                   "largest growth rate of the eigenmodes that change the shape, without translations and rotations; negative if the "
+                   "steady shape is stable"});
+  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes, among those that change the shape"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 

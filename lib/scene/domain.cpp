@@ -137,18 +137,26 @@ void DomainRow::set_stress(double viscosity, const Mat3& gradient, const stokes:
 
 void DomainRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.domain.present)) return;
-  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3", {"cell_", "length", "vector and component # of the cell that repeats, at "
-         "this time; across directions that do not repeat unit vectors"});
+  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
+         {"cell_", "length",
+          "component # (vector and direction) of the period vectors of the periodic cell at this time; unit vectors for directions that "
+          "are not periodic"});
   if (!to.when(scene.domain.directions() == 3)) return;
-  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles over that of the cell"});
-  to.add(components(stress), "11 22 33 12 13 23", {"particle_stress_", "force/length^2", "what the particles add to the mean stress (6.9), without "
-         "its trace, component #"});
-  to.add(pressure_gradient, "x1 x2 x3", {"pressure_gradient_", "force/length^3", "uniform one that balances the force of the particles on the fluid, "
-         "component #"});
+  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
+  to.add(components(stress), "11 22 33 12 13 23",
+         {"particle_stress_", "force/length^2",
+          "component # of the contribution of the particles to the mean stress, without its trace (6.9)"});
+  to.add(pressure_gradient, "x1 x2 x3",
+         {"pressure_gradient_", "force/length^3",
+          "component # of the uniform pressure gradient that balances the force of the particles on the fluid"});
   if (!to.when(strains(scene))) return;
-  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)", "the flow does not strain at this time"});
-  to.add(normal_stress_differences, "1 2", {"normal_stress_difference_", "force/length^2", "number # of the particle stress, 11 - 33 and 33 - 22 "
-         "where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane"});
+  to.add(relative_viscosity,
+         {"relative_viscosity", "1", "effective viscosity of the suspension divided by the viscosity of the outer fluid (6.10)",
+          "the rate of strain of the flow is zero at this time"});
+  to.add(normal_stress_differences, "1 2",
+         {"normal_stress_difference_", "force/length^2",
+          "normal stress difference # of the particle stress: 1 is component 11 - 33 and 2 is component 33 - 22 if the flow is along x1 in "
+          "the plane x1 x3; otherwise the axes are those of the plane of the flow"});
 }
 
 }  // namespace tanktread

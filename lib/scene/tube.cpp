@@ -150,26 +150,61 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
 void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.tube.present)) return;
   constexpr const char *tube = "; in a tube", *channel = "; in a channel";
-  to.add(pressure_drop, {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7); of one period of a train", {},
-         tube});
+  to.add(pressure_drop,
+         {"disturbed_pressure_drop",
+          "force/length^2",
+          "pressure drop in the tube caused by the particles, in addition to that of the empty tube (2.7); for a train, of one period",
+          {},
+          tube});
   add_gap(gap, to);
   if (to.when(scene.flow.held == "pressure drop"))
-    to.add(flow_rate, {"flow_rate", "length^3/time", "through the tube, where Flow/held is `pressure drop`", {},
-           "; where the pressure drop is held"});
+    to.add(flow_rate, {"flow_rate",
+                       "length^3/time",
+                       "flow rate through the tube, if Flow/held is `pressure drop`",
+                       {},
+                       "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {
-    to.add(channel_pressure_drop, {"channel_pressure_drop", "force/length^2", "between the ends of the empty channel (2.30)", {}, channel});
-    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop", "force/length^2", "the same, over that of a straight tube of the inlet's "
-           "section and as long", {}, channel});
+    to.add(channel_pressure_drop,
+           {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel (2.30)", {}, channel});
+    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop",
+                                         "force/length^2",
+                                         "pressure drop of the empty channel minus the pressure drop of a straight tube of the same length "
+                                         "with the cross-section of the inlet",
+                                         {},
+                                         channel});
   }
-  to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
-  to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
-         "should vanish (2.14)", {}, tube});
+  to.add(checks.flux, {"disturbance_flux",
+                       "1",
+                       "flow rate of the disturbance velocity through the inlet divided by that of the empty duct; a measure of error that "
+                       "vanishes in the exact solution (2.14)",
+                       {},
+                       tube});
+  to.add(checks.force,
+         {"force_imbalance",
+          "1",
+          "axial force of the disturbance flow on ends, wall and particle, divided by the pressure force of the empty duct over the length "
+          "R_T (radius of the circle with the area of the cross-section); a measure of error that vanishes in the exact solution (2.14)",
+          {},
+          tube});
   if (to.when(!scene.domain.present))
-    to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
-  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
-         "vanishes", {}, tube});
-  to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
-         tube});
+    to.add(checks.cap_velocity, {"cap_velocity",
+                                 "1",
+                                 "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity; "
+                                 "a measure of error that decreases with the length of the tube",
+                                 {},
+                                 tube});
+  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
+                                   "force/length^2",
+                                   "pressure drop caused by the particles, computed from zero flow rate of the disturbance; agrees with "
+                                   "`disturbed_pressure_drop` in the exact solution",
+                                   {},
+                                   tube});
+  to.add(checks.pressure_by_force, {"pressure_drop_by_force",
+                                    "force/length^2",
+                                    "pressure drop caused by the particles, computed from the balance of axial forces; agrees with "
+                                    "`disturbed_pressure_drop` in the exact solution",
+                                    {},
+                                    tube});
 }
 
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e) {
