@@ -41,7 +41,7 @@ class Ladder {
       if (count_ >= 3 && judge(k)) return conclude(met, "");
       if (hopeless()) return conclude(missed, "finer levels do not help");
     }
-    if (count_ == 0) throw RunFailure("no level came to its end: " + failure_);
+    if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
     return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
   }
 
@@ -146,7 +146,9 @@ class Ladder {
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     serially([&] {
       outcome = finished(directory(name), level, deck);
-      if (!outcome) throw RunFailure("the results of " + directory(name).string() + " are not those that were written");
+      if (!outcome)
+        throw RunFailure("the results of " + directory(name).string() +
+                         " have changed since they were written: start again with --overwrite");
       if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
     });
     return 0;
@@ -196,7 +198,7 @@ class Ladder {
         if (ranks_.rank() == 0) report(code, why, "");
         return stopped;
       }
-      throw RunFailure("no level came to its end" + (failure_.empty() ? "" : ": " + failure_));
+      throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
     const auto outcome = coupling::decided([&] {
       answers_.clear();

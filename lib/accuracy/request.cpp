@@ -104,7 +104,8 @@ void check_series(const std::vector<Request>& requests, const std::vector<std::s
   for (const Request& request : requests) {
     if (std::ranges::find(allowed, request.series) != allowed.end()) continue;
     if (std::ranges::find(names, request.series) != names.end())
-      throw UserError("Accuracy/requests: the series " + request.series + " describes the run itself and has no error that could be requested.");
+      throw UserError("Accuracy/requests: the series " + request.series +
+                      " describes the computation itself and has no error that could be requested.");
     const std::string meant = deck::guess(request.series, allowed);
     throw UserError("Accuracy/requests: the results of this scene hold no series " + request.series +
                     (meant.empty() ? "; inputs/SERIES.md lists the series." : "; was " + meant + " meant?"));

@@ -27,7 +27,9 @@ void Expectation::declare(Section& section) {
   section.key("not binding", not_binding, Choice{},
               "reason why a missed expected value is reported but does not fail the run. The program sets it if a later deck or --set "
               "changes a key that results depend on, without stating the expectation again");
-  if (kind == "relative" && value == 0.0) throw UserError(section.path("kind") + " `relative` and the value 0 contradict each other.");
+  if (kind == "relative" && value == 0.0)
+    throw UserError(section.path("kind") +
+                    " `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");
 }
 
 void Expectations::declare(Section& section) {

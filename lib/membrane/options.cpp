@@ -10,15 +10,16 @@ namespace tanktread::membrane {
 namespace {
 
 void check_stress_free(const Options& options) {
-  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape", "Membrane/law `surface tension`",
-         "a fluid interface has no such shape");
+  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape",
+         "Membrane/law `surface tension`", "a fluid interface has no stress-free shape");
   const std::string shape = "Membrane/stress-free shape `", chosen = "`, not to `" + options.stress_free + "`.";
   if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
     throw UserError(options.reduced_volume ? "Membrane/stress-free reduced volume belongs to " + shape + "spheroid" + chosen
                                            : shape + "spheroid` needs Membrane/stress-free reduced volume.");
   if (options.stress_free_file.has_value() != (options.stress_free == "file"))
-    throw UserError(options.stress_free_file ? "Membrane/stress-free file belongs to " + shape + "file" + chosen
-                                             : shape + "file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
+    throw UserError(options.stress_free_file
+                        ? "Membrane/stress-free file belongs to " + shape + "file" + chosen
+                        : shape + "file` needs Membrane/stress-free file, the path of a file in Bezier-extraction format (.iga).");
 }
 
 /// Named constants of the strain energy, `Membrane/constants/<name>`.
@@ -70,8 +71,10 @@ void declare_bending(Options& options, deck::Section& section) {
 void check_energy(const Options& options) {
   const std::string other = " belongs to Membrane/law `expression`, but Membrane/law is `" + options.law + "`.";
   if (options.energy.has_value() != (options.law == "expression"))
-    throw UserError(options.energy ? "Membrane/energy" + other
-                                   : "Membrane/law `expression` needs Membrane/energy, the strain energy over G_s in I1 and I2.");
+    throw UserError(
+        options.energy
+            ? "Membrane/energy" + other
+            : "Membrane/law `expression` needs Membrane/energy, the strain energy divided by G_s as an expression in I1 and I2.");
   if (!options.energy && !options.constants.empty()) throw UserError("Membrane/constants" + other);
   options.strain_energy();
 }
@@ -140,21 +143,25 @@ void Options::declare(deck::Section& section) {
 }
 
 void Options::reject(Rejections& to) const {
-  to.pair(bending(1, 1) > 0 && load == "strong", {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"),
-          "Membrane/bending modulus or bending number"},
-         "Membrane/load `strong`", "bending exists in the weak form only");
-  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
-  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
+  to.pair(bending(1, 1) > 0 && load == "strong",
+          {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"), "Membrane/bending modulus or bending number"},
+          "Membrane/load `strong`", "bending is implemented in the form `weak` only");
+  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`",
+          "the form `strong` has no quadrature of the area resistance");
+  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`",
+          "it is implemented by virtual work, in the form `weak` only");
   to.pair(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
          "a fluid interface has no unstressed shape");
   to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
-  to.pair(viscosity.any() && load == "strong", {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
-          "Membrane/shear viscosity or dilatational viscosity"},
-         "Membrane/load `strong`", "viscosity is part of the weak load");
+  to.pair(viscosity.any() && load == "strong",
+          {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
+           "Membrane/shear viscosity or dilatational viscosity"},
+          "Membrane/load `strong`", "membrane viscosity is implemented in the form `weak` only");
   to.pair(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
-         "nothing holds on to a fluid interface");
-  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`", "the forces are part of the weak load");
+          "a fluid interface has no material patch on which a force could act");
+  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`",
+          "forces on patches are implemented in the form `weak` only");
 }
 
 void Options::check() const {
@@ -175,8 +182,9 @@ void Options::check() const {
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   check_energy(*this);
   check_stress_free(*this);
-  refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature", "Membrane/bending reference `unstressed`",
-         "one says the curvature");
+  refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature",
+         "Membrane/bending reference `unstressed`",
+         "both set the curvature at which the bending moment vanishes; give Membrane/bending reference `flat`");
   if (spontaneous_curvature && bending(1, 1) == 0)
     throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_modulus > 0 && bending(1, 1) == 0)
@@ -184,7 +192,7 @@ void Options::check() const {
   if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
   if (relaxation_time && !viscosity.any())
-    throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
+    throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity, whose stress it relaxes.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }

@@ -47,7 +47,8 @@ void PatchForces::check() const {
     if (one->direction.norm() == 0) throw UserError("Membrane/forces/" + one->name + "/direction must not be zero.");
     for (auto other = one + 1; other != all.end(); ++other)
       if ((one->direction.normalized() - other->direction.normalized()).norm() < 1e-6)
-        throw UserError("Membrane/forces: `" + one->name + "` and `" + other->name + "` pull at one place; give the sum of their forces once.");
+        throw UserError("Membrane/forces: `" + one->name + "` and `" + other->name +
+                        "` act on the same point: give one force, which is their sum.");
   }
 }
 

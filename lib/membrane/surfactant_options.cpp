@@ -30,11 +30,13 @@ void SurfactantOptions::check() const {
   const std::string list = "Interface/surfactant/";
   const bool langmuir = equation_of_state == "Langmuir";
   if (coverage.has_value() != langmuir)
-    throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list + "coverage, the initial concentration over the largest one."
+    throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list +
+                                   "coverage, the initial concentration divided by the largest possible one."
                              : list + "coverage belongs to " + list + "equation of state `Langmuir`, not to `" + equation_of_state + "`.");
   refuse(diffusivity && peclet_number, list + "diffusivity", list + "Peclet number", "give one of them");
   if (!(tension(1) > 0))
-    throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: %g of the clean interface's.",
+    throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: it is %g times that of "
+                                     "the clean interface. Give a smaller number.",
                                      elasticity, tension(1)));
 }
 

@@ -77,18 +77,20 @@ void AdaptationOptions::check(int first_points, double first_length) const {
                                       {"reference length", reference_length},
                                       {"limit aspect ratio", limit_aspect_ratio},
                                       {"order", order}})
-      if (given) throw UserError(std::string("Adaptation/") + name + " belongs to Adaptation/indicator `variation`, but that is `error`.");
+      if (given)
+        throw UserError(std::string("Adaptation/") + name +
+                        " belongs to Adaptation/indicator `variation`, but Adaptation/indicator is `error`.");
   } else if (load_tolerance) {
-    throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but that is `variation`.");
+    throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but Adaptation/indicator is `variation`.");
   }
   if (minimum_length >= first_length)
-    throw UserError(
-        formatted("Adaptation/minimum length must be below the length of the elements that the run starts with, %.3g, or nothing is ever "
-                  "cut, but is %.3g.",
-                  first_length, minimum_length));
+    throw UserError(formatted(
+        "Adaptation/minimum length must be below the length of the initial elements, %.3g, so that elements can be refined, but is %.3g.",
+        first_length, minimum_length));
   if (largest_number_of_points <= first_points)
     throw UserError("Adaptation/largest number of points must be above the " + std::to_string(first_points) +
-                    " that the run starts with, or nothing is ever cut, but is " + std::to_string(largest_number_of_points) + ".");
+                    " control points of the initial mesh, so that elements can be refined, but is " +
+                    std::to_string(largest_number_of_points) + ".");
 }
 
 AdaptationOptions AdaptationOptions::coarser(double factor) const {

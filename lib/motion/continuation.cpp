@@ -43,7 +43,7 @@ void ContinuationOptions::declare(deck::Section& section) {
               "values of Continuation/second parameter for which the fold is computed, in this order. Evenly spaced values, or values with "
               "a constant ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
-    throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
+    throw UserError(section.path("second parameter") + " and " + section.path("second values") + " belong together: give both or none.");
 }
 
 void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
@@ -193,7 +193,7 @@ void Branch::adapt() {
     for (Solved& one : last_) {
       auto solved = on_plane(one.place, t);
       if (!solved) solved = at_parameter(one.place.q * unit_, one.place.x);
-      if (!solved) throw RunFailure("a shape on the branch was not found again on a finer mesh");
+      if (!solved) throw RunFailure("a steady shape of the branch was not found on the refined mesh");
       solved->s = one.s;
       one = std::move(*solved);
     }
@@ -228,7 +228,7 @@ void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);
   auto solved = at_parameter(parameter, x_);
-  if (!solved) throw RunFailure(formatted("no shape at rest was found where %s is %.8g", options_.parameter.c_str(), parameter));
+  if (!solved) throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter));
   if (last_.empty()) {
     x_ = solved->place.x;
   } else {
@@ -251,14 +251,16 @@ void Branch::advance() {
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)
-    throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));
+    throw RunFailure(formatted("the branch was lost beyond %s = %.8g: no further steady shape was found", options_.parameter.c_str(),
+                               last_.back().place.q * unit_));
   solved->s = last_.back().s + length(solved->place - last_.back().place);
   const double before = std::exchange(heading_, solved->place.q - last_.back().place.q);
   const bool folded = before * heading_ < 0;
   if (folded) {
     ++count_;
     auto found = fold({last_[last_.size() - 2], last_.back(), *solved});
-    if (!found) throw RunFailure("the fold of the branch was passed, but not found to Continuation/fold tolerance");
+    if (!found)
+      throw RunFailure("the fold of the branch was passed, but not located to Continuation/fold tolerance: set a larger tolerance");
     ahead_.emplace_back(found->at, true);
     folds_ = {std::move(*found)};
   }

@@ -53,7 +53,8 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
   state.x = x;
   dynamics.restore_volume(state.x);
   begin(dynamics, state);
-  if (!state.x.allFinite() || !state.history.front().allFinite()) throw RunFailure("the velocity of a shape that should come back cannot be had");
+  if (!state.x.allFinite() || !state.history.front().allFinite())
+    throw RunFailure("the evaluation of the velocity failed in the search for a periodic motion");
   state.step = time.initial_step.value_or(first_step(dynamics, state, time));
   const std::unique_ptr<Integrator> scheme = integrator(time, nox);
   while (state.time < most * (1 - 1e-12)) {
@@ -71,7 +72,8 @@ ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std:
     : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)) {
   if (options_.driven) return;
   normal_ = dynamics.velocity(origin_);
-  if (!normal_.allFinite() || normal_.isZero(0)) throw RunFailure("a shape that is at rest, or has no velocity, cannot come back");
+  if (!normal_.allFinite() || normal_.isZero(0))
+    throw RunFailure("the shape is at rest, or its velocity is not finite, so that no periodic motion can be found");
   normal_ /= normal_.norm();
 }
 
@@ -99,7 +101,7 @@ Net ReturnMap::operator()(const Net& x) {
     return true;
   });
   if (found.size() == 0)
-    throw RunFailure(formatted("the shape has not come back within a time of %.6g: Periodic/period or Periodic/turn is another one", most));
+    throw RunFailure(formatted("the shape did not recur within the time %.6g: give another Periodic/period or Periodic/turn", most));
   return found;
 }
 

@@ -102,7 +102,7 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
   if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
   const double e = difference_ / d.rowwise().norm().maxCoeff();
   const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
-  if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
+  if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
   return keeping(shapes_.coordinates(change));
 }
 

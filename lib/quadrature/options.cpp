@@ -30,8 +30,8 @@ void Options::declare(deck::Section& section) {
 
 void Options::check() const {
   if (far_precision == "single" && tolerance < 1e-6)
-    throw UserError("Quadrature/far precision `single`, which is off by some 1e-7, cannot keep a Quadrature/tolerance of " +
-                    deck::number_text(tolerance) + ": ask for 1e-6 or more, or for `double`.");
+    throw UserError("Quadrature/far precision `single`, with errors of about 1e-7, cannot meet Quadrature/tolerance " +
+                    deck::number_text(tolerance) + ": give a tolerance of 1e-6 or more, or `double`.");
 }
 
 }  // namespace tanktread::quadrature

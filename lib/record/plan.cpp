@@ -123,7 +123,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
       return;
     }
     if (scene.wall.present) {
-      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: no wall unknowns, its images with every node");
+      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: represented by images, no wall unknowns");
       return;
     }
     lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
@@ -132,7 +132,8 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   const surface::TubeWall& wall = *body.wall;
   const double unknowns = 3.0 * static_cast<double>(wall.sites.size()) / (wall.channel ? body.symmetry.order() : 1);
   std::string flow = "quiescent fluid";
-  if (scene.flow.type == "simple shear") flow = scene.flow.type + ", with which the wall goes along; the duct's own flow for the pressure drop";
+  if (scene.flow.type == "simple shear")
+    flow = scene.flow.type + ", with which the wall moves; the flow of the empty duct is used for the pressure drop";
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
@@ -154,11 +155,12 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
   if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
-    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
+    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
-  return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free", 3 * n_points);
+  return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", scene.particle.viscosity_ratio,
+                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free",
+                   3 * n_points);
 }
 
 std::string membrane_line(const Scene& scene) {
@@ -168,7 +170,8 @@ std::string membrane_line(const Scene& scene) {
   const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
                                           own->area_modulus())
                               : "";
-  const std::string memory = scene.maxwell_membrane() ? formatted(", a Maxwell element that forgets within %g", *scene.membrane.relaxation_time) : "";
+  const std::string memory =
+      scene.maxwell_membrane() ? formatted(", a Maxwell element of relaxation time %g", *scene.membrane.relaxation_time) : "";
   const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
@@ -177,7 +180,7 @@ std::string membrane_line(const Scene& scene) {
 }
 
 std::string surfactant_line(const Scene& scene) {
-  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: an unknown a control point",
+  return formatted("%s equation of state, initial tension %.6g times that of the clean interface: one unknown per control point",
                    scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1));
 }
 
@@ -191,18 +194,18 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
   if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
-  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node a control point, not assembled";
+  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node per control point, not assembled";
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
 /// Adds the lines about a search for steady shapes or a spectrum, which replace the line `time` of the plan.
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
-    lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
-  if (scene.periodic.present) lines.emplace_back("periodic", "the shape that comes back, as the fixed point of runs over a period");
+    lines.emplace_back("steady", "the steady shape, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (scene.periodic.present) lines.emplace_back("periodic", "a periodic motion, as the fixed point of runs over one period");
   if (scene.continuation.present)
     lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
-                                     scene.continuation.method + ", each point by an iteration of its own");
+                                     scene.continuation.method + ", each point by a separate iteration");
   if (const auto& second = scene.continuation.second_parameter)
     lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
   if (!scene.spectrum.present) return;
@@ -214,19 +217,21 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
 
 std::string symmetry_line(const Scene& scene, const Body& body) {
   if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
-  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "none looked for in a tube" : "none found";
+  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "not searched for in a tube" : "none found";
   const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
-  return body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break it is left out "
-                                                 "(Symmetry/use)",
-                                                 evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
+  return body.symmetry.description() +
+         formatted(
+             ": %d of %d control points evaluated, %.2g times fewer; instabilities that break the symmetry are excluded (Symmetry/use)",
+             evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
 /// Returns the line of the plan about a rigid particle with prescribed or free motion: the unknowns of its motion.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
+  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
-         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
+         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
+         ", solved once, determine its motion";
 }
 
 std::string forces_line(const Scene& scene) {
@@ -253,7 +258,7 @@ std::string solvers_line(const Scene& scene) {
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
-  return line.empty() ? "none iterates" : line;
+  return line.empty() ? "no iterative solver" : line;
 }
 
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
@@ -268,7 +273,8 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
-  if (scene.adaptation.enabled) lines.emplace_back("mesh", "refined once at the first place, where the shape, a film or the traction asks for it");
+  if (scene.adaptation.enabled)
+    lines.emplace_back("mesh", "refined once at the initial position, where the shape, a film or the traction needs it");
   lines.emplace_back("symmetry", "none used");
   return lines;
 }
@@ -282,9 +288,10 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
     return lines;
   }
   const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
-  const char* by_traction = around ? "its traction, by GMRES around factors of the bodies alone, in a system" : "its traction, in a factored system";
-  return {{"body", formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
-                             one.particle.motion == Motion::free ? "free" : "moving as told",
+  const char* by_traction = around ? "its traction, by GMRES preconditioned with factors of the isolated bodies, in a system"
+                                   : "its traction, in a factored system";
+  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; %s of %d unknowns per velocity %s",
+                             one.particle.motion == Motion::free ? "free" : "with prescribed motion",
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
@@ -309,7 +316,7 @@ void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, 
 }
 
 std::string far_sum_line(const Scene& scene, bool tree) {
-  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node";
+  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target with every node";
   return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
 }
 
@@ -333,16 +340,17 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
   if (scene.has_gaps())
-    lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
-                                                                  : "a gap between particles below %g R_C ends the run; no force but the fluid's",
-                                            scene.contact.limit));
+    lines.emplace_back("contact",
+                       formatted(scene.contact.limiter ? "gaps between particles are kept at %g R_C or above by repulsive forces (4.23)"
+                                                       : "a gap between particles below %g R_C ends the run; no contact forces",
+                                 scene.contact.limit));
   lines.emplace_back("volume", scene.volume.constraint + (several ? ", of each" : ""));
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   else
     add_steady(lines, scene, body);
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("symmetry", several ? "none looked for among several particles" : symmetry_line(scene, body));
+  lines.emplace_back("symmetry", several ? "not searched for among several particles" : symmetry_line(scene, body));
   add_particles(lines, alone, n, tree);
   return lines;
 }

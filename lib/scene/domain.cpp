@@ -67,7 +67,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  refuse(flow.type == "duct", "Domain", flow.choice(), "the flow of a duct needs a list Tube or Channel");
+  refuse(flow.type == "duct", "Domain", flow.choice(), "the flow of a duct needs a section Tube or Channel");
   if (side_lengths && side_lengths->size() != 3) throw UserError("Domain/side lengths needs three numbers, along x1, x2 and x3.");
   const Mat3 all = vectors();
   const auto columns = all.leftCols(directions());
@@ -83,7 +83,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
 
 void DomainOptions::reject_duct(const std::string& duct, Rejections& to) const {
   to.pair(periodic != "x1", {"Domain/periodic `" + periodic + "`", "Domain/periodic of another direction than x1"}, duct,
-          "a duct repeats along x1 only: give `x1`");
+          "a tube or channel is periodic along x1 only: give `x1`");
   to.pair(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");
 }
 
@@ -102,20 +102,23 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   if (to.every()) reject_duct("Tube or Channel", to);
   to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, scene.flow_choice(),
-          "the flow differs from cell to cell by more than a uniform gradient");
+          "the flow must be the same in every cell, except for a uniform gradient");
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
-  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
+  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
+          "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()),
-          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"},
-          "Flow/history", "plates and posts are driven steadily");
+          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"}, "Flow/history",
+          "the flow between plates and posts must be steady");
   to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
+          {told     ? scene.particle.choice()
+           : weight ? "Particle/density difference"
+                    : "Particle/force",
            "Particle/motion `prescribed`, Particle/density difference or Particle/force"},
-          "the velocity of a net force in every cell is known in a lattice of three directions or beside walls only");
+          "a net force in every cell needs a lattice that is periodic in three directions, or walls");
 }
 
 std::optional<stokes::PeriodicCell> DomainOptions::cell() const {

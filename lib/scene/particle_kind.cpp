@@ -17,25 +17,28 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 
 void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
-  const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
+  const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
   const Chosen duct = scene.duct_choice();
-  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body that moves as told has no place or attitude to be found");
+  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
-  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body that moves as told does not come to rest");
+  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body with prescribed motion does not become steady");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
   to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
-  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, "a rigid particle has the shape that it has");
+  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff,
+          "a rigid particle keeps its resting shape; give its shape by Particle/shape");
   to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow_choice(), "it is for flows " + gradient);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
           {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);
-  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
-          "Solvers/projection `least squares`",
-          {tube ? duct.here : scene.wall.present ? "Wall" : stiff.here, "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
-          "it is for what deforms away from walls");
+  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()), "Solvers/projection `least squares`",
+          {tube                 ? duct.here
+           : scene.wall.present ? "Wall"
+                                : stiff.here,
+           "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
+          "it is for deformable particles away from walls");
 }
 
 void ParticleOptions::declare(deck::Section& section) {
@@ -118,8 +121,9 @@ void ParticleKind::declare_lists(deck::Section& section) {
   if (MembraneList list{*this}; deforms || membrane_given)
     section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
-  else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
-              "the spline space is the file's");
+  else
+    refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
+           "the file determines the spline space");
   InterfaceList list{*this};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
@@ -136,23 +140,24 @@ void ParticleKind::reject(const Scene& scene, Rejections& to) const {
           "a spline space from a file has no mesh to refine");
   to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
-  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "a degenerate element has no load at a pole");
-  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, "a degenerate element has no normal at its pole");
+  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");
+  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
+          "the normal is not defined at the pole of a degenerate element");
   to.pair(!drop && scene.interface_motion() != "material",
           {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
-          "it is on the interface of a drop");
+          "only the interface of a drop can have a surfactant");
   const std::pair<bool, Chosen> works[] = {{scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
                                                 {scene.tube.repulsion.has_value(), {scene.tube.list() + "/repulsion", "Tube/repulsion"}}};
   for (const auto& [with, what] : works)
-    to.pair(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
+    to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
 }
 
 void ContactOptions::reject(const Scene& scene, Rejections& to) const {
-  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it holds gaps after steps in time");
+  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it acts on steps of a run in time");
 }
 
 void ContactOptions::declare(deck::Section& section) {
@@ -164,7 +169,7 @@ void ContactOptions::declare(deck::Section& section) {
               "along the normals at the nearest points of two particles, are never attractive (4.23), and vanish while the fluid keeps the "
               "gaps open. The series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))
-    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
+    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, divided by R_C, that it maintains.");
 }
 
 }  // namespace tanktread

@@ -79,19 +79,23 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
   const Chosen confined = scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
-          "what is carried along in a channel rests only where a pressure drop does not push it through");
+          "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
+          "give `pressure drop`");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
   to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, scene.flow_choice(),
-          "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
-          "with which the wall goes along");
-  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the tube is as long as its period");
-  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined, "the wall is not closed");
+          "that flow is for unbounded fluid; in a tube Flow/type is `duct`, `quiescent` or, in a straight tube and without Flow/history, "
+          "`simple shear`, with which the wall moves");
+  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
+  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined,
+          "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
-          "the system of all blocks leaves the membrane's own load out; `schur` has it");
-  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined, "the wall of a straight tube is factored");
-  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, "that takes the factored wall");
+          "the system of all blocks does not include the load of a viscous membrane; give `schur`");
+  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined,
+          "the wall of a straight tube is always factored; the key is for a Channel");
+  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
+          "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
-          "the system of all blocks holds the flow rate; `schur` may hold either");
+          "the system of all blocks prescribes the flow rate; give `schur`");
 }
 
 void check_fit(const Scene& scene, const Body& body) {
@@ -123,8 +127,9 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   if (const double period = scene.tube.period; period > 0) {
     const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
     if (const double most = most_wall_points() / options.azimuthal_elements; elements > most)
-      throw UserError(formatted("A period of %.4g asks for %d elements along the wall, but at most %.0f fit into memory: give a shorter one.", period,
-                                elements, most));
+      throw UserError(
+          formatted("A period of %.4g needs %d elements along the wall, but at most %.0f fit into memory: give a shorter period.", period,
+                    elements, most));
     return std::make_shared<surface::TubeWall>(surface::periodic_tube_wall(outline, options, period, elements, std::min(length, period) / 2));
   }
   const double along = surface::tube_length(scene.tube, outline.radius(), length);

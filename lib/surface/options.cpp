@@ -139,8 +139,9 @@ void InitialShape::declare(deck::Section& section) {
 
 void InitialShape::check() const {
   if (map.has_value() + stretch.has_value() + file.has_value() + run.has_value() != 1)
-    throw UserError("Particle/initial shape needs one of the keys stretch, map, file and run, and no other of them.");
-  if (mode && !run) throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, the run with a Spectrum that it is taken from.");
+    throw UserError("Particle/initial shape needs exactly one of the keys stretch, map, file and run.");
+  if (mode && !run)
+    throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, a run with a Spectrum that contains the mode.");
   if (map && !(map->determinant() > 0))
     throw UserError("Particle/initial shape/map must have a positive determinant, or the surface is turned inside out; it is " +
                     deck::number_text(map->determinant()) + ".");
@@ -161,8 +162,9 @@ void ParticleShape::check() const {
   refuse(axis.has_value(), "Particle/axis", "Particle/shape `" + shape + "`", "it belongs to `cylinder`");
   refuse(shape != "file" && file, "Particle/file", "Particle/shape `" + shape + "`", "it belongs to `file`");
   if (shape == "file") {
-    if (!file) throw UserError("Particle/shape `file` needs Particle/file, the name of a Bezier-extraction text.");
-    refuse(radius || semi_axes, std::string("Particle/") + (radius ? "radius" : "semi-axes"), "Particle/shape `file`", "the size is the file's");
+    if (!file) throw UserError("Particle/shape `file` needs Particle/file, the path of a file in Bezier-extraction format (.iga).");
+    refuse(radius || semi_axes, std::string("Particle/") + (radius ? "radius" : "semi-axes"), "Particle/shape `file`",
+           "the file determines the size");
     return;
   }
   refuse(round && semi_axes, "Particle/semi-axes", "Particle/shape `" + shape + "`", "give Particle/radius");
@@ -171,7 +173,9 @@ void ParticleShape::check() const {
   if (shape == "spheroid") {
     const Vec3& a = *semi_axes;
     if (a[0] != a[1] && a[1] != a[2] && a[0] != a[2])
-      throw UserError("Particle/semi-axes of a `spheroid` must hold two equal lengths; three different ones are an `ellipsoid`.");
+      throw UserError(
+          "Particle/semi-axes of a `spheroid` must contain two equal lengths; for three different lengths give Particle/shape "
+          "`ellipsoid`.");
   }
 }
 
@@ -303,7 +307,7 @@ void ChannelOptions::declare(deck::Section& list) {
 void ChannelOptions::check() const {
   const auto belongs = [this](const char* key, bool given, std::initializer_list<const char*> owners) {
     const bool owned = std::ranges::find(owners, profile) != owners.end();
-    refuse(given && !owned, std::string("Channel/") + key, "Channel/profile `" + profile + "`", "it has none");
+    refuse(given && !owned, std::string("Channel/") + key, "Channel/profile `" + profile + "`", "this profile does not use the key");
     if (!given && owned) throw UserError("Channel/profile `" + profile + "` needs Channel/" + key + ".");
   };
   belongs("depth", depth.has_value(), {"constriction", "expansion", "step"});
@@ -324,7 +328,7 @@ void TubeOptions::check() const {
   };
   if (channel) channel->check();
   if (images && period == 0)
-    throw UserError(list() + "/images belongs to a tube that repeats, but neither " + list() + "/periodic length nor Domain is given.");
+    throw UserError(list() + "/images belongs to a periodic tube, but neither " + list() + "/periodic length nor Domain is given.");
   belongs("radius", radius.has_value(), "circle");
   belongs("semi-axes", semi_axes.has_value(), "ellipse");
   belongs("sides", sides.has_value(), "rectangle");
@@ -332,7 +336,7 @@ void TubeOptions::check() const {
   if (repulsion.has_value() != repulsion_range.has_value())
     throw UserError(list() + "/repulsion and " + list() + "/repulsion range belong together, but one of them is not given.");
   if (repulsion && (section != "circle" || (channel && (channel->bend_radius || channel->directions != "x2 x3"))))
-    throw UserError(list() + "/repulsion is of a straight channel with round sections.");
+    throw UserError(list() + "/repulsion is available in straight channels with circular cross-sections only.");
 }
 
 }  // namespace tanktread::surface

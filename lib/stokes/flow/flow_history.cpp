@@ -82,7 +82,7 @@ void FlowHistory::read() {
     refuse(given->has_value(), "Flow/history/file", std::string("Flow/history/") + key, "the file holds all of them");
   const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
   const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
-  if (rows.empty()) throw UserError(name + " holds no row of a time and an amplitude.");
+  if (rows.empty()) throw UserError(name + " contains no row with a time and an amplitude.");
   const std::size_t columns = rows.front().fields.size();
   times.emplace(), amplitudes.emplace();
   if (columns == 3) angles.emplace(), axis = axis.value_or("x2");
@@ -95,7 +95,7 @@ void FlowHistory::read() {
     amplitudes->push_back(csv_number(row.fields[1], where));
     if (angles) angles->push_back(csv_number(row.fields[2], where));
     if (times->back() < 0 || (times->size() > 1 && times->back() < times->end()[-2]))
-      throw UserError(where + "times must not be negative, and in order, the earliest first.");
+      throw UserError(where + "times must not be negative and must be in ascending order.");
   }
 }
 
@@ -127,7 +127,7 @@ void FlowHistory::check() const {
   };
   as_many("amplitudes", amplitudes);
   as_many("angles", angles);
-  if (!std::ranges::is_sorted(*times)) throw UserError("Flow/history/times must be in order, the earliest first.");
+  if (!std::ranges::is_sorted(*times)) throw UserError("Flow/history/times must be in ascending order.");
 }
 
 FlowHistory::Moment FlowHistory::at(double time, double start) const {

@@ -76,8 +76,9 @@ void FlowOptions::declare_registered(deck::Section& section) {
 }
 
 void FlowOptions::reject(Rejections& to) const {
-  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has nothing to change");
-  to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`", "the flow is along the tube");
+  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has no flow that could vary in time");
+  to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`",
+          "the flow in a tube or channel cannot be rotated");
 }
 
 void FlowOptions::check() const {
@@ -94,7 +95,7 @@ void FlowOptions::check() const {
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
   refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
-  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "that flow has keys of its own, in Flow/" + type);
+  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "the magnitude of that flow is set by its own keys, in Flow/" + type);
   refuse((type == "duct" || type == "parabolic") && shear_rate != 1.0, "Flow/shear rate", choice(),
          std::string("give Flow/") + (type == "duct" ? "mean" : "maximum") + " velocity");
   if (history) {
@@ -104,9 +105,10 @@ void FlowOptions::check() const {
     history->check();
   }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
-    throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
-                    ".");
-  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient", "the gradient of a `linear` flow holds its rate already");
+    throw UserError("Flow/gradient must have zero trace, because the fluid is incompressible, but its trace is " +
+                    std::to_string(gradient->trace()) + ".");
+  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient",
+         "the gradient of a `linear` flow already contains its rate");
 }
 
 double FlowOptions::rate_between_plates() const {
