@@ -112,7 +112,7 @@ void state(CLI::App& app, Arguments& arguments) {
   app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
   app.add_flag("--check", arguments.check, "print the effective deck and the plan, and stop");
   app.add_option("--resume", arguments.resume, "continue from the newest checkpoint in this directory")->check(directory, "");
-  app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
+  app.add_flag("--no-expect", arguments.no_expect, "report a missed Expect, and do not fail the run for it");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
   app.add_flag("--rejections", arguments.rejections, "print the table of all combinations of choices that are rejected, with reasons (Markdown)");
