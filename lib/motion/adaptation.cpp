@@ -29,16 +29,17 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("reference length", reference_length, deck::positive(), "length",
               "largest allowed length L_ref of elements where fields are uniform, for Adaptation/indicator `variation`; default 0.35 R_C, "
               "where R_C is the radius of the sphere with the particle's volume");
-  section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
-              "change chi_ref of the mean curvature per length along an element, above which elements are made shorter than "
-              "Adaptation/reference length, for Adaptation/indicator `variation`; if not given, the curvature causes no refinement");
   section.key(
-      "reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
-      "change T_ref of the traction (membrane load per current area) per length along an element, above which elements are made shorter "
-      "than Adaptation/reference length, for Adaptation/indicator `variation`; if not given, the traction causes no refinement");
+      "reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
+      "reference value chi_ref: where the mean curvature changes by more than this per length along an element, elements are made shorter "
+      "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the curvature causes no refinement");
+  section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
+              "reference value T_ref: where the traction (membrane load per current area) changes by more than this per length along an "
+              "element, elements are made shorter than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, "
+              "the traction causes no refinement");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
-              "change V_ref of the velocity per length along an element, above which elements are made shorter than Adaptation/reference "
-              "length, for Adaptation/indicator `variation`; if not given, the velocity causes no refinement");
+              "reference value V_ref: where the velocity changes by more than this per length along an element, elements are made shorter "
+              "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the velocity causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
               "largest allowed ratio of length to width of an element, for Adaptation/indicator `variation`; 2.5 if not given");
   section.key("order", order, deck::positive(), "1",

@@ -49,7 +49,8 @@ void MeshOptions::declare(deck::Section& section) {
               "poles, with (r - 1)m + 6 control points for m elements around the axis and r from pole to pole");
   if (poles == "bezier transform") pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
-              "how many times elements at the poles of the polar mesh are halved in azimuth before the Bezier transform; 2 if not given");
+              "number of times that the elements at the poles of the polar surface mesh are halved in azimuth before the transform of "
+              "Surface/poles `bezier transform`; 2 if not given");
 }
 
 void MeshOptions::check() const {
@@ -243,9 +244,10 @@ void TubeOptions::declare(deck::Section& list) {
     list.key("axial elements", axial_elements, deck::between(4, 400), "1",
              "number of elements along the wall of the tube, or along one period of it. If not given: 25, or in a periodic tube the number "
              "that gives as many elements per length as in a tube that is not periodic");
-    list.key("grading", grading, deck::between(1.0, 20.0), "1",
-             "concentration g of the wall elements of the tube near particles: their number per length varies as 1 + (g - 1)/(1 + "
-             "(x1/R_T)^4) with the distance x1 along the tube; 1: uniform. R_T: radius of the circle with the area of the cross-section");
+    list.key(
+        "grading", grading, deck::between(1.0, 20.0), "1",
+        "concentration g of the wall elements of the tube near particles: their number per length varies as 1 + (g - 1)/(1 + (x1/R_T)^4) "
+        "with the distance x1 from the particles along the tube; 1: uniform. R_T: radius of the circle with the area of the cross-section");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest allowed gap between a particle and the wall of the tube or channel, divided by R_C, the radius of the sphere with the "
