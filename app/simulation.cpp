@@ -344,7 +344,7 @@ class Run {
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
     if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
-    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " goes on";
+    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return last.whole ? code : stopped;
   }

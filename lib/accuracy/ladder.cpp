@@ -212,7 +212,7 @@ class Ladder {
 
   void report(Code code, const std::string& why, const std::string& missed_expectations) const {
     std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
-    if (code == stopped) line += "; --resume " + task_.directory.string() + " goes on";
+    if (code == stopped) line += "; --resume " + task_.directory.string() + " continues the run";
     for (const Answer& one : answers_)
       if (code != met && !one.met) line += "; " + sentence(one);
     if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;
