@@ -37,7 +37,7 @@ SurfacePicture picture(const Scene& scene, const Body& body, const RigidSolution
 }  // namespace
 
 int resist(const Scene& scene, const RunRequest& request) {
-  refuse(request.resume, "--resume", "Particle/motion `prescribed`", "a steady problem has nothing to go on with");
+  refuse(request.resume, "--resume", "Particle/motion `prescribed`", "a steady problem has no time steps to continue");
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases = started();

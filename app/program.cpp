@@ -93,11 +93,11 @@ std::string new_deck(const std::string& name) {
 
 void state(CLI::App& app, Arguments& arguments) {
   app.footer(
-      "An Expect binds the deck that states it: where an overlay or --set on top changes a key that results depend on, and does not state that\n"
-      "Expect again, a miss is reported and does not fail the run.\n"
-      "Exit codes: 0 done, and every Expect that binds met; 1 one was missed; 2 a mistake in the deck or here; 3 the run failed; "
-      "4 it was stopped by a signal or at its wall-clock limit, and --resume goes on with it. Open MPI's mpirun answers any code but 0 with a "
-      "page of its own and a wait of seconds: `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
+      "An expectation (Expect) belongs to the deck that states it. If an overlay or --set changes a key that results depend on and does not\n"
+      "state the expectation again, a miss is reported and does not fail the run.\n"
+      "Exit codes: 0 done, and all binding expectations are met; 1 an expectation is missed; 2 a mistake in the deck or the command line; "
+      "3 the run failed; 4 the run was stopped by a signal or at its wall-clock limit, and --resume continues it. For any code but 0, Open "
+      "MPI's mpirun prints a page and waits for seconds; `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
   app.add_option("--accuracy", arguments.accuracy,
@@ -112,8 +112,8 @@ void state(CLI::App& app, Arguments& arguments) {
       ->check(directory, "");
   app.add_flag("--overwrite", arguments.overwrite, "delete the results of an earlier run there");
   app.add_flag("--check", arguments.check, "print the effective deck, the plan and the cost of one velocity evaluation, and stop");
-  app.add_option("--resume", arguments.resume, "go on from the newest checkpoint in this directory")->check(directory, "");
-  app.add_flag("--no-expect", arguments.no_expect, "no Expect binds: a miss is reported and does not fail the run");
+  app.add_option("--resume", arguments.resume, "continue from the newest checkpoint in this directory")->check(directory, "");
+  app.add_flag("--no-expect", arguments.no_expect, "report a missed Expect, and do not fail the run for it");
   app.add_flag("--reference", arguments.reference, "print the manual of every parameter (Markdown)");
   app.add_flag("--reference-series", arguments.reference_series, "print the manual of every series and field of the results (Markdown)");
   app.add_flag("--rejections", arguments.rejections, "print the table of all combinations of choices that are rejected, with reasons (Markdown)");
@@ -161,7 +161,7 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
   new_values.insert(old_values.begin(), old_values.end());  // adds keys that are no longer set
   for (const auto& [path, value] : new_values)
     if (old_values[path] != value && !may_change_on_resume(path))
-      throw UserError(path + " cannot change when a run goes on: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
+      throw UserError(path + " cannot change when a run continues: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
                       ", and now is " + value + ".");
 }
 
@@ -284,8 +284,8 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
   const bool resume = !arguments.resume.empty();
   if (arguments.decks.empty() && !resume)
     throw UserError("No deck is given: tanktread [options] deck.yaml [overlay.yaml ...]; see --help.");
-  refuse(resume && !arguments.output.empty(), "--output", "--resume", "a run goes on in its own directory");
-  refuse(resume && arguments.overwrite, "--overwrite", "--resume", "one deletes what the other goes on from");
+  refuse(resume && !arguments.output.empty(), "--output", "--resume", "a run continues in its own directory");
+  refuse(resume && arguments.overwrite, "--overwrite", "--resume", "--overwrite deletes the checkpoints from which --resume continues");
 
   const std::string stored = resume ? deck_of_run(arguments.resume) : std::string();
   std::vector<std::string> settings = arguments.settings;

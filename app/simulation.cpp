@@ -94,7 +94,7 @@ class Run {
     prepare();
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     motion::begin(motion, state_);
-    if (!motion.failure().empty()) throw RunFailure("the velocity of the initial shape cannot be had: " + motion.failure());
+    if (!motion.failure().empty()) throw RunFailure("the evaluation of the velocity of the initial shape failed: " + motion.failure());
     state_.step = scene_.time.initial_step ? *scene_.time.initial_step : motion::first_step(motion, state_, scene_.time);
     record();
     settle();
@@ -161,7 +161,7 @@ class Run {
     const bool lands = scene_.lands_on_snapshots();
     motion::State before = state_;
     pictured_.reset();
-    if (scene_.tube.images) warn({"images", "Tube/images has no effect: a tube that repeats has all images."});
+    if (scene_.tube.images) warn({"images", "Tube/images has no effect, because a periodic tube has all its images: remove the key."});
     integrate(lands ? snapshot : scene_.time.final_time, before);
     judge();
     ++totals_.step;
@@ -190,13 +190,13 @@ class Run {
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     try {
       if (motion::cross_kink(motion, state_)) before = state_;
-      if (!state_.history.front().allFinite()) throw RunFailure("there is no velocity to go on with");
+      if (!state_.history.front().allFinite()) throw RunFailure("the evaluation of the velocity failed at the start of a step");
       began_ = state_.time;
       advance_apart(motion, limit, before);
     } catch (const RunFailure& failure) {
       const std::string what = failure.what();
       const std::string& why = motion.failure();
-      throw RunFailure(what + (why.empty() || why == what ? "" : " after a velocity that cannot be had: " + why));
+      throw RunFailure(what + (why.empty() || why == what ? "" : " after a failed evaluation of the velocity: " + why));
     }
   }
 
@@ -207,7 +207,9 @@ class Run {
       report_ = scheme_->advance(motion, state_, limit);
       report_.rejected += rejected;
       if (particle_->hold_apart(state_, report_.step)) return;
-      if (scene_.time.fixed_step) throw RunFailure("after a step of fixed size particles are too close for Contact/limiter to hold them apart");
+      if (scene_.time.fixed_step)
+        throw RunFailure(
+            "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
       Net frozen = std::move(state_.frozen);
       state_ = before;
       if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // secants of the old operators
@@ -239,7 +241,7 @@ class Run {
     error_of([&] { results_.close(account("failed: " + at), phases_); });
     if (unsaved.empty()) throw RunFailure(at + "; the checkpoint of the last good step is in " + where);
     throw RunFailure(at + formatted("; the newest checkpoint, of step %d, is in ", results_.last_saved()) + where +
-                     ", for a newer one cannot be had: " + unsaved);
+                     ", because a newer one cannot be written: " + unsaved);
   }
 
   /// Interpolates the state at the last snapshot time within the latest step, for a snapshot.
@@ -343,7 +345,7 @@ class Run {
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
     if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
-    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " goes on";
+    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return last.whole ? code : stopped;
   }

@@ -14,7 +14,7 @@
 namespace tanktread {
 
 int flow_past_solids(const Scene& scene, const RunRequest& request) {
-  refuse(request.resume, "--resume", "Particle/shape `cylinder`", "a steady problem has nothing to go on with");
+  refuse(request.resume, "--resume", "Particle/shape `cylinder`", "a steady problem has no time steps to continue");
   const auto start = std::chrono::steady_clock::now();
   coupling::Ranks ranks;
   Phases phases = started();

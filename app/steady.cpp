@@ -142,7 +142,7 @@ class SteadyRun {
     found_.period = returns_->period();
     write();
     if (!found.converged)
-      throw RunFailure(formatted("no shape that comes back was found: after %d periods it misses that by %.2g", found.iterations, found.rest));
+      throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
   }
 
   /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening, because refinement and coarsening could
@@ -212,7 +212,7 @@ class SteadyRun {
     if (mesh_) carry_to(*made, *mesh_);
     const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
     if (points != expected)
-      throw UserError("Continuation is of one mesh, but " + at(parameters) + formatted(" has %d control points in place of %d.", points, expected));
+      throw UserError("Continuation needs one mesh, but " + at(parameters) + formatted(" has %d control points, not %d.", points, expected));
     systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;
@@ -244,7 +244,8 @@ class SteadyRun {
   /// Computes the velocity and modes of the current shape, and records its row and snapshot.
   void write() {
     state_.history = {system_->motion->velocity(state_.x)};
-    if (!state_.history.front().allFinite()) throw RunFailure("the velocity of this shape cannot be had: " + system_->motion->failure());
+    if (!state_.history.front().allFinite())
+      throw RunFailure("the evaluation of the velocity of this shape failed: " + system_->motion->failure());
     if (scene_.spectrum.present) find_modes();
     record();
     save();
@@ -258,7 +259,7 @@ class SteadyRun {
     const coupling::CoupledMotion* on_it = system_->particle->fields();
     const bool apart = on_it && !on_it->knows_images(shape);
     if (apart && options.parity)
-      throw UserError("Spectrum/parity needs fields whose images are known: without the key there are modes of all parities.");
+      throw UserError("Spectrum/parity needs surface fields with known images: remove the key to find modes of all parities.");
     const std::shared_ptr<System> system = options.parity || apart ? whole(whole_ranks) : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
@@ -305,7 +306,7 @@ class SteadyRun {
   /// Returns the current system without symmetry reduction. Modes of another parity than the shape need the velocities of all points.
   std::shared_ptr<System> whole(coupling::Ranks& ranks) {
     if (system_->particle->body().symmetry.order() == 1)
-      throw UserError("Spectrum/parity is of modes of a symmetric scene, and this one has no symmetry.");
+      throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
     Scene scene = system_->scene;
     scene.symmetry.use = "none";
     auto made = std::make_shared<System>(std::move(scene), ranks, phases_);
@@ -393,7 +394,7 @@ class SteadyRun {
 }  // namespace
 
 int find_steady(const Scene& scene, const RunRequest& request) {
-  if (request.resume) throw UserError("--resume goes on with a run in time: Steady and Spectrum have nothing to go on with.");
+  if (request.resume) throw UserError("--resume continues a run in time: Steady and Spectrum have no time steps to continue.");
   return SteadyRun(scene, request).go();
 }
 

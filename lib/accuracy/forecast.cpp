@@ -54,7 +54,7 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
     program.run(text, place, false, task.options.wall_clock_limit);
     coupling::decided([&] {
       std::optional<Outcome> outcome = finished(place, level, text);
-      if (!outcome) throw RunFailure("the pilot run did not come to its end");
+      if (!outcome) throw RunFailure("the pilot run failed before its final time");
       outcomes.push_back(std::move(*outcome));
       return std::vector<double>{0};
     });

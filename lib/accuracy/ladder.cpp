@@ -42,7 +42,7 @@ class Ladder {
       if (count_ >= 3 && judge(k)) return conclude(met, "");
       if (hopeless()) return conclude(missed, "finer levels do not help");
     }
-    if (count_ == 0) throw RunFailure("no level came to its end: " + failure_);
+    if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
     return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
   }
 
@@ -158,7 +158,9 @@ class Ladder {
     const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     serially([&] {
       outcome = finished(directory(name), level, deck);
-      if (!outcome) throw RunFailure("the results of " + directory(name).string() + " are not those that were written");
+      if (!outcome)
+        throw RunFailure("the results of " + directory(name).string() +
+                         " have changed since they were written: start again with --overwrite");
       if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
     });
     return 0;
@@ -208,7 +210,7 @@ class Ladder {
         if (ranks_.rank() == 0) report(code, why, "");
         return stopped;
       }
-      throw RunFailure("no level came to its end" + (failure_.empty() ? "" : ": " + failure_));
+      throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
     const auto outcome = coupling::decided([&] {
       answers_.clear();
@@ -222,7 +224,7 @@ class Ladder {
 
   void report(Code code, const std::string& why, const std::string& missed_expectations) const {
     std::string line = code == met ? "" : "the requested accuracy is not reached: " + why;
-    if (code == stopped) line += "; --resume " + task_.directory.string() + " goes on";
+    if (code == stopped) line += "; --resume " + task_.directory.string() + " continues the run";
     for (const Answer& one : answers_)
       if (code != met && !one.met) line += "; " + sentence(one);
     if (!missed_expectations.empty()) line += (line.empty() ? "" : "; ") + missed_expectations;

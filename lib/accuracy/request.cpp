@@ -69,15 +69,16 @@ Request request_of(const std::string& text) {
 void Options::declare(deck::Section& section) {
   std::string texts;
   section.key("requests", texts, deck::Choice{},
-              "requested accuracies, separated by commas, each `[<particle>/]<series>[@end|@mean]=<value>[%]` (required). The estimated error of the "
-              "series must not exceed the value: its largest error over the run, or with `@end` the error of its last value, or with `@mean` the "
-              "error of its average over the run. With `%` the value is relative to the largest magnitude of the series. The program chooses "
-              "meshes and tolerances, and repeats the run on finer levels until all requests are met");
-  section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
-              "wall-clock time for all levels together. A level that is predicted to exceed it is not started; no limit if not given");
+              "requested accuracies, separated by commas, each `[<particle>/]<series>[@end|@mean]=<value>[%]` (required). The estimated "
+              "error of the output series must not exceed the value: its largest error over the run, or with `@end` the error of its last "
+              "value, or with `@mean` the error of its average over the run. With `%` the value is relative to the largest magnitude of "
+              "the series. The program chooses meshes and tolerances, and repeats the run on finer levels until all requests are met");
+  section.key(
+      "wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
+      "wall-clock time for all accuracy levels together. A level that is predicted to exceed it is not started; no limit if not given");
   section.key("levels", levels, deck::between(3, 12), "1",
-              "largest number of levels. Level 0 has 3 elements per side; each further level has about 1.3 times as many, and tolerances of a "
-              "quarter");
+              "largest number of levels of increasing accuracy, each a run with finer mesh and tolerances. Level 0 has 3 elements per "
+              "side; each further level has about 1.3 times as many, and tolerances a quarter as large");
   if (section.documenting()) return;
   if (trimmed(texts).empty()) throw UserError(section.path("requests") + " is missing: for example `taylor_inertia=1e-3`.");
   requests = requests_of(texts);
@@ -103,7 +104,8 @@ void check_series(const std::vector<Request>& requests, const std::vector<std::s
   for (const Request& request : requests) {
     if (std::ranges::find(allowed, request.series) != allowed.end()) continue;
     if (std::ranges::find(names, request.series) != names.end())
-      throw UserError("Accuracy/requests: the series " + request.series + " describes the run itself and has no error that could be requested.");
+      throw UserError("Accuracy/requests: the series " + request.series +
+                      " describes the computation itself and has no error that could be requested.");
     const std::string meant = deck::guess(request.series, allowed);
     throw UserError("Accuracy/requests: the results of this scene hold no series " + request.series +
                     (meant.empty() ? "; inputs/SERIES.md lists the series." : "; was " + meant + " meant?"));

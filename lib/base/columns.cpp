@@ -49,7 +49,7 @@ void Columns::sort(const std::function<std::size_t(const std::string& name)>& ra
 
 void Columns::check() const {
   for (std::size_t k = 0; k < size(); ++k)
-    if (std::isnan(values_[k]) && columns_[k].undefined_if.empty()) throw RunFailure("the series " + columns_[k].name + " is not a number");
+    if (std::isnan(values_[k]) && columns_[k].undefined_if.empty()) throw RunFailure("the series " + columns_[k].name + " is NaN");
 }
 
 double Columns::value(std::string_view name) const {

@@ -13,18 +13,23 @@ void Expectation::declare(Section& section) {
   if (name.front() != '<')  // `<name>` is no expectation but a placeholder in the manual
     for (const char* key : {"value", "tolerance"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing; an expectation needs `value` and `tolerance`.");
-  section.key("series", series, Choice{}, "name of the series of the results that is compared; by default the name of the expectation");
-  section.key("value", value, any(), "of the series", "expected value of the series (required)");
-  section.key("tolerance", tolerance, positive(), "of the series, or 1", "largest allowed error of the expected value (required)");
+  section.key("series", series, Choice{},
+              "name of the output series that is compared with the expected value; by default the name of the expectation");
+  section.key("value", value, any(), "of the series", "expected value of the output series (required)");
+  section.key("tolerance", tolerance, positive(), "of the series, or 1",
+              "largest allowed difference between computed and expected value (required)");
   section.key("kind", kind, Choice{"absolute", "relative"},
-              "meaning of the tolerance. `absolute`: for the error. `relative`: for the error divided by the expected value");
-  section.key("at", at, not_negative(), "time", "time at which the series is compared; the final time of the run if not given");
+              "kind of the tolerance of the expected value. `absolute`: limit of the difference. `relative`: limit of the difference "
+              "divided by the expected value");
+  section.key("at", at, not_negative(), "time",
+              "time at which the output series is compared with the expected value; the final time of the run if not given");
   section.key("source", source, Choice{}, "source of the expected value, for example a publication");
-  section.key(
-      "not binding", not_binding, Choice{},
-      "reason why a missed expectation is reported but does not fail the run. The program sets it if a later deck or --set changes a key that "
-      "results depend on, without stating the expectation again");
-  if (kind == "relative" && value == 0.0) throw UserError(section.path("kind") + " `relative` and the value 0 contradict each other.");
+  section.key("not binding", not_binding, Choice{},
+              "reason why a missed expected value is reported but does not fail the run. The program sets it if a later deck or --set "
+              "changes a key that results depend on, without stating the expectation again");
+  if (kind == "relative" && value == 0.0)
+    throw UserError(section.path("kind") +
+                    " `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");
 }
 
 void Expectations::declare(Section& section) {

@@ -60,7 +60,7 @@ bool has_unit(const std::string& text) {
 std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
   const std::vector<std::string> texts = as_texts(entry);
   if (std::ranges::none_of(texts, has_unit)) return {};
-  if (!units) refuse(path, "a plain number in a deck without the list Units", unit, description(entry));
+  if (!units) refuse(path, "a plain number in a deck without the section Units", unit, description(entry));
   std::vector<double> numbers;
   for (const std::string& text : texts) try {
       numbers.push_back(units->number(text, unit));
@@ -145,8 +145,8 @@ std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::
     const auto other = as_text(*like);
     above.push_back(name);
     if (!other || !all.given->isSublist(*other) || std::ranges::count(above, *other))
-      throw UserError(path + "/like must be the name of another list of " + all.path + " that is not made like this one, but is " +
-                      description(*like) + ".");
+      throw UserError(path + "/like must be the name of another section of " + all.path +
+                      " whose own `like` does not lead back to this one, but is " + description(*like) + ".");
     merged = with_shared(all, *other, above);
   } else if (all.given->isSublist("defaults")) {
     overlay(*merged, all.given->sublist("defaults"));

@@ -33,10 +33,10 @@ int levels_of_xml(const std::string& text) {
 }  // namespace
 
 std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin) {
-  if (whole.numParams() == 0) throw UserError(origin + " is empty; a deck holds one list named `" + root_name + "`.");
+  if (whole.numParams() == 0) throw UserError(origin + " is empty; a deck has one section named `" + root_name + "`.");
   for (const auto& item : whole)
     if (item.first != root_name || !item.second.isList())
-      throw UserError(origin + ": the outermost list must be `" + root_name + "`, and the only one, but there is `" +
+      throw UserError(origin + ": the outermost section must be `" + root_name + "`, and the only one, but there is `" +
                       shortened(item.first, 60) + "`.");
   return std::make_shared<Teuchos::ParameterList>(whole.sublist(root_name));
 }
@@ -50,7 +50,7 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
     const auto list = Teuchos::getParametersFromXmlString(text);
     whole.sublist(name.empty() ? "something else" : name[1].str()) = *list;
   } catch (const std::exception&) {
-    throw UserError(origin + " is not XML of the kind that Teuchos reads.");
+    throw UserError(origin + " is not XML in the format of parameter lists of Teuchos, a package of Trilinos.");
   }
   return root_list(whole, origin);
 }

@@ -24,7 +24,7 @@ struct Meaning {
   std::string_view what;
 };
 
-constexpr std::array<Meaning, 28> synonyms{{
+constexpr std::array<Meaning, 31> synonyms{{
     {"|capsules|cells|drops|bodies|number of particles|number of capsules|n particles|suspension|hematocrit|haematocrit|volume fraction|",
      "Particles"},
     {"|dt|delta t|time step|timestep|step|step size|stepsize|", "Time/fixed step or Time/initial step"},
@@ -56,21 +56,22 @@ constexpr std::array<Meaning, 28> synonyms{{
     {"|restart|resume|continue|", "--resume of the command line"},
     {"|period|box|box size|unit cell|periodicity|", "Domain"},
     {"|membrane viscosity|surface viscosity|shear surface viscosity|boussinesq number|membrane/viscosity|", "Membrane/shear viscosity"},
+    {"|wall|walls|plane wall|plane|plates|", "Wall"},
+    {"|surfactant|surfactants|marangoni|marangoni number|surfactant concentration|", "the section Interface/surfactant"},
+    {"|elasticity number|", "Interface/surfactant/elasticity number"},
 }};
 
 /// Features that the program does not have. They are found by the full path of a key or section, or by its name without the path.
-constexpr std::array<Meaning, 10> features{{
-    {"|wall|walls|plane wall|plane|plates|", "plane walls are not there; walls are those of a Tube or a Channel"},
-    {"|re|reynolds|reynolds number|inertia|", "inertia is not there; these are Stokes flows, of Reynolds number 0"},
+constexpr std::array<Meaning, 8> features{{
+    {"|re|reynolds|reynolds number|inertia|", "inertia is not available; the program computes Stokes flow, at Reynolds number 0"},
     {"|order|degree|polynomial degree|polynomial order|spline order|spline degree|p|",
-     "the degree of the splines cannot be chosen; accuracy is a matter of the mesh, Surface/elements per side"},
-    {"|surfactant|surfactants|marangoni|marangoni number|surfactant concentration|elasticity number|", "surfactants are not there"},
-    {"|temperature|brownian|thermal noise|noise|kbt|", "thermal motion is not there"},
-    {"|adhesion|repulsion|adhesion energy|", "forces of adhesion or repulsion are not there"},
-    {"|electric field|magnetic field|charge|", "electric and magnetic fields are not there"},
-    {"|porosity|permeability|", "permeable membranes are not there"},
-    {"|rupture|breakup|break up|plasticity|", "break-up is not there"},
-    {"|power law index|carreau|weissenberg number|relaxation time|", "fluids other than Newtonian ones are not there"},
+     "the degree of the splines cannot be chosen; the accuracy is set by the mesh, Surface/elements per side"},
+    {"|temperature|brownian|thermal noise|noise|kbt|", "Brownian motion is not available"},
+    {"|adhesion|adhesion energy|", "adhesion is not available"},
+    {"|electric field|magnetic field|charge|", "electric and magnetic fields are not available"},
+    {"|porosity|permeability|", "permeable membranes are not available"},
+    {"|rupture|breakup|break up|plasticity|", "break-up, rupture and plasticity are not available"},
+    {"|power law index|carreau|weissenberg number|", "non-Newtonian fluids are not available"},
 }};
 
 std::string looked_up(const auto& table, const std::string& name) {
@@ -86,7 +87,7 @@ std::string missing_feature(const std::string& path) {
   const std::string whole = plain(path);
   std::string what = looked_up(features, whole);
   if (what.empty()) what = looked_up(features, whole.substr(whole.rfind('/') + 1));
-  return what.empty() ? what : what + " (see Limits in README.md)";
+  return what.empty() ? what : what + " (README.md lists what the program can do)";
 }
 
 }  // namespace tanktread::deck

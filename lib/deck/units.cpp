@@ -43,20 +43,22 @@ std::string replaced(std::string_view kind, const std::vector<std::pair<std::str
 }  // namespace
 
 void UnitOptions::declare(Section& section) {
-  section.key("length", length, Choice{}, "unit of length of the deck: the length, a number and a unit, that the value 1 means");
-  section.key("time", time, Choice{}, "unit of time of the deck: the time, a number and a unit, that the value 1 means");
+  section.key("length", length, Choice{},
+              "physical length that the value 1 of a length in the deck stands for: a number and a unit, for example `1 um`");
+  section.key("time", time, Choice{},
+              "physical time that the value 1 of a time in the deck stands for: a number and a unit, for example `1 ms`");
   section.key("force", force, Choice{},
-              "unit of force of the deck: the force, a number and a unit, that the value 1 means. With the default units, stresses are in Pa, "
-              "surface moduli in uN/m, viscosities in Pa s");
+              "physical force that the value 1 of a force in the deck stands for: a number and a unit, for example `1 pN`. With the "
+              "default units 1 um, 1 s and 1 pN, stresses are in Pa, surface moduli in uN/m, viscosities in Pa s");
 }
 
 Units::Units(const UnitOptions& options) : options_(options) {
   ut_set_error_message_handler(ut_ignore);
   system_ = {ut_read_xml(nullptr), [](void* system) { ut_free_system(static_cast<ut_system*>(system)); }};
-  if (!system_) throw UserError("Units: UDUNITS finds no table of units, in Debian the package libudunits2-data.");
+  if (!system_) throw UserError("Units: the library UDUNITS finds no table of units: install it, in Debian the package libudunits2-data.");
   const auto check = [this](const char* key, const std::string& text, const char* si) {
     if (!(ratio(parsed(system_, text), parsed(system_, si)) > 0))
-      throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", say 1 " + si + ", but is " +
+      throw UserError("Units/" + std::string(key) + " must be a number and a unit of " + key + ", for example 1 " + si + ", but is " +
                       in_quotes(shortened(text, 80)) + ".");
   };
   check("length", options.length, "m");
@@ -76,7 +78,7 @@ double Units::number(const std::string& text, std::string_view kind) const {
   const std::string rest_of_text(rest, text.data() + text.size());
   if (error == std::errc() && rest_of_text.empty()) return number;
   const Unit unit = parsed(system_, rest_of_text);
-  if (error != std::errc() || !unit) throw std::invalid_argument("is no number with a unit that is known");
+  if (error != std::errc() || !unit) throw std::invalid_argument("is not a number with a known unit");
   const Unit own = parsed(system_, scaled(kind));
   const double factor = ratio(unit, own);
   if (factor > 0) return number * factor;

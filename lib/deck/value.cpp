@@ -150,7 +150,7 @@ void check_foreign(const std::string& path, const Teuchos::ParameterList& given,
       std::vector<std::string> names;
       for (const auto& other : valid) names.push_back(other.first);
       const std::string meant = guess(item.first, names);
-      throw UserError(here + " is not a parameter of the library that gets this list" +
+      throw UserError(here + " is not a parameter of the library that receives this section" +
                       (meant.empty() ? "." : "; was " + path + "/" + meant + " meant?"));
     }
     const std::string wanted = kind(*known);

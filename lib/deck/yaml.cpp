@@ -112,8 +112,9 @@ class Walk {
         if (!out.back().IsScalar() || ++nodes_ > most_nodes)
           refuse(sequence, !missing_feature(path).empty()
                                ? path + " is not a key of the deck: " + missing_feature(path)
-                               : path + " is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only" +
-                                     (out.back().IsMap() ? ", and lists of keys have names, as Particles/<name>" : ""));
+                               : path +
+                                     " is a sequence (brackets, or lines with dashes), but a deck has sequences of numbers or words only" +
+                                     (out.back().IsMap() ? ": sections with keys have names, such as Particles/<name>" : ""));
       }
     }
     return out;
@@ -139,10 +140,11 @@ void check_lines(const std::vector<std::string>& lines, const std::string& origi
   bool content = false;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const auto no_text = [](unsigned char c) { return (c < 0x20 && c != '\t' && c != '\r') || c == 0x7f; };
-    if (std::ranges::any_of(lines[i], no_text)) refuse_line(origin, i, "this is not text, so no deck");
+    if (std::ranges::any_of(lines[i], no_text)) refuse_line(origin, i, "this line is not text, but a deck is a text file");
     const std::size_t first = lines[i].find_first_not_of(" \t\r");
     const bool marker = lines[i].starts_with("---") || lines[i].starts_with("...");
-    if (content && lines[i].starts_with("---")) refuse_line(origin, i, "a second document begins here; a deck is one");
+    if (content && lines[i].starts_with("---"))
+      refuse_line(origin, i, "a second document begins here, but a deck is a single YAML document");
     content = content || (first != std::string::npos && lines[i][first] != '#' && lines[i][first] != '%' && !marker);
   }
 }

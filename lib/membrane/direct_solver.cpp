@@ -174,7 +174,7 @@ struct DirectSolver::Impl {
     try {
       solver->setParameters(list);
     } catch (const std::exception& error) {
-      throw UserError("Solvers/Amesos2: Amesos2's " + options.name + " does not take this list: " + last_line(error.what()));
+      throw UserError("Solvers/Amesos2: Amesos2's " + options.name + " does not accept these parameters: " + last_line(error.what()));
     }
     solver->symbolicFactorization();
     solver->numericFactorization();

@@ -10,15 +10,16 @@ namespace tanktread::membrane {
 namespace {
 
 void check_stress_free(const Options& options) {
-  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape", "Membrane/law `surface tension`",
-         "a fluid interface has no such shape");
+  refuse(options.law == "surface tension" && options.stress_free != "resting", "Membrane/stress-free shape",
+         "Membrane/law `surface tension`", "a fluid interface has no stress-free shape");
   const std::string shape = "Membrane/stress-free shape `", chosen = "`, not to `" + options.stress_free + "`.";
   if (options.reduced_volume.has_value() != (options.stress_free == "spheroid"))
     throw UserError(options.reduced_volume ? "Membrane/stress-free reduced volume belongs to " + shape + "spheroid" + chosen
                                            : shape + "spheroid` needs Membrane/stress-free reduced volume.");
   if (options.stress_free_file.has_value() != (options.stress_free == "file"))
-    throw UserError(options.stress_free_file ? "Membrane/stress-free file belongs to " + shape + "file" + chosen
-                                             : shape + "file` needs Membrane/stress-free file, the name of a Bezier-extraction text.");
+    throw UserError(options.stress_free_file
+                        ? "Membrane/stress-free file belongs to " + shape + "file" + chosen
+                        : shape + "file` needs Membrane/stress-free file, the path of a file in Bezier-extraction format (.iga).");
 }
 
 /// Named constants of the strain energy, `Membrane/constants/<name>`.
@@ -37,9 +38,9 @@ struct Constants {
 
 void declare_energy(Options& options, deck::Section& section) {
   section.key("energy", options.energy, deck::Choice{},
-              "strain energy per unstressed area divided by G_s, for Membrane/law `expression`. It is an expression in I1 = l1^2 + l2^2 - 2, I2 = "
-              "l1^2 l2^2 - 1 (l1, l2: principal stretches), J = l1 l2, numbers and Membrane/constants, with + - * / ^ exp log sqrt and "
-              "parentheses. It is differentiated exactly. `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
+              "strain energy per unstressed area divided by the surface shear modulus, for Membrane/law `expression`. It is an expression in "
+              "I1 = l1^2 + l2^2 - 2, I2 = l1^2 l2^2 - 1 (l1, l2: principal stretches), J = l1 l2, numbers and Membrane/constants, with + - * "
+              "/ ^ exp log sqrt and parentheses. It is differentiated exactly. `(I1 - 1 + 1/(I2 + 1))/2` is the law `neo-Hookean`");
   Constants named{options.constants};
   section.optional_section("constants", named, "named constants for Membrane/energy; none without this section");
 }
@@ -47,29 +48,33 @@ void declare_energy(Options& options, deck::Section& section) {
 void declare_bending(Options& options, deck::Section& section) {
   if (!section.given("bending number")) options.bending_modulus = 0;
   section.key("bending modulus", options.bending_modulus, deck::not_negative(), "force x length",
-              "E_b of Helfrich's bending energy; 0: no resistance to bending");
+              "bending modulus E_b of Helfrich's bending energy of the membrane; 0: no resistance to bending");
   section.key("bending number", options.bending_number, deck::not_negative(), "1",
-              "dimensionless bending modulus E_b/(G_s R_C^2), instead of `bending modulus`; for a drop the surface tension replaces G_s");
+              "dimensionless bending modulus E_b/(G_s R_C^2) of the membrane, instead of `bending modulus`. G_s: surface shear modulus, "
+              "for a drop the surface tension. R_C: radius of the sphere with the particle's volume");
   if (section.given("spontaneous curvature")) options.bending_reference = "flat";
   section.key("bending reference", options.bending_reference, deck::Choice{"unstressed", "flat"},
-              "curvature at which the bending moment vanishes. `unstressed`: curvature of the unstressed surface. `flat`: Membrane/spontaneous "
-              "curvature everywhere");
+              "curvature at which the bending moment of the membrane vanishes. `unstressed`: curvature of the unstressed surface. `flat`: "
+              "Membrane/spontaneous curvature everywhere, by default 0");
   section.key("spontaneous curvature", options.spontaneous_curvature, deck::any(), "1/length",
-              "c0 of Helfrich's bending energy (3.8), for the bending reference `flat`: sum of the principal curvatures, positive where the "
-              "surface bulges outwards; 0 if not given");
-  section.key("area difference modulus", options.leaf_modulus, deck::not_negative(), "1",
-              "kbar/E_b of area-difference elasticity (3.27). The two leaflets of a bilayer slide on each other, but each keeps its number of "
-              "molecules; 0: no such elasticity");
+              "spontaneous curvature c0 of the membrane in Helfrich's bending energy (3.8), with Membrane/bending reference `flat`: sum of "
+              "the principal curvatures, positive where the surface bulges outwards; 0 if not given");
+  section.key(
+      "area difference modulus", options.leaf_modulus, deck::not_negative(), "1",
+      "area-difference modulus kbar of a lipid bilayer divided by its bending modulus E_b (3.27). The two leaflets of the bilayer slide on "
+      "each other, but each keeps its number of molecules, so that a change of their area difference costs energy; 0: no such energy");
   section.key("area difference", options.leaf_difference, deck::positive(), "1",
-              "N0/(8 pi R): stress-free difference of the leaflet areas, divided by that of a sphere of area A0 = 4 pi R^2; if not given, the "
-              "value of the unstressed surface");
+              "difference of the areas of a bilayer's two leaflets for which Membrane/area difference modulus gives no energy, divided by "
+              "the difference of a sphere of the same area; if not given, the value of the unstressed surface");
 }
 
 void check_energy(const Options& options) {
   const std::string other = " belongs to Membrane/law `expression`, but Membrane/law is `" + options.law + "`.";
   if (options.energy.has_value() != (options.law == "expression"))
-    throw UserError(options.energy ? "Membrane/energy" + other
-                                   : "Membrane/law `expression` needs Membrane/energy, the strain energy over G_s in I1 and I2.");
+    throw UserError(
+        options.energy
+            ? "Membrane/energy" + other
+            : "Membrane/law `expression` needs Membrane/energy, the strain energy divided by G_s as an expression in I1 and I2.");
   if (!options.energy && !options.constants.empty()) throw UserError("Membrane/constants" + other);
   options.strain_energy();
 }
@@ -78,77 +83,85 @@ void check_energy(const Options& options) {
 
 void Options::declare(deck::Section& section) {
   section.key("law", law, deck::Choice{"neo-Hookean", "Skalak", "Mooney-Rivlin", "Evans-Skalak", "expression", "surface tension"},
-              "constitutive law (3.3). `neo-Hookean` (P-7), `Mooney-Rivlin`: rubber of constant volume. `Skalak` (P-8), `Evans-Skalak`: resistance "
-              "to a change of area. `expression`: user-defined strain energy Membrane/energy. `surface tension`: fluid interface of a drop (3.4)");
+              "constitutive law of the membrane (equation 3.3). `neo-Hookean`, `Mooney-Rivlin`: thin sheet of incompressible rubber. "
+              "`Skalak`, `Evans-Skalak`: with a separate resistance to a change of area. `expression`: user-defined strain energy "
+              "Membrane/energy. `surface tension`: fluid interface of a drop, without elasticity (3.4)");
   declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
-              "Ca = viscosity x rate x R_C / G_s; for a drop the surface tension replaces G_s. R_C: radius of the sphere of equal volume. rate: "
-              "Flow/shear rate, or the largest singular value of Flow/gradient. 0.3 if neither `capillary number`, `shear modulus` nor `surface "
-              "tension` is given");
+              "capillary number Ca = viscosity x rate x R_C / G_s, with the surface shear modulus G_s; for a drop the surface tension "
+              "replaces G_s. R_C: radius of the sphere with the particle's volume. rate: Flow/shear rate, or the largest singular value of "
+              "Flow/gradient. 0.3 if neither `capillary number`, `shear modulus` nor `surface tension` is given");
   section.key("shear modulus", shear_modulus, deck::positive(), "force/length",
               "surface shear modulus G_s of the membrane, instead of `capillary number`");
   section.key("surface tension", surface_tension, deck::positive(), "force/length", "surface tension of a drop, instead of `capillary number`");
   if (dilates()) area_dilatation = 1.0;
-  section.key("area dilatation", area_dilatation, deck::not_negative(), "1",
-              "C of the laws `Skalak` and `Evans-Skalak`, whose area modulus at small strains is (1 + 2 C) G_s; 1 if not given");
+  section.key(
+      "area dilatation", area_dilatation, deck::not_negative(), "1",
+      "constant C of the laws `Skalak` and `Evans-Skalak`: at small strains, area modulus / shear modulus = 1 + 2 C; 1 if not given");
   section.key("area points", area_order, deck::between(0, 8), "1",
-              "Gauss points per direction of an element for the area resistance of the laws `Skalak` and `Evans-Skalak`. Use 1 for C of 50 and "
-              "more, because the mesh locks if the area is resisted at 16 points per element. 0: the quadrature of the rest of the law");
-  section.key("global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-              "K/G_s of the energy K (A - A0)^2/(2 A0) of a change of the total area A, in addition to the local law; A0: area of the unstressed "
-              "surface (3.26). For a drop K is divided by the surface tension; a drop with bending is a vesicle. 0: no such energy. The relative "
-              "area change decreases like 1/K; above about 1e4 many steps are needed");
+              "number of Gauss points per direction of an element at which the area resistance of the laws `Skalak` and `Evans-Skalak` is "
+              "evaluated. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks if the area is resisted at all 16 points "
+              "of an element. 0: the same points as for the rest of the law");
+  section.key(
+      "global area dilatation", global_area_dilatation, deck::not_negative(), "1",
+      "modulus K of the total area A, divided by the surface shear modulus (for a drop by the surface tension): the energy K (A - A0)^2/(2 "
+      "A0), with the area A0 of the unstressed surface, is added to the local law (3.26). It keeps the area of a vesicle, which is a drop "
+      "with bending. The relative area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
-              "m of the law `Mooney-Rivlin`: the neo-Hookean fraction of the energy, 1 for the neo-Hookean law; the fraction 1 - m hardens");
+              "fraction m of the energy of the law `Mooney-Rivlin` that is neo-Hookean; the remaining fraction 1 - m stiffens with strain");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
-              "stress-free shape of the membrane. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis and center of "
-              "the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free file`. Unless it "
-              "is `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium");
+              "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, "
+              "axis and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in "
+              "`stress-free file`. Other choices than `resting` need a run without flow, which finds the equilibrium shape");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
-              "reduced volume v = 6 sqrt(pi) V/A^1.5 of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
+              "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
   section.key("stress-free file", stress_free_file, deck::Choice{},
-              "path of a Bezier-extraction text (.iga) on the particle's mesh with the stress-free surface. The path is relative to the working "
-              "directory or to the deck");
+              "path of a file with the stress-free surface of the membrane in Bezier-extraction format (.iga), on the same mesh as the "
+              "particle. The path is relative to the working directory or to the deck");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
-              "alpha: the resting shape is the unstressed shape inflated by the factor 1 + alpha about its centre. A `stress-free shape` that is "
-              "not `resting` is divided by the same factor");
+              "relative inflation alpha of a capsule: its resting shape is the unstressed shape inflated by the factor 1 + alpha about its "
+              "centre, so that the membrane is under tension. A `stress-free shape` that is not `resting` is divided by the same factor");
   section.key("load", load, deck::Choice{"weak", "strong"},
-              "form of the membrane load. `weak`: virtual work (3.5). `strong`: surface divergence of the tensions (P-3), which the paper shows to "
-              "fail");
+              "method of computing the load of the membrane on the fluid. `weak`: virtual work (3.5). `strong`: surface divergence of the "
+              "tensions, which fails as Maestre et al. (2017) show");
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
-              "area to which the weak membrane load refers. `reference`: area of the unstressed surface (3.7). `current`: current area (3.6), as "
-              "in the paper and for drops");
+              "area per which the membrane load (force per area) is expressed, with Membrane/load `weak`. `reference`: area of the "
+              "unstressed surface (3.7). `current`: current area (3.6), as by Maestre et al. (2017) and for drops");
   declare_bending(*this, section);
   section.key("shear viscosity", viscosity.shear, deck::not_negative(), "viscosity x length",
-              "shear viscosity eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10). If it is not 0, every "
-              "velocity needs the solution of a linear system");
+              "surface shear viscosity eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10). If it is not "
+              "0, every evaluation of the velocity needs the solution of a linear system");
   section.key("dilatational viscosity", viscosity.dilatational, deck::not_negative(), "viscosity x length",
-              "dilatational viscosity kappa_s of the membrane or interface, its resistance to the rate of change of area");
+              "surface dilatational viscosity kappa_s of the membrane or interface: its resistance to the rate of change of area");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
-              "T: time within which the viscous stress of the membrane relaxes. Springs eta_s/T and kappa_s/T are in series with the dashpots "
-              "eta_s and kappa_s, a Maxwell element (3.23) in parallel with the elastic membrane. If not given, there are only the dashpots "
-              "(Kelvin and Voigt)");
+              "relaxation time T of a viscoelastic membrane: its dashpots `shear viscosity` eta_s and `dilatational viscosity` kappa_s are "
+              "in series with springs eta_s/T and kappa_s/T, which gives a Maxwell element (3.23) in parallel with the elastic membrane. If "
+              "not given, the dashpots alone are in parallel with the elastic membrane (Kelvin-Voigt)");
   section.optional_section("forces", forces, "forces on patches of the membrane; none without this section");
 }
 
 void Options::reject(Rejections& to) const {
-  to.pair(bending(1, 1) > 0 && load == "strong", {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"),
-          "Membrane/bending modulus or bending number"},
-         "Membrane/load `strong`", "bending exists in the weak form only");
-  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`", "nothing is integrated there");
-  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`", "it acts by virtual work");
+  to.pair(bending(1, 1) > 0 && load == "strong",
+          {std::string("Membrane/bending ") + (bending_number ? "number" : "modulus"), "Membrane/bending modulus or bending number"},
+          "Membrane/load `strong`", "bending is implemented in the form `weak` only");
+  to.pair(area_order > 0 && load == "strong", "Membrane/area points", "Membrane/load `strong`",
+          "the form `strong` has no quadrature of the area resistance");
+  to.pair(global_area_dilatation > 0 && load == "strong", "Membrane/global area dilatation", "Membrane/load `strong`",
+          "it is implemented by virtual work, in the form `weak` only");
   to.pair(law == "surface tension" && pre_inflation != 0.0, "Membrane/pre-inflation", "Membrane/law `surface tension`",
          "a fluid interface has no unstressed shape");
   to.pair(relaxation_time.has_value() && law == "surface tension", "Membrane/relaxation time", "Membrane/law `surface tension`",
          "the viscosity of a fluid interface has no memory, because the interface has no stress-free shape");
-  to.pair(viscosity.any() && load == "strong", {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
-          "Membrane/shear viscosity or dilatational viscosity"},
-         "Membrane/load `strong`", "viscosity is part of the weak load");
+  to.pair(viscosity.any() && load == "strong",
+          {std::string("Membrane/") + (viscosity.shear > 0 ? "shear" : "dilatational") + " viscosity",
+           "Membrane/shear viscosity or dilatational viscosity"},
+          "Membrane/load `strong`", "membrane viscosity is implemented in the form `weak` only");
   to.pair(!forces.all.empty() && law == "surface tension", "Membrane/forces", "Membrane/law `surface tension`",
-         "nothing holds on to a fluid interface");
-  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`", "the forces are part of the weak load");
+          "a fluid interface has no material patch on which a force could act");
+  to.pair(!forces.all.empty() && load == "strong", "Membrane/forces", "Membrane/load `strong`",
+          "forces on patches are implemented in the form `weak` only");
 }
 
 void Options::check() const {
@@ -169,8 +182,9 @@ void Options::check() const {
   if (!neo_hookean_share && law == "Mooney-Rivlin") throw UserError("Membrane/law `Mooney-Rivlin` needs Membrane/neo-Hookean share.");
   check_energy(*this);
   check_stress_free(*this);
-  refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature", "Membrane/bending reference `unstressed`",
-         "one says the curvature");
+  refuse(spontaneous_curvature && bending_reference == "unstressed", "Membrane/spontaneous curvature",
+         "Membrane/bending reference `unstressed`",
+         "both set the curvature at which the bending moment vanishes; give Membrane/bending reference `flat`");
   if (spontaneous_curvature && bending(1, 1) == 0)
     throw UserError("Membrane/spontaneous curvature needs Membrane/bending modulus or Membrane/bending number.");
   if (leaf_modulus > 0 && bending(1, 1) == 0)
@@ -178,7 +192,7 @@ void Options::check() const {
   if (leaf_difference && leaf_modulus == 0) throw UserError("Membrane/area difference needs Membrane/area difference modulus.");
   forces.check();
   if (relaxation_time && !viscosity.any())
-    throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity: it is theirs.");
+    throw UserError("Membrane/relaxation time needs Membrane/shear viscosity or Membrane/dilatational viscosity, whose stress it relaxes.");
   if (law == "surface tension" && load_measure == "reference" && load == "weak")
     throw UserError("Membrane/law `surface tension` needs Membrane/load measure `current`: a fluid interface has no unstressed shape.");
 }
@@ -203,12 +217,13 @@ double Options::bending(double modulus, double radius) const {
 
 void DirectSolverOptions::declare(deck::Section& section) {
   section.key("sparse systems", sparse_systems, deck::Choice{"auto", "direct", "iterative"},
-              "solver of the systems with mass and collocation matrices. `direct`: factored by Solvers/direct solver. `iterative`: BiCGSTAB with "
-              "incomplete factors, to rounding accuracy. Its set-up cost is proportional to the number of control points; that of a direct solver "
-              "grows like the power 1.7. `auto`: `iterative` from 5000 unknowns on");
+              "solver of the sparse linear systems with mass and collocation matrices. `direct`: factored by Solvers/direct solver. "
+              "`iterative`: BiCGSTAB with incomplete factors, to rounding accuracy. Its set-up cost is proportional to the number of control "
+              "points; that of a direct solver grows like the power 1.7. `auto`: `iterative` from 5000 unknowns on");
   section.key("direct solver", name, deck::Choice{},
-              "Amesos2's name of the direct solver of the sparse systems: `KLU2`, or another one that Amesos2 was built with");
-  section.foreign("Amesos2", amesos2, "parameters that are passed to the direct solver unchanged");
+              "name of the direct solver of sparse linear systems in Amesos2, a package of Trilinos: `KLU2`, or another one that Amesos2 was "
+              "built with");
+  section.foreign("Amesos2", amesos2, "parameters that are passed unchanged to the direct solver of Amesos2, a package of Trilinos");
 }
 
 }  // namespace tanktread::membrane

@@ -17,13 +17,13 @@ void PatchForce::declare(deck::Section& section) {
     for (const char* key : {"direction", "radius", "force"})
       if (!section.given(key)) throw UserError(section.path(key) + " is missing: a force on a membrane needs `direction`, `radius` and `force`.");
   section.key("direction", direction, deck::any(), "1",
-              "vector from the centroid of the unstressed shape towards the middle of the patch that the force acts on; its length has no effect "
-              "(required)");
+              "vector from the centroid of the unstressed shape towards the middle of the membrane patch that the force acts on; its "
+              "length has no effect (required)");
   section.key("radius", radius, deck::positive(), "length",
-              "radius of the patch of the unstressed surface that the force acts on, seen along `direction` (required)");
+              "radius of the patch of the unstressed membrane that the force acts on, seen along `direction` (required)");
   section.key("force", force, deck::any(), "force",
-              "total force on the patch, three numbers. Its density varies like (1 - d^2/radius^2)^2 with the distance d from the middle of the "
-              "patch (required)");
+              "total force on the membrane patch, three numbers. Its density varies like (1 - d^2/radius^2)^2 with the distance d from the "
+              "middle of the patch (required)");
 }
 
 void PatchForces::declare(deck::Section& section) {
@@ -47,7 +47,8 @@ void PatchForces::check() const {
     if (one->direction.norm() == 0) throw UserError("Membrane/forces/" + one->name + "/direction must not be zero.");
     for (auto other = one + 1; other != all.end(); ++other)
       if ((one->direction.normalized() - other->direction.normalized()).norm() < 1e-6)
-        throw UserError("Membrane/forces: `" + one->name + "` and `" + other->name + "` pull at one place; give the sum of their forces once.");
+        throw UserError("Membrane/forces: `" + one->name + "` and `" + other->name +
+                        "` act on the same point: give one force, which is their sum.");
   }
 }
 

@@ -24,7 +24,7 @@ class ExpressionParser {
       throw UserError(what_ + formatted(" is too long: it has %zu characters, more than %zu.", text_.size(), longest));
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
-    if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is the same for every strain.");
+    if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is constant.");
     if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy of the energy, which must be the last result
     for (const auto& [name, value] : constants_)
       if (std::ranges::find(used_, name) == used_.end()) throw UserError(what_ + " does not use the constant `" + name + "`.");
@@ -141,7 +141,7 @@ class ExpressionParser {
       if (a.slot) return emit(name == "exp" ? Kind::exponential : Kind::logarithm, a, {}, 0);
       return {name == "exp" ? std::exp(a.number) : std::log(a.number)};
     }
-    throw UserError(what_ + " has the name `" + name + "`, which is none of I1, I2, J, exp, log, sqrt nor of Membrane/constants.");
+    throw UserError(what_ + " contains the name `" + name + "`, which is not I1, I2, J, exp, log, sqrt or one of Membrane/constants.");
   }
 
   const std::string& what_;
@@ -182,10 +182,11 @@ void StrainEnergy::check(const std::string& what) const {
   const Taylor<double> rest = at(0.0, 0.0);
   const double tension = 2 * (rest.by1 + rest.by2), size = std::abs(rest.by1) + std::abs(rest.by2) + std::abs(area_modulus_);
   if (!(std::abs(tension) <= 1e-12 * size))
-    throw UserError(what + formatted(" must have no tension on the unstressed surface, where 2 (dPsi/dI1 + dPsi/dI2) is %g.", tension));
+    throw UserError(what + formatted(" must have no tension on the unstressed surface, but 2 (dPsi/dI1 + dPsi/dI2) is %g there.", tension));
   if (!(shear_modulus_ > 0 && area_modulus_ > 0))
-    throw UserError(what + formatted(" must have positive moduli for small strains, but the one of shear is %g, that of area %g.", shear_modulus_,
-                                     area_modulus_));
+    throw UserError(what +
+                    formatted(" must have positive moduli for small strains, but the shear modulus is %g and the area modulus is %g.",
+                              shear_modulus_, area_modulus_));
 }
 
 }  // namespace tanktread::membrane

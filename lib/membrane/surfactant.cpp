@@ -70,7 +70,10 @@ void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
     largest = std::max(largest, std::ranges::max(at.c));
   }
   if (!(options_.tension(largest) > 0))
-    throw RunFailure(formatted("the surfactant leaves no surface tension where its concentration is %.4g of the initial one", largest));
+    throw RunFailure(
+        formatted("the surface tension vanishes where the surfactant concentration is %.4g times the initial one: set a smaller "
+                  "Interface/surfactant/elasticity number or a larger diffusivity",
+                  largest));
 }
 
 Net Surfactant::load() const {

@@ -10,28 +10,33 @@ namespace tanktread::membrane {
 
 void SurfactantOptions::declare(deck::Section& section) {
   section.key("equation of state", equation_of_state, deck::Choice{"linear", "Langmuir"},
-              "surface tension divided by that of the clean interface (Membrane/surface tension or capillary number), as a function of the "
-              "concentration c divided by the initial concentration. `linear`: 1 - E c. `Langmuir`: 1 + E ln(1 - x c)");
+              "surface tension of a drop with surfactant, divided by that of the clean interface (Membrane/surface tension or capillary "
+              "number), as a function of the concentration c divided by the initial concentration. `linear`: 1 - E c. `Langmuir`: 1 + E "
+              "ln(1 - x c). E: `elasticity number`, x: `coverage`");
   section.key("elasticity number", elasticity, deck::positive(), "1",
-              "E: gas constant x temperature x initial concentration (`Langmuir`: largest possible concentration) / surface tension of the clean "
-              "interface");
+              "elasticity number E of the surfactant: gas constant x temperature x concentration / surface tension of the clean interface. "
+              "The concentration is the initial one for the equation of state `linear`, and the largest possible one for `Langmuir`");
   section.key("coverage", coverage, deck::between(1e-6, 0.999999), "1",
-              "x of the equation of state `Langmuir`, which needs it: initial concentration of surfactant divided by the largest possible "
-              "concentration");
+              "initial coverage x for the equation of state `Langmuir`, which needs it: initial concentration of surfactant divided by the "
+              "largest possible concentration");
   section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time",
               "surface diffusivity D_s of the surfactant; 0 if neither `diffusivity` nor `Peclet number` is given");
-  section.key("Peclet number", peclet_number, deck::positive(), "1", "Peclet number rate R_C^2/D_s of the surfactant, instead of `diffusivity`");
+  section.key("Peclet number", peclet_number, deck::positive(), "1",
+              "Peclet number rate R_C^2/D_s of the surfactant, instead of `diffusivity` D_s, with the rate of the flow and R_C, the radius "
+              "of the sphere with the drop's volume");
 }
 
 void SurfactantOptions::check() const {
   const std::string list = "Interface/surfactant/";
   const bool langmuir = equation_of_state == "Langmuir";
   if (coverage.has_value() != langmuir)
-    throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list + "coverage, the initial concentration over the largest one."
+    throw UserError(langmuir ? list + "equation of state `Langmuir` needs " + list +
+                                   "coverage, the initial concentration divided by the largest possible one."
                              : list + "coverage belongs to " + list + "equation of state `Langmuir`, not to `" + equation_of_state + "`.");
   refuse(diffusivity && peclet_number, list + "diffusivity", list + "Peclet number", "give one of them");
   if (!(tension(1) > 0))
-    throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: %g of the clean interface's.",
+    throw UserError(list + formatted("elasticity number %g leaves no surface tension at the initial concentration: it is %g times that of "
+                                     "the clean interface. Give a smaller number.",
                                      elasticity, tension(1)));
 }
 

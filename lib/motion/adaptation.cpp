@@ -12,43 +12,61 @@
 namespace tanktread::motion {
 
 void AdaptationOptions::declare(deck::Section& section) {
-  section.key("enabled", enabled, "whether the mesh is refined as the particle deforms (P-37)");
-  section.key("indicator", indicator, deck::Choice{"error", "variation"},
-              "criterion for refinement. `error`: estimated errors (1.5) compared with tolerances. `variation`: variation of fields compared with "
-              "reference values (P-37)");
+  section.key("enabled", enabled, "whether the surface mesh is refined as the particle deforms");
+  section.key(
+      "indicator", indicator, deck::Choice{"error", "variation"},
+      "criterion for the refinement of the mesh. `error`: estimated errors on an element compared with tolerances (1.5). `variation`: "
+      "changes of curvature, traction and velocity along an element compared with reference values (1.4), as by Maestre et al. (2017)");
   for (double* length : {&surface_tolerance, &minimum_length, &coarsening_tolerance}) *length *= radius;
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
-              "largest estimated error of the surface on an element, for the indicator `error`; default 4e-4 R_C. Divided by R_C, it also limits "
-              "the errors of the surfactant concentration (divided by the mean concentration) and of the Maxwell strain");
+              "largest allowed error, estimated on each element, of the position of the surface, for Adaptation/indicator `error`; default "
+              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it also limits the errors of "
+              "the surfactant concentration (divided by the mean concentration) and of the strain of a viscoelastic membrane");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
-              "largest estimated error of the load per current area, for the indicator `error`; if not given, load errors cause no refinement");
+              "largest allowed error, estimated on each element, of the membrane load per current area, for Adaptation/indicator `error`; "
+              "if not given, load errors cause no refinement");
   section.key("reference length", reference_length, deck::positive(), "length",
-              "L_ref: largest element length where fields do not vary, for the indicator `variation`; 0.35 R_C if not given");
-  section.key("reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
-              "chi_ref: reference variation of the curvature, for the indicator `variation`; if not given, curvature causes no refinement");
+              "largest allowed length L_ref of elements where fields are uniform, for Adaptation/indicator `variation`; default 0.35 R_C, "
+              "where R_C is the radius of the sphere with the particle's volume");
+  section.key(
+      "reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
+      "reference value chi_ref: where the mean curvature changes by more than this per length along an element, elements are made shorter "
+      "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the curvature causes no refinement");
   section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
-              "T_ref: reference variation of the traction, for the indicator `variation`; if not given, traction causes no refinement");
+              "reference value T_ref: where the traction (membrane load per current area) changes by more than this per length along an "
+              "element, elements are made shorter than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, "
+              "the traction causes no refinement");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
-              "V_ref: reference variation of the velocity, for the indicator `variation`; if not given, velocity causes no refinement");
+              "reference value V_ref: where the velocity changes by more than this per length along an element, elements are made shorter "
+              "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the velocity causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
-              "D_ref: ratio of length to width above which an element is refined, for the indicator `variation`; 2.5 if not given");
+              "largest allowed ratio of length to width of an element, for Adaptation/indicator `variation`; 2.5 if not given");
   section.key("order", order, deck::positive(), "1",
-              "kappa: exponent with which a variation above its reference value shortens elements, for the indicator `variation`; 1 if not given");
-  section.key("film resolution", film_resolution, deck::positive(), "1",
-              "largest length of elements next to a film between particles, or between a particle and a wall or periodic image, divided by the "
-              "square root of film width times R_C; 0.7 if not given, 0.5 for rigid bodies of a list Particles. Only `levels` limits this "
-              "refinement, `minimum length` does not");
-  section.key("minimum length", minimum_length, deck::positive(), "length", "L_min: elements shorter than this are not refined; default 0.035 R_C");
-  section.key("interval", interval, deck::at_least(1), "steps", "number of accepted time steps between two checks of the mesh");
-  section.key("levels", levels, deck::between(0, 8), "1", "largest number of times that an element of the initial mesh is halved in a direction");
-  section.key("largest number of points", largest_number_of_points, deck::at_least(56), "1",
-              "largest number of control points of the mesh. Near this limit only the most urgent refinements are made, at the limit none");
-  section.key("coarsen", coarsen, "whether refinements are undone where they are not needed any more");
+              "exponent kappa, for Adaptation/indicator `variation`: where a field varies more than its reference value, the largest "
+              "allowed element length is Adaptation/reference length times (reference value / variation)^kappa; 1 if not given");
+  section.key(
+      "film resolution", film_resolution, deck::positive(), "1",
+      "largest allowed length of elements next to a thin film of fluid (between two particles, a particle and a wall, or periodic images), "
+      "divided by sqrt(film width x R_C), where R_C is the radius of the sphere with the particle's volume; 0.7 if not given, 0.5 for "
+      "rigid bodies in the section Particles. Only Adaptation/levels limits this refinement, Adaptation/minimum length does not");
+  section.key("minimum length", minimum_length, deck::positive(), "length",
+              "length L_min of elements below which they are not refined; default 0.035 R_C, where R_C is the radius of the sphere with "
+              "the particle's volume");
+  section.key("interval", interval, deck::at_least(1), "steps",
+              "number of accepted time steps between two checks of the mesh for refinement");
+  section.key("levels", levels, deck::between(0, 8), "1",
+              "largest number of times that adaptation halves an element of the initial mesh in a direction");
+  section.key(
+      "largest number of points", largest_number_of_points, deck::at_least(56), "1",
+      "largest number of control points of the surface mesh. Near this limit only the most urgent refinements are made, at the limit none");
+  section.key("coarsen", coarsen, "whether elements are merged again where their refinement is not needed any more");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1",
-              "fraction of every tolerance and limit below which an element must stay after coarsening to twice the length");
+              "safety factor of coarsening: elements are merged only if the merged element, of twice the length, stays below this fraction "
+              "of every tolerance and limit of refinement");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
-              "largest change of the surface by one coarsening; default 1e-4 R_C");
+              "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
+              "sphere with the particle's volume");
 }
 
 void AdaptationOptions::check(int first_points, double first_length) const {
@@ -60,18 +78,20 @@ void AdaptationOptions::check(int first_points, double first_length) const {
                                       {"reference length", reference_length},
                                       {"limit aspect ratio", limit_aspect_ratio},
                                       {"order", order}})
-      if (given) throw UserError(std::string("Adaptation/") + name + " belongs to Adaptation/indicator `variation`, but that is `error`.");
+      if (given)
+        throw UserError(std::string("Adaptation/") + name +
+                        " belongs to Adaptation/indicator `variation`, but Adaptation/indicator is `error`.");
   } else if (load_tolerance) {
-    throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but that is `variation`.");
+    throw UserError("Adaptation/load tolerance belongs to Adaptation/indicator `error`, but Adaptation/indicator is `variation`.");
   }
   if (minimum_length >= first_length)
-    throw UserError(
-        formatted("Adaptation/minimum length must be below the length of the elements that the run starts with, %.3g, or nothing is ever "
-                  "cut, but is %.3g.",
-                  first_length, minimum_length));
+    throw UserError(formatted(
+        "Adaptation/minimum length must be below the length of the initial elements, %.3g, so that elements can be refined, but is %.3g.",
+        first_length, minimum_length));
   if (largest_number_of_points <= first_points)
     throw UserError("Adaptation/largest number of points must be above the " + std::to_string(first_points) +
-                    " that the run starts with, or nothing is ever cut, but is " + std::to_string(largest_number_of_points) + ".");
+                    " control points of the initial mesh, so that elements can be refined, but is " +
+                    std::to_string(largest_number_of_points) + ".");
 }
 
 AdaptationOptions AdaptationOptions::coarser(double factor) const {

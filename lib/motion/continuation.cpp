@@ -19,32 +19,37 @@ constexpr double noise = 30;  // a correction below this multiple of the toleran
 
 void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
-              "path of the numerical deck key that varies along the branch of steady shapes, for example Membrane/capillary number");
+              "path of the numerical key of the deck that varies along the branch of steady shapes, for example Membrane/capillary number");
   section.key("to", to, deck::any(), "that of the key",
-              "value of the parameter at which the branch ends. The branch starts at the value in the deck, and also ends if a fold leads it back "
-              "there");
+              "value of the continuation parameter at which the branch of steady shapes ends. The branch starts at the value in the deck, "
+              "and also ends if a fold leads it back there");
   section.key("method", method, deck::Choice{"arclength", "natural"},
-              "method of continuation. `arclength`: continues around folds, where the parameter turns back. `natural`: stops at the first fold");
-  section.key("step", step, deck::positive(), "that of the key",
-              "first step of the parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
+              "method of continuation along a branch of steady shapes. `arclength`: continues around folds, where the parameter turns "
+              "back. `natural`: stops at the first fold");
+  section.key(
+      "step", step, deck::positive(), "that of the key",
+      "first increment of the continuation parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
   section.key("largest change", largest_change, deck::between(1e-5, 1), "1",
-              "largest change of the shape between two points of the branch: root mean square displacement of the control points divided by R_C");
-  section.key("points", points, deck::between(2, 100000), "1", "largest number of points on the branch, folds included");
-  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1", "relative tolerance of the parameter at a fold of the branch");
+              "largest allowed change of the shape between two points of the branch of steady shapes: root mean square displacement of the "
+              "control points divided by R_C, the radius of the sphere with the particle's volume");
+  section.key("points", points, deck::between(2, 100000), "1",
+              "largest number of computed points on the branch of steady shapes, folds included");
+  section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1",
+              "relative tolerance of the value of the continuation parameter at a fold, where the branch of steady shapes turns back");
   section.key("second parameter", second_parameter, deck::Choice{},
-              "path of a second numerical deck key, along which the first fold is continued, for example Particle/viscosity ratio. The branch ends "
-              "at this fold");
+              "path of a second numerical key of the deck, for example Particle/viscosity ratio. The first fold of the branch is computed "
+              "for each of its Continuation/second values, and the branch ends at this fold");
   section.key("second values", second_values, deck::any(), "that of the key",
-              "values of the second parameter, in this order; one fold is computed for each. Evenly spaced values, or values with a constant "
-              "ratio, need the least work");
+              "values of Continuation/second parameter for which the fold is computed, in this order. Evenly spaced values, or values with "
+              "a constant ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
-    throw UserError(section.path("second parameter") + " and " + section.path("second values") + " come together, or not at all.");
+    throw UserError(section.path("second parameter") + " and " + section.path("second values") + " belong together: give both or none.");
 }
 
 void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
-  to.add(parameter, {"parameter", "of the key", "Continuation/parameter"});
-  to.add(fold, {"fold", "1", "1 where the parameter turns back along the branch, else 0"});
-  if (follows_fold) to.add(second, {"second_parameter", "of the key", "Continuation/second parameter"});
+  to.add(parameter, {"parameter", "of the key", "value of Continuation/parameter at this point of the branch of steady shapes"});
+  to.add(fold, {"fold", "1", "1 at a fold, where the continuation parameter turns back along the branch, otherwise 0"});
+  if (follows_fold) to.add(second, {"second_parameter", "of the key", "value of Continuation/second parameter at this fold"});
 }
 
 Branch::Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady,
@@ -188,7 +193,7 @@ void Branch::adapt() {
     for (Solved& one : last_) {
       auto solved = on_plane(one.place, t);
       if (!solved) solved = at_parameter(one.place.q * unit_, one.place.x);
-      if (!solved) throw RunFailure("a shape on the branch was not found again on a finer mesh");
+      if (!solved) throw RunFailure("a steady shape of the branch was not found on the refined mesh");
       solved->s = one.s;
       one = std::move(*solved);
     }
@@ -223,7 +228,7 @@ void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);
   auto solved = at_parameter(parameter, x_);
-  if (!solved) throw RunFailure(formatted("no shape at rest was found where %s is %.8g", options_.parameter.c_str(), parameter));
+  if (!solved) throw RunFailure(formatted("no steady shape was found at %s = %.8g", options_.parameter.c_str(), parameter));
   if (last_.empty()) {
     x_ = solved->place.x;
   } else {
@@ -246,14 +251,16 @@ void Branch::advance() {
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);
   auto solved = stepped();
   if (!solved)
-    throw RunFailure(formatted("the branch was lost beyond %s = %.8g", options_.parameter.c_str(), last_.back().place.q * unit_));
+    throw RunFailure(formatted("the branch was lost beyond %s = %.8g: no further steady shape was found", options_.parameter.c_str(),
+                               last_.back().place.q * unit_));
   solved->s = last_.back().s + length(solved->place - last_.back().place);
   const double before = std::exchange(heading_, solved->place.q - last_.back().place.q);
   const bool folded = before * heading_ < 0;
   if (folded) {
     ++count_;
     auto found = fold({last_[last_.size() - 2], last_.back(), *solved});
-    if (!found) throw RunFailure("the fold of the branch was passed, but not found to Continuation/fold tolerance");
+    if (!found)
+      throw RunFailure("the fold of the branch was passed, but not located to Continuation/fold tolerance: set a larger tolerance");
     ahead_.emplace_back(found->at, true);
     folds_ = {std::move(*found)};
   }

@@ -55,14 +55,16 @@ StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, do
     const Net explicitly = known ? Net(state.x + dt / 2 * ((2 + r) * v - r * state.history[1])) : Net(state.x + dt * v);
     auto [y, count, converged] = iterate(dynamics, state, dt, explicitly);
     attempts.report.iterations += count;
-    if (!converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step did not converge");
+    if (!converged && options_.fixed_step)
+      throw RunFailure("Crank-Nicolson with a fixed step did not converge: set a smaller Time/fixed step");
     const double error = known ? dynamics.norm(y - explicitly) / (3 * (1 + 1 / r)) / (options_.tolerance * step_share(options_.tolerance, 2)) : 0;
     Net slope;
     if (converged && (error <= 1 || options_.fixed_step)) {
       dynamics.restore_volume(y);
       slope = dynamics.velocity(y);
       converged = slope.allFinite();
-      if (!converged && options_.fixed_step) throw RunFailure("Crank-Nicolson with a fixed step ended in numbers that are not finite");
+      if (!converged && options_.fixed_step)
+        throw RunFailure("Crank-Nicolson with a fixed step gave values that are not finite: set a smaller Time/fixed step");
     }
     if (slope.size() == 0 || !converged) {
       attempts.reject(by_error_ ? (converged ? std::min(0.8, step_factor(error, 0, 3)) : 0.5) : shrink, by_error_ && converged ? error : 0);

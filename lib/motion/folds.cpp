@@ -64,7 +64,7 @@ bool Branch::next_fold() {
   constexpr double least = 1. / 64;
   if (!options_.second_values || values_ == options_.second_values->size()) return false;
   const std::string& parameter = *options_.second_parameter;
-  if (folds_.empty()) throw RunFailure("the branch has no fold that could go on in " + parameter);
+  if (folds_.empty()) throw RunFailure("the branch has no fold that could be continued in " + parameter);
   const double from = second_, to = (*options_.second_values)[values_++];
   for (double gone = 0, share = 1; gone < 1;) {
     second_ = gone + share < 1 ? from + (gone + share) * (to - from) : to;

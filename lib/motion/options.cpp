@@ -9,16 +9,18 @@
 namespace tanktread::motion {
 
 void TimeOptions::declare(deck::Section& section) {
-  section.key("scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
-              "time integration scheme. `auto`: `bs3`, `tr-bdf2` or `rkc2` according to the measured stiffness, but `tr-bdf2` if every velocity "
-              "needs the solution of a linear system (viscosity ratio other than 1). `tr-bdf2`: implicit, L-stable, order 3 by extrapolation. "
-              "`bdf3`: implicit, multistep, order 3. `bs3`: explicit, order 3. `rkc2`: explicit, stabilised, order 2, no assembled operator. "
-              "`crank-nicolson`: the paper's scheme (4.1)");
+  section.key(
+      "scheme", scheme, deck::Choice{"auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson"},
+      "time integration scheme. `auto`: `bs3`, `tr-bdf2` or `rkc2` according to the measured stiffness, but `tr-bdf2` if every velocity "
+      "needs the solution of a linear system (viscosity ratio other than 1). `tr-bdf2`: implicit, L-stable, order 3 by extrapolation. "
+      "`bdf3`: implicit, multistep, order 3. `bs3`: explicit Runge-Kutta, order 3. `rkc2`: explicit stabilised Runge-Kutta, order 2, "
+      "stores no matrix of the boundary integrals. `crank-nicolson`: the scheme of Maestre et al. 2017 (4.1)");
   std::optional<double> end;
   section.key("final time", end, deck::positive(), "time", "time at which the run ends; required, except with Particle/motion `prescribed`");
   final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
-              "tolerance of the error of a time step: root mean square displacement of the control points divided by R_C");
+              "largest allowed error of a time step: root mean square displacement of the control points divided by R_C, the radius of the "
+              "sphere with the particle's volume");
   section.key("initial step", initial_step, deck::positive(), "time", "length of the first time step; if not given, the scheme chooses one");
   section.key("fixed step", fixed_step, deck::positive(), "time", "length of all time steps, without error control");
   section.key("maximum step", maximum_step, deck::positive(), "time", "upper limit for the length of time steps");
@@ -26,37 +28,43 @@ void TimeOptions::declare(deck::Section& section) {
               "smallest allowed length of time steps with error control. If a shorter one is needed, the run ends; if not given, 1e-9 divided by "
               "the rate of the flow");
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
-              "value of the series `shape_velocity` (6.8) below which the run ends; if not given, the run ends at the final time. With a "
-              "tank-treading membrane 2e-4 is reached at the default tolerances, with 216 elements as well as with 864");
+              "value of the series `shape_velocity` below which the run ends: root mean square of the normal velocity that changes the "
+              "shape, divided by the velocity scale of the flow (6.8). If not given, the run ends at the final time. With a tank-treading "
+              "membrane 2e-4 is reached at the default tolerances, with 216 elements as well as with 864");
   section.key("end when past", end_when_past, deck::any(), "length",
-              "position x1, or in a bent channel arc length of the centre line. The run ends when the centroids of all particles are beyond it; if "
-              "not given, the run ends at the final time");
+              "position x1, or in a bent channel arc length of the centre line; the run ends when the centroids of all particles are "
+              "beyond it. If not given, the run ends at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1",
-              "tolerance of the sub-iteration of the scheme `crank-nicolson` (4.1)");
+              "tolerance of the fixed-point iteration of Time/scheme `crank-nicolson` (4.1): root mean square change of the control points "
+              "in one iteration divided by R_C, the radius of the sphere with the particle's volume");
   section.key("nonlinear solver", nonlinear_solver, deck::Choice{"plain", "anderson", "newton-krylov"},
-              "solver of the nonlinear equations of a `crank-nicolson` step. `plain`: the paper's sub-iteration. `anderson`: sub-iteration "
-              "accelerated by NOX, the nonlinear solvers of Trilinos. `newton-krylov`: Newton's method by NOX without an assembled Jacobian");
+              "solver of the nonlinear equations of a step of Time/scheme `crank-nicolson`. `plain`: fixed-point iteration, as by Maestre "
+              "et al. (2017). `anderson`: fixed-point iteration with Anderson acceleration by NOX, the nonlinear solvers of Trilinos. "
+              "`newton-krylov`: Newton's method by NOX without an assembled Jacobian");
   section.key("step control", step_control, deck::Choice{"iterations", "error"},
-              "control of the step length of `crank-nicolson`. `iterations`: by the number of sub-iterations, the paper's rule (4.1); default for "
-              "the nonlinear solver `plain`. `error`: by the error (4.10)");
+              "choice of the step length of Time/scheme `crank-nicolson`. `iterations`: from the number of fixed-point iterations, as by "
+              "Maestre et al. 2017 (4.1); default for Time/nonlinear solver `plain`. `error`: from the estimated error (4.10)");
   section.key("count euler step", count_euler_step,
-              "whether the step control `iterations` of `crank-nicolson` counts the Euler step, which needs no evaluation, as the first "
-              "sub-iteration");
+              "whether Time/step control `iterations` counts the initial guess, an explicit Euler step that needs no evaluation, as the "
+              "first fixed-point iteration of a `crank-nicolson` step");
   section.key("newton tolerance", newton_tolerance, deck::between(1e-12, 1.0), "1",
-              "largest error of the quasi-Newton iteration in a stage of an implicit scheme, divided by Time/tolerance");
+              "largest allowed error of the quasi-Newton iteration in a stage of an implicit time step, divided by Time/tolerance");
   section.key("newton iterations", newton_iterations, deck::at_least(1), "1",
-              "largest number of quasi-Newton iterations in a stage of an implicit scheme; if more are needed, the step is halved");
+              "largest number of quasi-Newton iterations in a stage of an implicit time step; if more are needed, the step is halved");
   section.key("linear tolerance", linear_tolerance, deck::between(1e-14, 0.5), "1",
-              "relative residual of the linear solves in steps of implicit schemes");
+              "relative residual to which the linear systems in implicit time steps are solved");
   section.key("contraction limit", contraction_limit, deck::between(0.01, 1.0), "1",
-              "contraction rate of the quasi-Newton iteration of implicit schemes above which the frozen layer operator is assembled again");
+              "convergence factor of the quasi-Newton iteration in implicit time steps (size of a correction divided by the previous one) "
+              "above which the boundary-integral operator in the Jacobian, which is kept over several steps, is assembled again");
   section.key("largest operator", largest_operator, deck::positive(), "GB",
-              "size of the frozen operator, on all ranks together, above which the scheme `auto` uses `rkc2` instead of an implicit scheme");
+              "memory of the stored boundary-integral operator, on all MPI ranks together, above which Time/scheme `auto` uses the "
+              "explicit scheme `rkc2` instead of an implicit one");
   section.key("secants", secants, deck::between(0, 20), "1",
-              "number of earlier quasi-Newton corrections from which implicit schemes estimate the part of the Jacobian that is neglected (4.13)");
+              "number of earlier quasi-Newton corrections from which implicit time steps estimate the terms that the approximate Jacobian "
+              "neglects (4.13)");
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
-              "largest order of the extrapolation of slopes that predicts a stage of `tr-bdf2`. Each step uses the order that would have been best "
-              "for the previous step");
+              "largest degree of the polynomial through earlier velocities whose extrapolation is the initial guess of a stage of "
+              "Time/scheme `tr-bdf2`. Each step uses the degree that would have been best for the previous step");
 }
 
 void TimeOptions::check() const {

@@ -22,20 +22,22 @@ namespace tanktread::motion {
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
   section.key("period", expected, deck::positive(), "time",
-              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history: period of "
-              "the flow, which repeats its course from time 0 to this time");
+              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history, the "
+              "period of the flow: the history from time 0 to this time is repeated");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
-              "angle about x2 by which the shape is rotated after a period. With 180 a period is half a revolution of a membrane in shear, at half "
-              "the cost");
+              "angle about x2 by which the shape is rotated after a period before it is compared with the initial shape. With 180, a "
+              "period is half a revolution of a membrane in shear flow, at half the cost");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
-              "tolerance of the difference between the shape and its return after a period: root mean square displacement of the control points "
-              "divided by R_C; about ten times Time/tolerance. If disturbances decay within a period, the error of the shape is less than a "
-              "hundredth of the tolerance");
+              "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
+              "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "
+              "disturbances decay within a period, the error of the shape is less than a hundredth of the tolerance");
   section.key("iterations", iterations, deck::between(1, 1000), "1",
-              "largest number of iterations of NOX (a package of Trilinos), each of which integrates over one period");
+              "largest number of iterations of NOX (a package of Trilinos) in the search for the periodic motion, each of which integrates "
+              "over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
-              "largest displacement of the perturbed shapes whose returns after a period give the multipliers by finite differences, with Spectrum");
+              "largest displacement of the perturbed shapes from whose return after a period the Floquet multipliers are computed by "
+              "finite differences, if Spectrum is given; divided by R_C, the radius of the sphere with the particle's volume");
 }
 
 namespace {
@@ -51,7 +53,8 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
   state.x = x;
   dynamics.restore_volume(state.x);
   begin(dynamics, state);
-  if (!state.x.allFinite() || !state.history.front().allFinite()) throw RunFailure("the velocity of a shape that should come back cannot be had");
+  if (!state.x.allFinite() || !state.history.front().allFinite())
+    throw RunFailure("the evaluation of the velocity failed in the search for a periodic motion");
   state.step = time.initial_step.value_or(first_step(dynamics, state, time));
   const std::unique_ptr<Integrator> scheme = integrator(time, nox);
   while (state.time < most * (1 - 1e-12)) {
@@ -69,7 +72,8 @@ ReturnMap::ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std:
     : dynamics_(dynamics), time_(time), nox_(std::move(nox)), options_(options), origin_(std::move(c)) {
   if (options_.driven) return;
   normal_ = dynamics.velocity(origin_);
-  if (!normal_.allFinite() || normal_.isZero(0)) throw RunFailure("a shape that is at rest, or has no velocity, cannot come back");
+  if (!normal_.allFinite() || normal_.isZero(0))
+    throw RunFailure("the shape is at rest, or its velocity is not finite, so that no periodic motion can be found");
   normal_ /= normal_.norm();
 }
 
@@ -97,7 +101,7 @@ Net ReturnMap::operator()(const Net& x) {
     return true;
   });
   if (found.size() == 0)
-    throw RunFailure(formatted("the shape has not come back within a time of %.6g: Periodic/period or Periodic/turn is another one", most));
+    throw RunFailure(formatted("the shape did not recur within the time %.6g: give another Periodic/period or Periodic/turn", most));
   return found;
 }
 

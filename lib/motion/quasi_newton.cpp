@@ -54,7 +54,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
     secants = state.secants = {};
   }
   if (!last.solved || !std::isfinite(error)) {
-    if (options.fixed_step) throw RunFailure("the implicit step of fixed size did not converge");
+    if (options.fixed_step) throw RunFailure("the implicit step of fixed length did not converge: set a smaller Time/fixed step");
     return {};
   }
   const bool small = error <= 1 || options.fixed_step;

@@ -26,7 +26,8 @@ double Attempts::next(double longest) {
 
 bool Attempts::holds(double error, const char* kind) const {
   const bool finite = std::isfinite(error);
-  if (!finite && options_.fixed_step) throw RunFailure(std::string("the ") + kind + " step of fixed size ended in numbers that are not finite");
+  if (!finite && options_.fixed_step)
+    throw RunFailure(std::string("the ") + kind + " step of fixed length gave values that are not finite: set a smaller Time/fixed step");
   return finite && (error <= 1 || options_.fixed_step);
 }
 

@@ -17,25 +17,28 @@ namespace tanktread::motion {
 
 void SpectrumOptions::declare(deck::Section& section) {
   section.key("number", number, deck::between(1, 500), "1",
-              "number of reported modes. They are ordered from the fastest growing to the fastest decaying one");
+              "number of reported eigenmodes of the steady shape. They are ordered from the fastest growing to the fastest decaying one");
   section.key("near", near, deck::any(), "1/time",
-              "growth rate; if given, the modes with the rates nearest to it are reported instead of the fastest growing modes");
+              "growth rate; if given, the eigenmodes with the growth rates nearest to it are reported instead of the fastest growing ones");
   section.key("method", method, deck::Choice{"dense", "krylov"},
-              "method for the eigenvalues of the Jacobian. `dense`: the whole Jacobian, two velocities per column, and all eigenvalues. `krylov`: "
-              "the leading eigenvalues by block Krylov-Schur on (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, "
-              "preconditioned by the frozen Jacobian");
+              "method for the eigenvalues of the Jacobian J of the velocity with respect to the shape. `dense`: all eigenvalues of the "
+              "whole matrix, which needs two velocity evaluations per column. `krylov`: the leading eigenvalues by block Krylov-Schur with "
+              "(I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, preconditioned by an approximate Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
-              "shift of the method `krylov`, which finds the modes with the growth rates closest to this value first. If not given, the rate of the "
-              "flow; without flow, the rate of the membrane, modulus / (viscosity x R_C)");
+              "shift of the shift-and-invert method Spectrum/method `krylov`, which finds the modes with the growth rates closest to this "
+              "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "
+              "R_C), where R_C is the radius of the sphere with the particle's volume");
   section.key("block", block, deck::between(1, 50), "1",
-              "block size of the method `krylov`: number of vectors multiplied together. At most this many modes of equal rate are found reliably");
-  section.key("parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
-              "parity of the modes under the mirror planes across x1, x2, x3, if it differs from that of the shape: 1 for symmetric, -1 for "
-              "antisymmetric; half turns and point symmetry have the product of their axes' parities. If not given, all 1. Only fundamental points "
-              "are unknowns, as without this key, while velocities are computed on the whole surface. With Symmetry/use `none` modes of all "
-              "parities are found at once");
+              "block size of Spectrum/method `krylov`: number of vectors multiplied together. At most this many modes of equal growth rate "
+              "are found reliably");
+  section.key(
+      "parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
+      "parity of the eigenmodes under the mirror planes normal to x1, x2, x3, for modes that break the symmetry of the shape: 1 for "
+      "symmetric, -1 for antisymmetric; half turns and point symmetry have the product of their axes' parities. If not given, all 1. Only "
+      "control points that are not images of others are unknowns. With Symmetry/use `none` modes of all parities are found at once");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
-              "largest displacement of the perturbed shapes whose velocities give the Jacobian by finite differences");
+              "largest displacement of the perturbed shapes from whose velocities the Jacobian is computed by finite differences, divided "
+              "by R_C, the radius of the sphere with the particle's volume");
 }
 
 const char* name(ModeKind kind) {
@@ -44,9 +47,12 @@ const char* name(ModeKind kind) {
 }
 
 void Mode::add_columns(const std::string& number, Columns& to) const {
-  to.add(rate.real(), {"rate_" + number, "1/time", "of mode k of the spectrum, as its displacement grows (Spectrum): the modes as Spectrum/number "
-         "and Spectrum/near order them"});
-  to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time", "of the same mode, 2 pi over the period with which it oscillates; not negative"});
+  to.add(rate.real(), {"rate_" + number, "1/time",
+                       "growth rate of eigenmode k of the steady shape: real part of the eigenvalue. Spectrum/number and Spectrum/near "
+                       "determine the order of the modes"});
+  to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
+                                 "angular frequency of eigenmode k of the steady shape, 2 pi divided by its period of oscillation: "
+                                 "magnitude of the imaginary part of the eigenvalue"});
 }
 
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
@@ -55,9 +61,10 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   for (const Mode& mode : modes)
     if (mode.kind == ModeKind::shape || (all_rigid && mode.kind == ModeKind::rotation))
       leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
-  to.add(leading, {"leading_rate", "1/time", "largest rate of the modes that change the shape, translations and rotations left out: negative where "
-         "it is stable"});
-  to.add(unstable, {"unstable_modes", "1", "of those modes, how many grow"});
+  to.add(leading, {"leading_rate", "1/time",
+                   "largest growth rate of the eigenmodes that change the shape, without translations and rotations; negative if the "
+                   "steady shape is stable"});
+  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes, among those that change the shape"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 
@@ -95,7 +102,7 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
   if (d.isZero(0)) return Eigen::VectorXd::Zero(y.size());
   const double e = difference_ / d.rowwise().norm().maxCoeff();
   const Net change = (velocity(x_ + e * d) - velocity(x_ - e * d)) / (2 * e);
-  if (!change.allFinite()) throw RunFailure("the velocity of a shape close to the one that is linearised about cannot be had");
+  if (!change.allFinite()) throw RunFailure("the evaluation of the velocity failed for a shape close to the steady shape");
   return keeping(shapes_.coordinates(change));
 }
 

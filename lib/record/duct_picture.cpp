@@ -52,14 +52,23 @@ std::vector<output::Array> duct_picture(const stokes::DuctFlow& flow) {
   const auto [low, high] = flow.outline().box();
   const auto x2 = line(low[0], high[0]), x3 = line(low[1], high[1]), outline = outline_of(flow.outline());
   const auto [place, fastest] = flow.maximum();
-  return {{"outline", "length", "places x2, x3 on the wall, closed", outline, {outline.size() / 2, 2}},
-          {"x2", "length", "columns of the grid", x2, {x2.size()}},
-          {"x3", "length", "rows of the grid", x3, {x3.size()}},
-          {"velocity", "length/time", "along x1 in the empty tube", velocities(flow, x2, x3), {x3.size(), x2.size()}},
-          {"maximum", "length, length/time", "place x2, x3 of the largest velocity, and this velocity", {place[0], place[1], fastest}, {3}},
-          {"pressure_gradient", "pressure/length", "fall of the pressure along the empty tube", {flow.pressure_gradient()}, {}},
-          {"mean_velocity", "length/time", "flow rate over area", {flow.mean_velocity()}, {}},
-          {"radius", "length", "R_T: of the circle of equal area", {flow.radius()}, {}}};
+  return {
+      {"outline", "length", "points x2, x3 of the outline of the cross-section, a closed curve", outline, {outline.size() / 2, 2}},
+      {"x2", "length", "coordinates x2 of the columns of the velocity grid", x2, {x2.size()}},
+      {"x3", "length", "coordinates x3 of the rows of the velocity grid", x3, {x3.size()}},
+      {"velocity", "length/time", "velocity along x1 in the empty tube, on the grid", velocities(flow, x2, x3), {x3.size(), x2.size()}},
+      {"maximum",
+       "length, length/time",
+       "position x2, x3 of the largest velocity in the empty tube, and this velocity",
+       {place[0], place[1], fastest},
+       {3}},
+      {"pressure_gradient", "pressure/length", "decrease of the pressure per length along the empty tube", {flow.pressure_gradient()}, {}},
+      {"mean_velocity",
+       "length/time",
+       "mean velocity of the empty tube: flow rate divided by the area of the cross-section",
+       {flow.mean_velocity()},
+       {}},
+      {"radius", "length", "radius R_T of the circle with the area of the cross-section", {flow.radius()}, {}}};
 }
 
 namespace {
@@ -119,34 +128,40 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
     rate_s.push_back(channel.start() + (channel.end() - channel.start()) * (0.2 + 0.6 * k / (sections - 1)));
   const std::vector<double> rate = flow.flow_rates_at(rate_s);
   const std::size_t n = s.size();
-  std::vector<output::Array> all{{"s", "length", "way along the centre line", s, {n}},
-                                 {"centre", "length", "places of the centre line", flat(centre), {n, 3}},
-                                 {"factor", "1", "of the section there, along x2 (before a bend) and x3", factor, {n, 2}},
-                                 {"wall",
-                                  "length",
-                                  "places of the wall beside the centre line: one side along x2 (before a bend), the other, then along x3",
-                                  [&] {
-                                    std::vector<double> all;
-                                    for (const auto& line : lines)
-                                      for (const double x : flat(line)) all.push_back(x);
-                                    return all;
-                                  }(),
-                                  {4, n, 3}},
-                                 {"velocity", "length/time", "of the empty channel on the centre line", velocity, {n, 3}},
-                                 {"section_s", "length", "where sections are", rate_s, {rate_s.size()}},
-                                 {"flow_rate", "length^3/time", "through these sections", rate, {rate.size()}},
-                                 {"pressure_drop", "force/length^2", "between the ends of the empty channel", {flow.pressure_drop()}, {}},
-                                 {"extra_pressure_drop",
-                                  "force/length^2",
-                                  "the same over that of a straight tube of the inlet's section and as long",
-                                  {flow.extra_pressure_drop()},
-                                  {}}};
-  if (channel.repeats()) return all;  // in a periodic channel the density on the wall is not the traction of the fluid inside, so it is not plotted
+  std::vector<output::Array> all{
+      {"s", "length", "arc length s along the centre line of the channel", s, {n}},
+      {"centre", "length", "points of the centre line of the channel", flat(centre), {n, 3}},
+      {"factor", "1", "factors of the cross-section at s, along x2 (direction before a bend) and x3", factor, {n, 2}},
+      {"wall",
+       "length",
+       "points of the wall at s: on both sides along x2 (direction before a bend), then on both sides along x3",
+       [&] {
+         std::vector<double> all;
+         for (const auto& line : lines)
+           for (const double x : flat(line)) all.push_back(x);
+         return all;
+       }(),
+       {4, n, 3}},
+      {"velocity", "length/time", "velocity in the empty channel on the centre line", velocity, {n, 3}},
+      {"section_s", "length", "arc lengths of the cross-sections of `flow_rate`", rate_s, {rate_s.size()}},
+      {"flow_rate", "length^3/time", "flow rate of the empty channel through these cross-sections", rate, {rate.size()}},
+      {"pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel", {flow.pressure_drop()}, {}},
+      {"extra_pressure_drop",
+       "force/length^2",
+       "pressure drop of the empty channel minus that of a straight tube of the same length with the inlet's cross-section",
+       {flow.extra_pressure_drop()},
+       {}}};
+  if (channel.repeats())
+    return all;  // in a periodic channel the density on the wall is not the traction of the fluid inside, so it is not plotted
   const WallLine wall = along_wall(flow);
-  all.push_back({"wall_s", "length", "way along a line of the wall, where the outline begins", wall.s, {wall.s.size()}});
+  all.push_back({"wall_s", "length", "arc length along the line of the wall on which the outline begins", wall.s, {wall.s.size()}});
+  all.push_back({"wall_shear_stress",
+                 "force/length^2",
+                 "magnitude of the tangential traction on this line in the empty channel",
+                 wall.shear,
+                 {wall.s.size()}});
   all.push_back(
-      {"wall_shear_stress", "force/length^2", "size of the tangential traction of the empty channel there", wall.shear, {wall.s.size()}});
-  all.push_back({"wall_pressure", "force/length^2", "of the empty channel there, 0 at the outlet", wall.pressure, {wall.s.size()}});
+      {"wall_pressure", "force/length^2", "pressure on this line in the empty channel, 0 at the outlet", wall.pressure, {wall.s.size()}});
   return all;
 }
 

@@ -29,42 +29,49 @@ double resting_volume(const Body& body) { return surface::volume(body.space, bod
 double resting_area(const Body& body) { return surface::measures(body.space, body.rest).area; }
 
 constexpr Number named_numbers[] = {
-    {"radius", "length", "R_C: of the sphere of equal volume", [](const Scene&, const Body& b) { return b.radius; }},
-    {"volume", "length^3", "of the resting shape", [](const Scene&, const Body& b) { return resting_volume(b); }},
-    {"area", "length^2", "of the resting shape", [](const Scene&, const Body& b) { return resting_area(b); }},
-    {"reduced_volume", "1", "6 sqrt(pi) V/A^(3/2): 1 of a sphere",
+    {"radius", "length", "R_C: radius of the sphere with the particle's volume", [](const Scene&, const Body& b) { return b.radius; }},
+    {"volume", "length^3", "volume of the resting shape", [](const Scene&, const Body& b) { return resting_volume(b); }},
+    {"area", "length^2", "area of the resting shape", [](const Scene&, const Body& b) { return resting_area(b); }},
+    {"reduced_volume", "1", "reduced volume 6 sqrt(pi) V/A^(3/2), with volume V and area A of the resting shape; 1 for a sphere",
      [](const Scene&, const Body& b) { return 6 * std::sqrt(std::numbers::pi) * resting_volume(b) / std::pow(resting_area(b), 1.5); }},
-    {"speed", "length/time", "of Ca: rate of the flow times R_C; in a tube the mean velocity",
+    {"speed", "length/time", "velocity scale of the capillary number: rate of the flow times R_C; in a tube the mean velocity",
      [](const Scene& s, const Body&) { return s.speed() > 0 ? s.speed() : none; }},
-    {"viscosity_ratio", "1", "lambda: viscosity inside over viscosity outside",
+    {"viscosity_ratio", "1", "lambda: viscosity of the inner fluid divided by the viscosity of the outer fluid",
      [](const Scene& s, const Body&) { return s.particle.rigid() ? none : s.particle.viscosity_ratio; }},
-    {"capillary_number", "1", "Ca = mu speed/G_s, of a drop mu speed/sigma",
+    {"capillary_number", "1",
+     "capillary number mu speed/G_s, with the outer viscosity mu and the surface shear modulus G_s; for a drop mu speed/sigma, with the "
+     "surface tension sigma",
      [](const Scene& s, const Body&) { return !s.particle.rigid() && s.speed() > 0 ? s.flow.viscosity * s.speed() / s.modulus() : none; }},
-    {"shear_modulus", "force/length", "G_s", [](const Scene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
-    {"area_modulus", "force/length", "K_s of small strains: (1 + 2 C) G_s of Skalak's law and of Evans and Skalak's, 3 G_s of rubber",
+    {"shear_modulus", "force/length", "surface shear modulus G_s of the membrane",
+     [](const Scene& s, const Body&) { return s.elastic() ? s.modulus() : none; }},
+    {"area_modulus", "force/length",
+     "area modulus K_s of the membrane at small strains: (1 + 2 C) G_s for the laws `Skalak` and `Evans-Skalak` with Membrane/area "
+     "dilatation C, 3 G_s for rubber",
      [](const Scene& s, const Body& b) { return s.elastic() ? area_modulus(b.law) : none; }},
-    {"surface_tension", "force/length", "sigma",
+    {"surface_tension", "force/length", "surface tension sigma of the drop",
      [](const Scene& s, const Body&) { return s.particle.rigid() || s.elastic() ? none : s.modulus(); }},
-    {"bending_modulus", "force length", "E_b",
+    {"bending_modulus", "force length", "bending modulus E_b of the membrane",
      [](const Scene& s, const Body&) { return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() : none; }},
-    {"bending_number", "1", "E_b/(G_s R_C^2)",
+    {"bending_number", "1", "bending number E_b/(G_s R_C^2)",
      [](const Scene& s, const Body& b) {
        return s.elastic() && s.bending_modulus() > 0 ? s.bending_modulus() / (s.modulus() * b.radius * b.radius) : none;
      }},
-    {"relaxation_time", "time", "mu R_C/G_s, of a drop mu R_C/sigma",
+    {"relaxation_time", "time", "relaxation time of the shape: mu R_C/G_s; for a drop mu R_C/sigma",
      [](const Scene& s, const Body& b) { return s.particle.rigid() ? none : s.flow.viscosity * b.radius / s.modulus(); }},
-    {"tube_radius", "length", "R_T: of the circle of equal area",
+    {"tube_radius", "length", "radius R_T of the circle with the area of the cross-section",
      [](const Scene&, const Body& b) { return b.duct ? b.duct->radius() : none; }},
-    {"tube_length", "length", "of the piece of the tube that is computed",
+    {"tube_length", "length", "length of the computed part of the tube",
      [](const Scene&, const Body& b) { return b.wall ? b.wall->length() : none; }},
-    {"confinement", "1", "R_C/R_T", [](const Scene&, const Body& b) { return b.duct ? b.radius / b.duct->radius() : none; }},
-    {"flow_rate", "length^3/time", "Q of the empty tube",
+    {"confinement", "1", "confinement R_C/R_T: radius of the sphere with the particle's volume divided by the tube radius",
+     [](const Scene&, const Body& b) { return b.duct ? b.radius / b.duct->radius() : none; }},
+    {"flow_rate", "length^3/time", "flow rate of the empty tube",
      [](const Scene& s, const Body& b) {
        return b.duct && s.flow.type == "duct" ? b.duct->mean_velocity() * std::numbers::pi * std::pow(b.duct->radius(), 2) : none;
      }},
-    {"pressure_gradient", "force/length^3", "fall of the pressure along the empty tube",
+    {"pressure_gradient", "force/length^3", "decrease of the pressure per length along the empty tube",
      [](const Scene& s, const Body& b) { return b.duct && s.flow.type == "duct" ? b.duct->pressure_gradient() : none; }},
-    {"reynolds_number", "1", "0: the fluids have no inertia, whatever their density", [](const Scene&, const Body&) { return 0.0; }},
+    {"reynolds_number", "1", "Reynolds number: always 0, because the fluids have no inertia",
+     [](const Scene&, const Body&) { return 0.0; }},
 };
 
 }  // namespace
@@ -116,7 +123,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
       return;
     }
     if (scene.wall.present) {
-      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: no wall unknowns, its images with every node");
+      lines.emplace_back("flow", scene.flow.type + history + ", beside a plane wall: represented by images, no wall unknowns");
       return;
     }
     lines.emplace_back("flow", scene.flow.type + history + ", unbounded: no wall unknowns, no pressure drop");
@@ -125,7 +132,8 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
   const surface::TubeWall& wall = *body.wall;
   const double unknowns = 3.0 * static_cast<double>(wall.sites.size()) / (wall.channel ? body.symmetry.order() : 1);
   std::string flow = "quiescent fluid";
-  if (scene.flow.type == "simple shear") flow = scene.flow.type + ", with which the wall goes along; the duct's own flow for the pressure drop";
+  if (scene.flow.type == "simple shear")
+    flow = scene.flow.type + ", with which the wall moves; the flow of the empty duct is used for the pressure drop";
   if (scene.flow.type == "duct")
     flow = formatted("duct flow of mean velocity %g, pressure gradient %.6g", body.duct->mean_velocity(), -body.duct->pressure_gradient());
   lines.emplace_back("flow", flow + (scene.tube.exact_flow() ? ", exact" : formatted(" by %d boundary elements", scene.tube.flow_elements)));
@@ -147,11 +155,12 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
 
 std::string viscosity_line(const Scene& scene, int n_points, bool tree) {
   if (scene.particle.viscosity_ratio == 1 && scene.kelvin_voigt_membrane())
-    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns a velocity",
+    return formatted("ratio 1: no double layer; a viscous membrane: single layer %s, a system of %d unknowns per velocity",
                      scene.solvers.assembled(tree) ? "assembled" : "matrix-free", 3 * n_points);
   if (scene.particle.viscosity_ratio == 1) return "ratio 1: no double layer, no system for the velocity";
-  return formatted("ratio %g: double layer %s, a system of %d unknowns a velocity", scene.particle.viscosity_ratio,
-                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free", 3 * n_points);
+  return formatted("ratio %g: double layer %s, a system of %d unknowns per velocity", scene.particle.viscosity_ratio,
+                   scene.solvers.assembled(tree) && (scene.tube.present || !scene.domain.present) ? "assembled" : "matrix-free",
+                   3 * n_points);
 }
 
 std::string membrane_line(const Scene& scene) {
@@ -161,7 +170,8 @@ std::string membrane_line(const Scene& scene) {
   const std::string law = own ? formatted(" with shear modulus %.6g G_s and area modulus %.6g G_s for small strains", own->shear_modulus(),
                                           own->area_modulus())
                               : "";
-  const std::string memory = scene.maxwell_membrane() ? formatted(", a Maxwell element that forgets within %g", *scene.membrane.relaxation_time) : "";
+  const std::string memory =
+      scene.maxwell_membrane() ? formatted(", a Maxwell element of relaxation time %g", *scene.membrane.relaxation_time) : "";
   const std::string load = scene.membrane.law + law + memory + pulled + ", load " + scene.membrane.load;
   if (scene.load_is_strong()) return load + " at the collocation sites (P-3)";
   if (scene.membrane.law == "surface tension") return load + " per current area (3.6)";
@@ -170,7 +180,7 @@ std::string membrane_line(const Scene& scene) {
 }
 
 std::string surfactant_line(const Scene& scene) {
-  return formatted("%s equation of state, tension %.6g of that of the clean interface at the start: an unknown a control point",
+  return formatted("%s equation of state, initial tension %.6g times that of the clean interface: one unknown per control point",
                    scene.surfactant->equation_of_state.c_str(), scene.surfactant->tension(1));
 }
 
@@ -184,18 +194,18 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
   if (!scene.time.assembles() && !chosen) return scheme + ", explicit in the fluid: nothing is assembled";
-  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node a control point, not assembled";
+  if (scene.solvers.frozen_operator == "nodal") return scheme + ", frozen single layer by one node per control point, not assembled";
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
 /// Adds the lines about a search for steady shapes or a spectrum, which replace the line `time` of the plan.
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
-    lines.emplace_back("steady", "the shape at rest, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
-  if (scene.periodic.present) lines.emplace_back("periodic", "the shape that comes back, as the fixed point of runs over a period");
+    lines.emplace_back("steady", "the steady shape, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
+  if (scene.periodic.present) lines.emplace_back("periodic", "a periodic motion, as the fixed point of runs over one period");
   if (scene.continuation.present)
     lines.emplace_back("branch", formatted("along %s to %g, ", scene.continuation.parameter.c_str(), scene.continuation.to) +
-                                     scene.continuation.method + ", each point by an iteration of its own");
+                                     scene.continuation.method + ", each point by a separate iteration");
   if (const auto& second = scene.continuation.second_parameter)
     lines.emplace_back("folds", formatted("the first one at %zu values of %s", scene.continuation.second_values->size(), second->c_str()));
   if (!scene.spectrum.present) return;
@@ -207,19 +217,21 @@ void add_steady(Lines& lines, const Scene& scene, const Body& body) {
 
 std::string symmetry_line(const Scene& scene, const Body& body) {
   if (body.symmetry.order() == 1 && scene.symmetry.use == "none") return "none used";
-  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "none looked for in a tube" : "none found";
+  if (body.symmetry.order() == 1) return body.wall && !body.wall->channel ? "not searched for in a tube" : "none found";
   const int evaluated = static_cast<int>(body.symmetry.fundamental().size());
-  return body.symmetry.description() + formatted(": %d of %d control points evaluated, %.2g times less; whatever would break it is left out "
-                                                 "(Symmetry/use)",
-                                                 evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
+  return body.symmetry.description() +
+         formatted(
+             ": %d of %d control points evaluated, %.2g times fewer; instabilities that break the symmetry are excluded (Symmetry/use)",
+             evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
 /// Returns the line of the plan about a rigid particle with prescribed or free motion: the unknowns of its motion.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
-  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is solved for with the traction, at each place";
+  if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
   return std::string("rigid and free, no membrane: six rigid motions") +
-         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") + ", solved once, are all that it can meet";
+         (body.flow.affine() ? " and five strains" : ", five strains and eighteen quadratic fields") +
+         ", solved once, determine its motion";
 }
 
 std::string forces_line(const Scene& scene) {
@@ -246,7 +258,7 @@ std::string solvers_line(const Scene& scene) {
   if (!scene.runs_in_time() || scene.time.assembles() || scene.time.scheme == "auto") add("implicit step", solvers.implicit_step);
   if (scene.steady.present && scene.steady.method == "newton-krylov") add("steady", solvers.steady);
   if (scene.spectrum.present && scene.spectrum.method == "krylov") add("spectrum", solvers.spectrum);
-  return line.empty() ? "none iterates" : line;
+  return line.empty() ? "no iterative solver" : line;
 }
 
 Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
@@ -261,7 +273,8 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
-  if (scene.adaptation.enabled) lines.emplace_back("mesh", "refined once at the first place, where the shape, a film or the traction asks for it");
+  if (scene.adaptation.enabled)
+    lines.emplace_back("mesh", "refined once at the initial position, where the shape, a film or the traction needs it");
   lines.emplace_back("symmetry", "none used");
   return lines;
 }
@@ -275,9 +288,10 @@ Lines particle_lines(const Scene& one, int n_points, bool tree) {
     return lines;
   }
   const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
-  const char* by_traction = around ? "its traction, by GMRES around factors of the bodies alone, in a system" : "its traction, in a factored system";
-  return {{"body", formatted("rigid, %s: no membrane, no mesh that moves; %s of %d unknowns a velocity %s",
-                             one.particle.motion == Motion::free ? "free" : "moving as told",
+  const char* by_traction = around ? "its traction, by GMRES preconditioned with factors of the isolated bodies, in a system"
+                                   : "its traction, in a factored system";
+  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; %s of %d unknowns per velocity %s",
+                             one.particle.motion == Motion::free ? "free" : "with prescribed motion",
                              first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
 }
 
@@ -302,7 +316,7 @@ void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, 
 }
 
 std::string far_sum_line(const Scene& scene, bool tree) {
-  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target meets every node";
+  const std::string sum = tree ? "by clusters of nodes and targets, to the tolerance of the quadrature" : "every target with every node";
   return sum + (scene.quadrature.far_in_single() ? ", terms in single precision" : "");
 }
 
@@ -326,16 +340,17 @@ output::Entries<std::string> plan(const Scene& scene, const Body& body, int rank
   lines.emplace_back("far sum", far_sum_line(scene, tree));
   lines.emplace_back("kernels", instructions());
   if (scene.has_gaps())
-    lines.emplace_back("contact", formatted(scene.contact.limiter ? "gaps between particles are held at %g R_C by forces that never pull (4.23)"
-                                                                  : "a gap between particles below %g R_C ends the run; no force but the fluid's",
-                                            scene.contact.limit));
+    lines.emplace_back("contact",
+                       formatted(scene.contact.limiter ? "gaps between particles are kept at %g R_C or above by repulsive forces (4.23)"
+                                                       : "a gap between particles below %g R_C ends the run; no contact forces",
+                                 scene.contact.limit));
   lines.emplace_back("volume", scene.volume.constraint + (several ? ", of each" : ""));
   if (scene.runs_in_time())
     lines.emplace_back("time", time_line(scene, static_cast<double>(body.symmetry.fundamental().size()) * n, ranks));
   else
     add_steady(lines, scene, body);
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("symmetry", several ? "none looked for among several particles" : symmetry_line(scene, body));
+  lines.emplace_back("symmetry", several ? "not searched for among several particles" : symmetry_line(scene, body));
   add_particles(lines, alone, n, tree);
   return lines;
 }

@@ -61,7 +61,9 @@ std::string identifier() {
 }
 
 UserError another_version(const std::filesystem::path& directory) {
-  return UserError("--resume " + directory.string() + ": its newest checkpoint, written by another version, lacks what this one goes on from");
+  return UserError(
+      "--resume " + directory.string() +
+      ": its newest checkpoint was written by another version of tanktread and lacks data that this version needs to continue");
 }
 
 Resumed stored_run(const output::Checkpoint& checkpoint, const std::filesystem::path& directory) try {
@@ -208,9 +210,11 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
   const auto rows = static_cast<std::size_t>(last_saved_) + 1;
   const auto& origin_of_record = record_->provenance();
   if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
-    throw UserError("--resume " + directory_.string() + ": " + chosen + " and run.h5 are of different runs: remove the foreign one.");
+    throw UserError("--resume " + directory_.string() + ": " + chosen +
+                    " and run.h5 belong to different runs: remove the file that does not belong here.");
   if (record_->rows() < rows || record_->checksum(rows) != checkpoint.texts.at("record"))
-    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen + " are not as they were written.");
+    throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen +
+                    " are damaged: they differ from what was written.");
   record_->truncate(rows);
   record_->describe(request_.deck_text, origin());
   declare_series();
@@ -219,8 +223,8 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
 /// Renames damaged snapshots that are newer than the chosen checkpoint, and warns about them.
 void Results::set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen) {
   for (const auto& [path, reason] : damaged)
-    warn(path.filename().string() + " is damaged (" + reason + ") and now is called " + output::set_aside(path).filename().string() +
-         ": the run goes on from " + chosen);
+    warn(path.filename().string() + " is damaged (" + reason + ") and was renamed to " + output::set_aside(path).filename().string() +
+         ": the run continues from " + chosen);
 }
 
 void Results::record(Columns& row) {

@@ -19,47 +19,61 @@ struct Entry {
 };
 
 constexpr Entry fields[] = {
-    {"Points", "length", "all", "places of the surface"},
-    {"Normals", "1", "all", "unit normals, out of the particle"},
+    {"Points", "length", "all", "position of the surface"},
+    {"Normals", "1", "all", "unit normal of the surface, out of the particle"},
     {"load", "force/length^2", "capsule, drop",
-     "load of the fluids on the membrane, per unstressed area (3.7) or per present area (3.6), as Membrane/load measure says"},
-    {"traction", "force/length^2", "all", "the load per present area; of a rigid body alone the traction on it, among others "
-     "the load of (2.23)"},
-    {"displacement", "length", "capsule, drop", "x - X from the unstressed shape"},
-    {"velocity", "length/time", "capsule, drop, free body", "of the fluids on the surface; of a free body its own"},
+     "load of the fluids on the membrane, force per unstressed area (3.7) or per current area (3.6), depending on Membrane/load measure"},
+    {"traction", "force/length^2", "all",
+     "load of the fluids on the membrane per current area; for a single rigid body the traction on it, for one of several bodies the load "
+     "of (2.23)"},
+    {"displacement", "length", "capsule, drop", "displacement x - X of the surface from the unstressed shape X"},
+    {"velocity", "length/time", "capsule, drop, free body",
+     "velocity of the surface; for a free rigid body the velocity of its rigid motion"},
     {"smallest tension", "1", "capsule, drop",
-     "smaller principal tension of the law (3.2), without that of the whole area (3.26), over G_s, of a drop over sigma"},
-    {"largest tension", "1", "capsule, drop", "the larger one"},
-    {"mean curvature", "1/length", "capsule, drop", "chi = 1/2 div n (P-36), 1/R of a sphere"},
-    {"concentration", "1", "drop with surfactant", "of surfactant over the initial one"},
-    {"particle", "1", "several particles", "number of the particle, from 1 in the order of the deck"},
-    {"into cell", "length", "in a Domain", "what takes the particle from where it has come to into the cell around the origin, of vectors cell_#"},
-    {"mode k", "1", "capsule, drop", "displacement of mode k of a spectrum, at its largest 1; of one that oscillates its real part"},
-    {"mode k imaginary", "1", "capsule, drop", "its imaginary part"},
+     "smaller principal tension of the membrane (3.2), divided by the surface shear modulus, for a drop by the surface tension; without "
+     "the tension of Membrane/global area dilatation (3.26)"},
+    {"largest tension", "1", "capsule, drop", "larger principal tension of the membrane, divided like `smallest tension`"},
+    {"mean curvature", "1/length", "capsule, drop", "mean curvature 1/2 div n, with the unit normal n; 1/R for a sphere of radius R"},
+    {"concentration", "1", "drop with surfactant", "concentration of surfactant divided by the initial concentration"},
+    {"particle", "1", "several particles", "index of the particle, from 1 in the order of the deck"},
+    {"into cell", "length", "in a Domain",
+     "displacement that moves the particle from its position into the periodic cell around the origin, whose vectors are the series "
+     "cell_#"},
+    {"mode k", "1", "capsule, drop",
+     "displacement of eigenmode k of the Spectrum, scaled to a largest displacement of 1; real part of an oscillating mode"},
+    {"mode k imaginary", "1", "capsule, drop", "imaginary part of the displacement of the oscillating eigenmode k of the Spectrum"},
     {"pressure", "force/length^2", "prescribed body",
-     "p = -t.n of the traction t on the body, its mean over the surface as of the exact solution"},
+     "pressure p = -t.n on the rigid body, with the traction t and the normal n; its mean over the surface is that of the exact solution"},
     {"position error", "length", "with requested accuracy", "estimated error of the position of the surface, along its normal (9.1)"},
-    {"pressure error", "force/length^2", "prescribed body", "p - p_exact, where the exact solution is known"},
+    {"pressure error", "force/length^2", "prescribed body",
+     "error p - p_exact of the pressure on the rigid body, if the exact solution is known"},
 };
 
 constexpr Entry entries[] = {
-    {"status", "", "all", "why the run ended: `done`, `steady`, `past` (Time/end when past), `stopped: ` by what, `failed: ` and the reason"},
-    {"final", "", "all", "last value of every series; of a prescribed body also the vectors `drag` and `torque`"},
-    {"final in SI", "", "all", "the same in SI units, with the list Units, as texts: a number and its unit"},
-    {"expect", "", "all", "of every Expect: name, value found, value expected, error, with requested accuracy also the estimated error, and whether "
-     "it passed"},
-    {"estimated errors", "", "without requested accuracy", "errors of time integration and of quadrature; the error of the mesh is unknown"},
-    {"error", "", "with requested accuracy", "last value of the estimated error of every series; `/error/<name>` in `run.h5` has all values"},
-    {"accuracy", "", "with requested accuracy", "requests with their estimated errors, and the levels with their settings and seconds"},
-    {"counts", "1", "all", "work of the whole run"},
-    {"counts/unknowns", "1", "prescribed body", "unknowns of the traction"},
-    {"counts/solver_iterations_in_all", "1", "prescribed body", "with those of the solves that correct the forces (2.11)"},
-    {"seconds", "s", "all", "wall time of the first rank by phase, which add up to the run's"},
-    {"memory", "bytes", "all", "the most that a process has had: `largest of a rank`, and of all together, `all ranks`"},
-    {"plan", "", "all", "what the run chose to compute, a line each"},
-    {"numbers", "", "all", "derived and dimensionless numbers of the scene, below"},
-    {"modes", "", "capsule, drop", "of each mode of the last spectrum: `shape`, or `translation`, `rotation`, `volume`, which change none"},
-    {"warnings", "", "all", "edges of the method that the run came near to, a sentence each"},
+    {"status", "", "all",
+     "why the run ended: `done`, `steady`, `past` (Time/end when past), `stopped: ` and the cause, or `failed: ` and the reason"},
+    {"final", "", "all", "last value of every series; for a prescribed body also the vectors `drag` and `torque`"},
+    {"final in SI", "", "all", "last value of every series in SI units, as a text with number and unit, if the deck has the section Units"},
+    {"expect", "", "all",
+     "for each expectation of the section Expect: name, computed value, expected value, error, with requested accuracy also the estimated "
+     "error, and whether it is met"},
+    {"estimated errors", "", "without requested accuracy",
+     "errors of time integration and of quadrature; the error of the mesh is unknown"},
+    {"error", "", "with requested accuracy",
+     "last value of the estimated error of every series; `/error/<name>` in `run.h5` has all values"},
+    {"accuracy", "", "with requested accuracy",
+     "accuracy requests with their estimated errors, and the levels with their settings and wall-clock seconds"},
+    {"counts", "1", "all", "amount of work of the whole run, as the numbers below"},
+    {"counts/unknowns", "1", "prescribed body", "number of unknowns of the traction on the body"},
+    {"counts/solver_iterations_in_all", "1", "prescribed body",
+     "number of iterations of the linear solver, including the solves that correct the forces by the reciprocal theorem (2.11)"},
+    {"seconds", "s", "all", "wall-clock time of the first MPI rank in each phase of the run; the sum is the time of the run"},
+    {"memory", "bytes", "all", "largest memory in use: `largest of a rank` is the maximum over the MPI ranks, `all ranks` the sum"},
+    {"plan", "", "all", "methods and parameters that the run chose, one line each"},
+    {"numbers", "", "all", "derived and dimensionless quantities of the scene, listed below"},
+    {"modes", "", "capsule, drop",
+     "kind of each eigenmode of the last spectrum: `shape` changes the shape, `translation`, `rotation` and `volume` do not"},
+    {"warnings", "", "all", "limits of the method that the run came close to, one sentence each"},
 };
 
 /// Kind of runs or particles that have the same columns. If `extends`, the manual lists only the columns that the previous kind does not have.
@@ -83,7 +97,7 @@ std::vector<Kind> kinds() {
   motion::BranchPoint().add_columns(false, branch), motion::BranchPoint().add_columns(true, folds);
   SteadyRow().add_columns(returning, periodic);
   return {{"capsule, drop", capsule},
-          {"rigid one of several", particle_columns(among_others, true)},
+          {"one of several rigid bodies", particle_columns(among_others, true)},
           {"free body", run_columns(free, true)},
           {"free body in a tube", run_columns(free_in_tube, true), true},
           {"prescribed body", run_columns(prescribed, true)},
@@ -91,7 +105,7 @@ std::vector<Kind> kinds() {
           {"branch of steady shapes", branch},
           {"folds in a second parameter", folds, true},
           {"periodic motion", periodic},
-          {"several particles together", run_columns(several, true)}};
+          {"all particles together", run_columns(several, true)}};
 }
 
 /// Returns the columns of all kinds of runs and particles, and for each column name the kinds that have it.
@@ -119,7 +133,7 @@ std::string line(std::string_view name, std::string_view unit, std::string_view 
 
 template <class List>
 std::string table(const char* heading, const List& list) {
-  std::string text = std::string("\n| ") + heading + " | unit | of | what it is |\n|---|---|---|---|\n";
+  std::string text = std::string("\n| ") + heading + " | unit | recorded for | description |\n|---|---|---|---|\n";
   for (const Entry& one : list) text += line(one.name, one.unit, one.of, one.description);
   return text;
 }
@@ -130,16 +144,14 @@ std::string series_manual(const Registry& registry) {
   surface::TubeOptions circle;
   circle.radius = 1;
   std::string text =
-      "# What comes out\n\nPrinted by `tanktread --reference-series`. Units are those of the deck; with its list Units every series has an attribute "
-      "`SI` that says what its unit is, `1e-06 m/s`. Equation numbers are those of "
-      "[lib/README.md](../lib/README.md).\n\n## Series\n\n`/series/<name>` in `run.h5`, of one of several particles "
-      "`/series/<particle>/<name>`, a value a finished step and one for the start; "
-      "`Expect` takes all of "
-      "these names. D, inclination and tank-treading are measured in the plane of the flow, which the plan names: x1 x3 but for a `linear` "
-      "flow "
-      "in another plane, whose two directions then stand for x1 and x3. A series whose description has the words `NaN if` may be undefined: it is "
-      "NaN under that condition, and an `Expect` at such a time is missed. NaN in any other series ends the run.\n\n"
-      "| series | unit | of | what it is |\n|---|---|---|---|\n";
+      "# Output\n\nPrinted by `tanktread --reference-series`. Units are those of the deck. If the deck has the section Units, every series has "
+      "an attribute `SI` with its SI unit, for example `1e-06 m/s`. Equation numbers refer to [lib/README.md](../lib/README.md).\n\n"
+      "## Series\n\nThe data set `/series/<name>` in `run.h5` (for one of several particles `/series/<particle>/<name>`) has one value at the "
+      "start and one per accepted time step. `Expect` accepts all of these names. The Taylor parameter, the inclination and tank-treading are "
+      "measured in the plane of the flow, which the plan states. It is x1 x3, except for a `linear` flow in another plane, whose two directions "
+      "then replace x1 and x3. A series whose description contains `NaN if` is NaN under that condition, and an `Expect` at such a time is "
+      "missed. NaN in any other series ends the run.\n\n"
+      "| series | unit | recorded for | description |\n|---|---|---|---|\n";
   const auto [all, owners] = all_columns();
   for (const Column& one : all.all())
     text += line(one.name, one.unit, (one.where.empty() || one.where[0] == ';' ? owners.at(one.name) : "") + one.where, one.description);
@@ -149,18 +161,18 @@ std::string series_manual(const Registry& registry) {
   add(registry.loads.columns(), "Membrane/loads");
   add(registry.fields.columns(), "Interface/fields");
   add(registry.series.columns(), "Output/series");
-  text += "\n## Fields\n\n`/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the picture.\n" + table("field", fields);
-  text += "\n## The empty tube\n\n`duct.h5`, of a run in a tube.\n\n| array | unit | what it is |\n|---|---|---|\n";
+  text += "\n## Fields\n\nThe group `/VTKHDF` in `snapshot_<step>.hdf`, at the nodes of the snapshot.\n" + table("field", fields);
+  text += "\n## The empty tube\n\nThe file `duct.h5` of a run in a tube.\n\n| array | unit | description |\n|---|---|---|\n";
   for (const output::Array& one : duct_picture(stokes::DuctFlow(circle, 1, 1)))
     text += line(one.name, one.unit, "", one.description);
-  text += "\n## Summary\n\n`summary.yaml`.\n" + table("entry", entries);
+  text += "\n## Summary\n\nThe file `summary.yaml`.\n" + table("entry", entries);
   const RunTotals none;
   each_count(none, [&](const char* name, const char* of, const char* description, auto) {
     text += line("counts/" + std::string(name), "1", of, description);
   });
   text +=
-      "\n## Numbers\n\n`numbers` of the summary and of the plan, where they have a meaning.\n\n| number | unit | what it is "
-      "|\n|---|---|---|\n";
+      "\n## Numbers\n\nThe entry `numbers` of the summary and of the plan. A number is left out if it is not defined for the scene.\n\n"
+      "| number | unit | description |\n|---|---|---|\n";
   for (const Number& one : all_numbers()) text += line(one.name, one.unit, "", one.description);
   return text;
 }

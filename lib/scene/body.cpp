@@ -34,7 +34,7 @@ std::string direction(const Vec3& v) {
 std::string FlowPlane::description() const {
   const std::string plane = direction(axes.row(0)) + " " + direction(axes.row(2));
   if (holds_flow) return "in the plane " + plane;
-  return "in the plane of the longest and the shortest axis, for the flow is not planar; tank-treading in the plane " + plane;
+  return "in the plane of the longest and the shortest axis, because the flow is not planar; tank-treading in the plane " + plane;
 }
 
 FlowPlane plane_normal_to(Vec3 normal) {

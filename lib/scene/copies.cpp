@@ -159,13 +159,15 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   for (const CsvRow& row : csv_rows(text_of_file(file, name, 100'000'000), "x1")) {
     const std::string where = name + formatted(", line %d: ", row.line);
     if (row.fields.size() != 3 && row.fields.size() != 6)
-      throw UserError(where + "a row holds a centre x1,x2,x3 and, or not, a rotation vector of three numbers in degrees, but this one holds " +
-                      formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
+      throw UserError(
+          where +
+          "a row holds a centre x1,x2,x3, optionally followed by a rotation vector of three numbers in degrees, but this one holds " +
+          formatted("%zu %s.", row.fields.size(), row.fields.size() == 1 ? "entry" : "entries"));
     Copy& copy = copies.emplace_back();
     for (std::size_t c = 0; c < row.fields.size(); ++c)
       (c < 3 ? copy.centre : copy.orientation)[static_cast<Eigen::Index>(c % 3)] = csv_number(row.fields[c], where);
   }
-  if (copies.empty()) throw UserError(name + " holds no row of a centre.");
+  if (copies.empty()) throw UserError(name + " contains no row with a centre.");
   return copies;
 }
 
@@ -187,8 +189,10 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   const long most = 20000L * number;
   for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {
     if (trial == most)
-      throw UserError(formatted("%s: there is no room: %zu of %d were placed in %ld trials; give fewer, more room, or a smaller `least gap`.",
-                                list.c_str(), copies.size(), number, most));
+      throw UserError(
+          formatted("%s: there is no room for all copies: %zu of %d were placed in %ld trials; give fewer copies, a larger box or ball, or "
+                    "a smaller `least gap`.",
+                    list.c_str(), copies.size(), number, most));
     Vec3 place;
     for (int c = 0; c < 3; ++c) place[c] = (2 * uniform(random) - 1) * (half[c] - radius);
     if (how.ball && place.norm() > *how.ball - radius) continue;
@@ -243,24 +247,27 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "path of a file of comma-separated values with one row per copy: centre x1,x2,x3, optionally followed by a rotation vector of three "
-              "numbers in degrees. The first row may hold column names. The path is relative to the working directory or to the deck");
-  section.key("lattice", lattice, deck::at_least(1), "1", "number of copies along x1, x2 and x3 on a lattice centred at the particle's centre");
+              "path of a file with the positions of the copies, comma-separated, one row per copy: centre x1,x2,x3, optionally followed by "
+              "a rotation vector of three numbers in degrees. The first row may hold column names. The path is relative to the working "
+              "directory or to the deck");
+  section.key("lattice", lattice, deck::at_least(1), "1",
+              "numbers of copies of the particle along x1, x2 and x3 on a rectangular lattice, which is centred at the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length",
-              "distances along x1, x2 and x3 between the centres of neighbouring copies on a `lattice`");
-  section.key("number", number, deck::at_least(1), "1",
-              "number of copies at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain that is periodic "
-              "in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
+              "distances along x1, x2 and x3 between the centres of neighbouring copies of the particle on a `lattice`");
+  section.key(
+      "number", number, deck::at_least(1), "1",
+      "number of copies of the particle at random positions in `box` or `ball`. If neither is given, the copies fill the cell of a Domain "
+      "that is periodic in three directions, may cross its faces, and are distributed as hard spheres in thermal equilibrium");
   section.key("volume fraction", volume_fraction, deck::between(0, 0.6), "1",
-              "volume fraction of the copies in `box`, `ball` or the periodic cell, from which their number follows. Spheres can be placed up to "
-              "about 0.3 in `box` or `ball`, up to about 0.55 in the cell");
+              "volume fraction of the copies of the particle in `box`, `ball` or the periodic cell, from which their number follows. At "
+              "random positions, spheres reach a volume fraction of about 0.3 in `box` or `ball` and about 0.55 in the cell");
   section.key("box", box, deck::positive(), "length",
-              "side lengths of a box that contains all copies at random positions; its centre is the particle's centre");
+              "side lengths of a box that contains all copies of the particle at random positions; its centre is the particle's centre");
   section.key("ball", ball, deck::positive(), "length",
-              "radius of a ball that contains all copies at random positions; its centre is the particle's centre");
+              "radius of a ball that contains all copies of the particle at random positions; its centre is the particle's centre");
   section.key("least gap", least_gap, deck::not_negative(), "R",
-              "smallest gap between the circumscribed spheres of two particles if copies are placed at random, divided by the radius R of the "
-              "larger sphere");
+              "smallest allowed gap between the circumscribed spheres of two particles when copies are placed at random, divided by the "
+              "radius R of the larger sphere");
   section.key("seed", seed, deck::at_least(0), "1",
               "seed of the random number generator for copies at random positions. Equal seeds give equal positions");
 }
@@ -268,14 +275,15 @@ void CopiesOptions::declare(deck::Section& section) {
 void CopiesOptions::check(const std::string& list, bool cell) const {
   const int ways = file.has_value() + lattice.has_value() + random();
   if (ways != 1) throw UserError(list + " must have one of `file`, `lattice`, and `number` or `volume fraction`.");
-  if (number && volume_fraction) throw UserError(list + "/number and " + list + "/volume fraction contradict each other.");
+  if (number && volume_fraction)
+    throw UserError(list + "/number and " + list + "/volume fraction contradict each other: give one of them.");
   if (lattice && !spacing) throw UserError(list + "/spacing is missing: the distance of centres along x1, x2 and x3.");
   if (spacing && !lattice) throw UserError(list + "/spacing belongs to a `lattice`.");
   if (lattice && !lattice->isApprox(lattice->array().round().matrix(), 0)) throw UserError(list + "/lattice must be three whole numbers.");
-  if (!random() && (box || ball)) throw UserError(list + "/box and ball are for places at random.");
+  if (!random() && (box || ball)) throw UserError(list + "/box and ball are for random positions: give `number` or `volume fraction`.");
   if (in_cell() && !cell)
-    throw UserError(list + " needs a `box` or a `ball` for places at random; without, they are in the cell of a Domain of three directions.");
-  if (box && ball) throw UserError(list + "/box and " + list + "/ball contradict each other.");
+    throw UserError(list + " needs a `box` or a `ball` for random positions, or a Domain that is periodic in three directions.");
+  if (box && ball) throw UserError(list + "/box and " + list + "/ball contradict each other: give one of them.");
 }
 
 namespace {
@@ -290,9 +298,10 @@ std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds
   if (!pack(taken, *cell, static_cast<std::uint64_t>(in_cell->copies.seed))) {
     double volume = 0;
     for (const PackedSphere& one : taken) volume += 4 * std::numbers::pi / 3 * std::pow(one.radius, 3);
-    throw UserError(formatted("Particles/%s/copies: there is no room: the spheres around the particles fill %.3g of the cell, and they cannot be put "
-                              "clear of each other; give fewer, a larger cell, or a smaller `least gap`.",
-                              in_cell->name.c_str(), volume / cell->volume()));
+    throw UserError(
+        formatted("Particles/%s/copies: the circumscribed spheres of the particles fill %.3g of the cell and cannot be placed there "
+                  "without overlap: give fewer copies, a larger cell, or a smaller `least gap`.",
+                  in_cell->name.c_str(), volume / cell->volume()));
   }
   auto sphere = taken.begin();
   for (std::size_t k = 0; k < kinds.size(); ++k) {

@@ -16,14 +16,14 @@ namespace tanktread {
 
 void DomainOptions::declare(deck::Section& section) {
   section.key("periodic", periodic, deck::Choice{"x1 x2 x3", "x1 x2", "x1 x3", "x2 x3", "x1", "x2", "x3"},
-              "directions in which the scene is periodic. If all three are periodic, the mean velocity over the cell, particles included, equals "
-              "the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");
+              "directions in which particles and flow are periodic. If all three are periodic, the mean velocity over the cell, particles "
+              "included, equals the ambient flow, and a net force on the particles is balanced by a uniform pressure gradient");
   section.key("side lengths", side_lengths, deck::any(), "length",
               "side lengths of a rectangular periodic cell along x1, x2, x3. The length along a direction that is not periodic has no effect. With "
               "Tube or Channel only the first length is used, the period along x1");
   section.key("lattice vectors", lattice_vectors, deck::any(), "length",
-              "lattice vectors of a cell that is not rectangular, at time zero: nine numbers, the vector of x1, the vector of x2, the vector of "
-              "x3. The flow convects the lattice");
+              "vectors of the periods of a cell that is not rectangular, at time zero: nine numbers, first the vector for x1, then for x2, "
+              "then for x3. The flow convects the lattice");
 }
 
 int DomainOptions::directions() const { return static_cast<int>(std::ranges::count(periodic, 'x')); }
@@ -68,7 +68,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
   if (side_lengths.has_value() == lattice_vectors.has_value())
     throw UserError(side_lengths ? "Domain/side lengths and Domain/lattice vectors contradict each other: give one of them."
                                  : "Domain needs Domain/side lengths or Domain/lattice vectors.");
-  refuse(flow.type == "duct", "Domain", flow.choice(), "the flow of a duct needs a list Tube or Channel");
+  refuse(flow.type == "duct", "Domain", flow.choice(), "the flow of a duct needs a section Tube or Channel");
   if (side_lengths && side_lengths->size() != 3) throw UserError("Domain/side lengths needs three numbers, along x1, x2 and x3.");
   const Mat3 all = vectors();
   const auto columns = all.leftCols(directions());
@@ -84,7 +84,7 @@ void DomainOptions::check(const stokes::FlowOptions& flow, const std::string& du
 
 void DomainOptions::reject_duct(const std::string& duct, Rejections& to) const {
   to.pair(periodic != "x1", {"Domain/periodic `" + periodic + "`", "Domain/periodic of another direction than x1"}, duct,
-          "a duct repeats along x1 only: give `x1`");
+          "a tube or channel is periodic along x1 only: give `x1`");
   to.pair(lattice_vectors.has_value(), "Domain/lattice vectors", duct, "give the period along x1 as Domain/side lengths");
 }
 
@@ -103,20 +103,23 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
   if (to.every()) reject_duct("Tube or Channel", to);
   to.pair(!scene.tube.present && !to.every() && !repeats(stokes::AmbientFlow(scene.flow), vectors().leftCols(directions())),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic"}, scene.flow_choice(),
-          "the flow differs from cell to cell by more than a uniform gradient");
+          "the flow must be the same in every cell, except for a uniform gradient");
   if (scene.tube.present) return;
   const bool told = scene.particle.motion == Motion::prescribed, weight = scene.particle.density_difference.has_value();
   to.pair(!to.every() && !scene.runs_in_time() && deforms(scene.flow), scene.sought(), scene.flow_choice(),
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
-  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`", "its identities are those of unbounded space");
+  to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
+          "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
   to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()),
-          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"},
-          "Flow/history", "plates and posts are driven steadily");
+          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"}, "Flow/history",
+          "the flow between plates and posts must be steady");
   to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
-          {told ? scene.particle.choice() : weight ? "Particle/density difference" : "Particle/force",
+          {told     ? scene.particle.choice()
+           : weight ? "Particle/density difference"
+                    : "Particle/force",
            "Particle/motion `prescribed`, Particle/density difference or Particle/force"},
-          "the velocity of a net force in every cell is known in a lattice of three directions or beside walls only");
+          "a net force in every cell needs a lattice that is periodic in three directions, or walls");
 }
 
 std::optional<stokes::PeriodicCell> DomainOptions::cell() const {
@@ -138,18 +141,26 @@ void DomainRow::set_stress(double viscosity, const Mat3& gradient, const stokes:
 
 void DomainRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.domain.present)) return;
-  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3", {"cell_", "length", "vector and component # of the cell that repeats, at "
-         "this time; across directions that do not repeat unit vectors"});
+  to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
+         {"cell_", "length",
+          "component # (vector and direction) of the period vectors of the periodic cell at this time; unit vectors for directions that "
+          "are not periodic"});
   if (!to.when(scene.domain.directions() == 3)) return;
-  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles over that of the cell"});
-  to.add(components(stress), "11 22 33 12 13 23", {"particle_stress_", "force/length^2", "what the particles add to the mean stress (6.9), without "
-         "its trace, component #"});
-  to.add(pressure_gradient, "x1 x2 x3", {"pressure_gradient_", "force/length^3", "uniform one that balances the force of the particles on the fluid, "
-         "component #"});
+  to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
+  to.add(components(stress), "11 22 33 12 13 23",
+         {"particle_stress_", "force/length^2",
+          "component # of the contribution of the particles to the mean stress, without its trace (6.9)"});
+  to.add(pressure_gradient, "x1 x2 x3",
+         {"pressure_gradient_", "force/length^3",
+          "component # of the uniform pressure gradient that balances the force of the particles on the fluid"});
   if (!to.when(strains(scene))) return;
-  to.add(relative_viscosity, {"relative_viscosity", "1", "effective viscosity over mu (6.10)", "the flow does not strain at this time"});
-  to.add(normal_stress_differences, "1 2", {"normal_stress_difference_", "force/length^2", "number # of the particle stress, 11 - 33 and 33 - 22 "
-         "where the flow is along x1 and its plane x1 x3; otherwise in the axes of that plane"});
+  to.add(relative_viscosity,
+         {"relative_viscosity", "1", "effective viscosity of the suspension divided by the viscosity of the outer fluid (6.10)",
+          "the rate of strain of the flow is zero at this time"});
+  to.add(normal_stress_differences, "1 2",
+         {"normal_stress_difference_", "force/length^2",
+          "normal stress difference # of the particle stress: 1 is component 11 - 33 and 2 is component 33 - 22 if the flow is along x1 in "
+          "the plane x1 x3; otherwise the axes are those of the plane of the flow"});
 }
 
 }  // namespace tanktread

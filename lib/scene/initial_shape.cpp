@@ -36,8 +36,8 @@ bool same_space(const spline::Space& one, const spline::Space& other) {
 Net net_of_file(const spline::Space& space, const std::string& name, const std::string& path) {
   const spline::SplineSurface surface = spline::read_iga(name);
   if (!same_space(surface.space, space))
-    throw UserError(path + formatted(": %s holds another spline space of %d control points; it must be the particle's, of %d.", name.c_str(),
-                                    surface.space.n_points, space.n_points));
+    throw UserError(path + formatted(": %s contains another spline space, of %d control points; it must be that of the particle, of %d.",
+                                     name.c_str(), surface.space.n_points, space.n_points));
   return surface.net;
 }
 
@@ -113,7 +113,8 @@ Net stress_free_shape(const Scene& scene, const Body& body) {
   if (membrane.stress_free == "resting") return body.rest;
   if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
   if (scene.particle.shape.imported)
-    throw UserError("Membrane/stress-free shape must be `resting` or `file` where Particle/shape is `file`: nothing is known of an axis of it.");
+    throw UserError(
+        "Membrane/stress-free shape must be `resting` or `file` if Particle/shape is `file`, because the axis of that shape is not known.");
   const surface::LeastSquaresFit fit(body.space);
   const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), body.space, scene.surface.axis())
                                            : surface::unit_sphere(body.mesh, fit);

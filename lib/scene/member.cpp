@@ -183,7 +183,7 @@ void store(const std::vector<Member>& members, output::Checkpoint& checkpoint) {
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix) {
   const Eigen::MatrixXd &spacing = checkpoint.arrays.at(prefix + "mesh spacing"), &bits = checkpoint.arrays.at(prefix + "mesh edges");
   if (static_cast<size_t>(bits.size()) != mesh.edges.size())
-    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run goes on from a mesh that is refined.");
+    throw UserError("Adaptation/enabled and Adaptation/levels cannot change when a run continues from a refined mesh.");
   for (Eigen::Index i = 0; i < bits.size(); ++i) mesh.edges[static_cast<size_t>(i)] = static_cast<std::uint8_t>(bits(i));
   for (Eigen::Index i = 0; i < spacing.size(); ++i) mesh.spacing[static_cast<size_t>(i)] = static_cast<int>(spacing(i));
   return mesh;

@@ -17,53 +17,59 @@ std::string ParticleOptions::choice() const { return "Particle/motion " + text(m
 
 void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   const bool told = motion == Motion::prescribed, held = drift == "held", tube = scene.tube.present;
-  const std::string forced = "a body that moves as told takes whatever force that needs", gradient = "whose gradient is the same everywhere";
+  const std::string forced = "the force on a body with prescribed motion follows from its motion", gradient = "whose gradient is uniform";
   const Chosen moved = "Particle/motion `prescribed`", stiff(choice(), "Particle/motion `prescribed` or `free`");
   const Chosen duct = scene.duct_choice();
-  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body that moves as told has no place or attitude to be found");
+  to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
-  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body that moves as told does not come to rest");
+  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body with prescribed motion does not become steady");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
   to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
-  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff, "a rigid particle has the shape that it has");
+  to.pair(rigid() && shape.initial, "Particle/initial shape", stiff,
+          "a rigid particle keeps its resting shape; give its shape by Particle/shape");
   to.pair(held && scene.flow.type == "parabolic", "Particle/drift `held`", scene.flow_choice(), "it is for flows " + gradient);
   to.pair(held && (tube || rigid()), "Particle/drift `held`",
           {tube ? duct.here : stiff.here, "Tube, Channel, or Particle/motion `prescribed` or `free`"},
           "it is for particles that deform in a flow " + gradient);
-  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()),
-          "Solvers/projection `least squares`",
-          {tube ? duct.here : scene.wall.present ? "Wall" : stiff.here, "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
-          "it is for what deforms away from walls");
+  to.pair(scene.solvers.projection != "collocation" && (tube || scene.wall.present || rigid()), "Solvers/projection `least squares`",
+          {tube                 ? duct.here
+           : scene.wall.present ? "Wall"
+                                : stiff.here,
+           "Tube, Channel, Wall, or Particle/motion `prescribed` or `free`"},
+          "it is for deformable particles away from walls");
 }
 
 void ParticleOptions::declare(deck::Section& section) {
   shape.declare(section);
   section.key("viscosity ratio", viscosity_ratio, deck::positive(), "1",
-              "lambda: inner over outer viscosity, at most 1e14 x Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle "
-              "use Particle/motion `free`");
+              "lambda: viscosity of the fluid inside the particle divided by the viscosity of the outer fluid, at most 1e14 x "
+              "Solvers/tolerance. Above 1e5 the particle hardly deforms; for a rigid particle use Particle/motion `free`");
   section.key("motion", motion, motion_words,
-              "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves with "
-              "Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and moves under "
-              "Particle/force and Particle/torque, which are zero by default");
+              "motion of the particle. `deforming`: its surface moves with the velocity of the fluid. `prescribed`: it is rigid and moves "
+              "with Particle/velocity and Particle/angular velocity; a single particle gives a steady problem. `free`: it is rigid and "
+              "moves such that Particle/force and Particle/torque, zero by default, balance the forces of the fluid");
   section.key("velocity", velocity, deck::any(), "length/time",
-              "velocity of the centre of a particle with Particle/motion `prescribed`; zero if not given");
+              "velocity of the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
   section.key("angular velocity", angular_velocity, deck::any(), "1/time",
-              "angular velocity about the centre of a particle with Particle/motion `prescribed`; zero if not given");
-  section.key("force", force, deck::any(), "force", "external force on a particle with Particle/motion `free`, three numbers; zero if not given");
+              "angular velocity about the centre of a rigid particle with Particle/motion `prescribed`; zero if not given");
+  section.key("force", force, deck::any(), "force",
+              "external force on a rigid particle with Particle/motion `free`, three numbers; zero if not given");
   section.key("torque", torque, deck::any(), "force x length",
-              "external torque on a particle with Particle/motion `free`, about the centre of its volume; zero if not given");
+              "external torque on a rigid particle with Particle/motion `free`, about the centre of its volume; zero if not given");
   section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
-              "density inside the particle minus density outside. Multiplied by Flow/gravity it is a force per unit volume; zero if not given");
-  section.key("drift", drift, deck::Choice{"free", "held"},
-              "`free`: the centroid moves with the flow. `held`: the centroid is put back after every step; in an affine flow this does not change "
-              "the shape. The default is `held` for a particle at the stagnation point of a flow with a diverging direction, where rounding errors "
-              "grow into a drift, and `free` otherwise");
+              "density of the particle minus density of the outer fluid. Multiplied by Flow/gravity it is a force per unit volume; zero if "
+              "not given");
+  section.key(
+      "drift", drift, deck::Choice{"free", "held"},
+      "treatment of the motion of the particle's centroid. `free`: the centroid moves with the flow. `held`: the centroid is put back to "
+      "its initial position after every step; in an affine flow this does not change the shape. The default is `held` for a particle at "
+      "the stagnation point of a flow with a diverging direction, where rounding errors grow into a drift, and `free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as in the "
-              "paper. `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule `adaptive`, because the other "
-              "rules are too coarse for it");
+              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as by "
+              "Maestre et al. (2017). `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule "
+              "`adaptive`, because the other rules are too coarse for it");
 }
 
 void ParticleKind::declare(deck::Section& section) {
@@ -112,10 +118,12 @@ void ParticleKind::declare_lists(deck::Section& section) {
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
   if (!deforms) section.leave_out("Membrane");  // keys of Membrane that particles share apply only to those with a membrane
   membrane_given = section.given("Membrane");
-  if (MembraneList list{*this}; deforms || membrane_given) section.section("Membrane", list, "material of the particle's surface");
+  if (MembraneList list{*this}; deforms || membrane_given)
+    section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");
   if (particle.shape.shape != "file") section.section("Surface", surface, "spline space and mesh of the particle's surface");
-  else refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
-              "the spline space is the file's");
+  else
+    refuse(section.given("Surface"), section.path("Surface"), (name.empty() ? "Particle/shape" : section.path("shape")) + " `file`",
+           "the file determines the spline space");
   InterfaceList list{*this};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
@@ -132,35 +140,36 @@ void ParticleKind::reject(const Scene& scene, Rejections& to) const {
           "a spline space from a file has no mesh to refine");
   to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
-  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "a degenerate element has no load at a pole");
-  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain, "a degenerate element has no normal at its pole");
+  to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");
+  to.pair(desingularised && degenerate, "Quadrature/rule `desingularised`", plain,
+          "the normal is not defined at the pole of a degenerate element");
   to.pair(!drop && scene.interface_motion() != "material",
           {"Interface/motion `" + scene.interface_motion() + "`", "Interface/motion other than `material`"}, law,
           "an elastic membrane moves with the fluid, `material`");
   to.pair(surfactant && (rigid || !drop), "Interface/surfactant",
           {rigid ? particle.choice() : law.here, "Particle/motion `prescribed` or `free`, or Membrane/law of an elastic membrane"},
-          "it is on the interface of a drop");
+          "only the interface of a drop can have a surfactant");
   const std::pair<bool, Chosen> works[] = {{scene.contact.limiter, "Contact/limiter"},
                                                 {particle.density_difference.has_value(), "Particle/density difference"},
                                                 {scene.tube.repulsion.has_value(), {scene.tube.list() + "/repulsion", "Tube/repulsion"}}};
   for (const auto& [with, what] : works)
-    to.pair(with && strong, what, "Membrane/load `strong`", "its forces act by the work that they do, `weak`");
+    to.pair(with && strong, what, "Membrane/load `strong`", "its forces are included by virtual work, in the form `weak` only");
 }
 
 void ContactOptions::reject(const Scene& scene, Rejections& to) const {
-  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it holds gaps after steps in time");
+  to.pair(limiter && !scene.runs_in_time(), "Contact/limiter", scene.sought(), "it acts on steps of a run in time");
 }
 
 void ContactOptions::declare(deck::Section& section) {
   section.key("limit", limit, deck::between(1e-6, 1), "R_C",
-              "smallest allowed gap between two particles, divided by the R_C of the smallest particle. If a gap is smaller, the run ends with a "
-              "checkpoint");
+              "smallest allowed gap between two particles, divided by R_C, the radius of the sphere with the volume of the smallest "
+              "particle. If a gap is smaller, the run ends with a checkpoint");
   section.key("limiter", limiter,
-              "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act along the "
-              "normals at the nearest points of two particles and never pull (4.23). They are written as series and vanish while the fluid keeps "
-              "the gaps open. Gaps to a wall are not limited");
+              "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act "
+              "along the normals at the nearest points of two particles, are never attractive (4.23), and vanish while the fluid keeps the "
+              "gaps open. The series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))
-    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, over R_C, that it is to hold.");
+    throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, divided by R_C, that it maintains.");
 }
 
 }  // namespace tanktread

@@ -43,9 +43,11 @@ void WallRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.wall.present)) return;
   constexpr const char* wall = "; beside a plane wall";
   add_gap(gap, to);
-  to.add(place, "x1 x2 x3", {"nearest_to_wall_", "length", "place of a particle's surface that is nearest to the plane wall, component #", {}, wall});
+  to.add(place, "x1 x2 x3",
+         {"nearest_to_wall_", "length", "component # of the position of the surface point that is nearest to the plane wall", {}, wall});
   if (scene.has_gaps())
-    to.add(particle, {"particle_at_wall", "1", "number of the particle that is nearest to it, from 1 in the order of the deck", {}, wall});
+    to.add(particle,
+           {"particle_at_wall", "1", "index of the particle that is nearest to the plane wall, from 1 in the order of the deck", {}, wall});
 }
 
 WallRow wall_row(std::span<const stokes::PlaneWall> walls, const std::vector<Member>& members, const Net& x) {

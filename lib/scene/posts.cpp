@@ -18,7 +18,7 @@ bool is_post(const ParticleKind& kind) { return kind.particle.shape.shape == "cy
 void check_keys(const ParticleKind& kind, const Post& post) {
   const ParticleOptions& particle = kind.particle;
   const auto refuse_key = [&](const char* key, bool given) {
-    refuse(given, post.path(key), "Particle/shape `cylinder`", "a cylinder is a post at rest, which nothing moves or deforms");
+    refuse(given, post.path(key), "Particle/shape `cylinder`", "a cylinder is a fixed post, which does not move or deform");
   };
   refuse_key("motion", particle.motion != Motion::deforming);
   refuse_key("velocity", particle.velocity.has_value());
@@ -100,19 +100,21 @@ void check_posts(const Scene& scene) {
   const std::optional<stokes::PeriodicCell> cell = scene.domain.cell();
   if (scene.posts.empty()) {
     if (scene.flow.pressure_gradient && !scene.wall.solid)
-      throw UserError("Flow/pressure gradient needs walls, by Wall/distance, or posts, by Particle/shape `cylinder`, in a Domain: nothing else holds "
-                      "back the fluid that it drives.");
+      throw UserError(
+          "Flow/pressure gradient needs two walls (Wall/distance) or posts (Particle/shape `cylinder`) in a Domain, because otherwise "
+          "nothing resists the flow that it drives.");
     return;
   }
-  refuse(scene.tube.present, "Particle/shape `cylinder`", scene.tube.list(), "a post goes through a whole period, and would go through the wall");
+  refuse(scene.tube.present, "Particle/shape `cylinder`", scene.tube.list(), "a post extends over a whole period and would cross the wall");
   if (!cell) throw UserError("Particle/shape `cylinder` needs a Domain: a post is one period of a cylinder along a periodic direction.");
   if (!scene.wall.solid && cell->n() < 3)
-    throw UserError("Particle/shape `cylinder` needs a Domain that is periodic in three directions, or walls: give Domain/periodic `x1 x2 x3` or "
-                    "Wall/distance. Otherwise the forces of posts on the fluid would drive it without limit far from them.");
+    throw UserError(
+        "Particle/shape `cylinder` needs a Domain that is periodic in three directions, or walls: give Domain/periodic `x1 x2 x3` or "
+        "Wall/distance. Otherwise the velocity due to the forces of posts would grow without limit far from them.");
   refuse(scene.wall.solid && !scene.wall.distance, "Particle/shape `cylinder`", "Wall without Wall/distance",
-         "the forces of posts on the fluid would drive it without limit far from the wall");
+         "the velocity due to the forces of posts would grow without limit far from the wall; give Wall/distance");
   refuse(!scene.wall.solid && scene.flow.type != "quiescent", "Particle/shape `cylinder`", scene.flow.choice(),
-         "posts hold back any flow but the one that a pressure gradient drives: give Flow/type `quiescent` and Flow/pressure gradient");
+         "only a pressure gradient can drive a flow past posts; give Flow/type `quiescent` and Flow/pressure gradient");
   for (std::size_t p = 0; p < scene.posts.size(); ++p) {
     const Post& post = scene.posts[p];
     const int axis = post.axis + 1;

@@ -16,11 +16,13 @@ namespace {
 void reject_registered(const Scene& scene, Rejections& to) {
   const Chosen flow(scene.flow.choice(), "Flow/type of an added flow"), motion(scene.particle.choice(), "Particle/motion `prescribed` or `free`");
   const bool alone = !scene.in_system();
-  to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`", "loads act by the work that they do, `weak`");
-  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "fields are on what deforms");
-  to.pair(alone && !scene.series.empty(), "Output/series", motion, "the one body has a record of its own; give it in a list Particles");
+  to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
+          "loads are included by virtual work, in the form `weak` only");
+  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "only deformable particles have surface fields");
+  to.pair(alone && !scene.series.empty(), "Output/series", motion,
+          "a single rigid body has its own series; give it in a section Particles");
   to.pair(alone && scene.flow.user && !scene.flow.user->affine(), flow, motion,
-          "the one body is solved for in flows of the second degree; give it in a list Particles");
+          "a single rigid body is computed in flows of at most the second degree in x; give it in a section Particles");
 }
 
 }  // namespace
@@ -29,10 +31,10 @@ void Scene::reject_power(Rejections& to) const {
   const bool asked = output.power_balance && name.empty();
   const std::string word = "Output/power balance";
   to.pair(asked && flow.type != "duct" && !tube.present && !wall.solid && !stokes::AmbientFlow(flow).affine(), word,
-          {flow.choice(), "Flow/type `parabolic`"},
-          "it is for flows of one gradient, for tubes and between plates");
-  to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it takes the load by the work that it does, `weak`");
-  to.pair(asked && solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`", "nothing deforms");
+          {flow.choice(), "Flow/type `parabolic`"}, "it is available in flows with a uniform gradient, in tubes and between plates");
+  to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
+  to.pair(asked && solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`",
+          "it needs a deformable particle, and `first kind` is for rigid bodies only");
 }
 
 void Scene::reject(Rejections& to) const {

@@ -34,8 +34,8 @@ struct OutputList {
 /// Declares the sections Output, Expect and Accuracy.
 void declare_results(deck::Section& root, Scene& scene) {
   OutputList results{scene};
-  root.section("Output", results, "results");
-  root.section("Expect", scene.expect, "expected results");
+  root.section("Output", results, "output files of the run");
+  root.section("Expect", scene.expect, "expected values of output series, with tolerances");
   root.optional_section("Accuracy", scene.accuracy,
                         "requested accuracy: the run is repeated on finer meshes, with finer tolerances, until the estimated errors meet it");
 }
@@ -101,18 +101,20 @@ double bytes_a_pair(const Scene& scene) {
 void check_viscosity_ratio(const Scene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
-    throw UserError(formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, for rounding grows with it, but is %.3g; "
-                              "a particle that does not deform is rigid: Particle/motion `free`.",
-                              most, ratio));
+    throw UserError(
+        formatted("Particle/viscosity ratio must be at most %.3g, 1e14 times Solvers/tolerance, because rounding errors grow with it, but "
+                  "is %.3g; for a rigid particle give Particle/motion `free`.",
+                  most, ratio));
 }
 
 /// Throws UserError if the assembled operators for `n_points` control points are too large. The message begins "<keys> must <must>", where `keys` are
 /// the keys of the deck that determine this number.
 void check_bytes(const std::string& keys, const std::string& must, double n_points, double bytes) {
   if (bytes * n_points * n_points > most_bytes)
-    throw UserError(keys + " must " + must +
-                    formatted(": the layers of %.0f control points take %.0f GB assembled, more than %.0f.", n_points,
-                              bytes * n_points * n_points / 1e9, most_bytes / 1e9));
+    throw UserError(
+        keys + " must " + must +
+        formatted(": the assembled boundary-integral operators of %.0f control points take %.0f GB, more than the limit of %.0f GB.",
+                  n_points, bytes * n_points * n_points / 1e9, most_bytes / 1e9));
 }
 
 void check_size(const Scene& scene) {
@@ -154,18 +156,20 @@ void check_motion(const Scene& scene) {
     throw UserError(std::string("Particle/") + (particle.velocity ? "velocity" : "angular velocity") +
                     " belongs to Particle/motion `prescribed`, but Particle/motion is " + text(particle.motion) + ".");
   if (particle.motion != Motion::free && (particle.force || particle.torque))
-    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") + " is for Particle/motion `free`, but Particle/motion is " +
-                    text(particle.motion) + (particle.rigid() ? ": a body that moves as told takes whatever force that needs."
-                                                              : ": on what deforms a force is spread, by Particle/density difference and "
-                                                                "Flow/gravity."));
+    throw UserError(std::string("Particle/") + (particle.force ? "force" : "torque") +
+                    " is for Particle/motion `free`, but Particle/motion is " + text(particle.motion) +
+                    (particle.rigid()
+                         ? ": the force on a body with prescribed motion follows from its motion."
+                         : ": for a deformable particle give a force per volume, by Particle/density difference and Flow/gravity."));
   if (particle.density_difference && !scene.flow.gravity) throw UserError("Particle/density difference needs Flow/gravity.");
-  if (scene.flow.type == "duct" && !scene.tube.present) throw UserError("Flow/type `duct` needs a list Tube, at least Tube/section, or Channel.");
+  if (scene.flow.type == "duct" && !scene.tube.present)
+    throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
-    throw UserError("Adaptation/film resolution is for several particles, in a lattice, or beside a wall: there are no films between others.");
+    throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
   if (std::isnan(scene.time.final_time) && !scene.only_solids && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
-    throw UserError("Time/final time is missing: when the run ends, in the deck's unit of time.");
+    throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
-    throw UserError("Periodic/period is missing: the expected one, in the deck's unit of time.");
+    throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
   if (const auto& history = scene.flow.history; scene.periodic.present && history && history->frequency) {
     const double cycles = scene.periodic.period * *history->frequency;
     if (cycles < 0.5 || std::abs(cycles - std::round(cycles)) > 1e-9 * cycles)
@@ -180,7 +184,7 @@ void check_first_kind(const Scene& scene) {
   double n_points = 0;
   for (const Scene& one : scene.alone()) {
     if (!one.particle.rigid())
-      throw UserError(word + " is for rigid bodies alone, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
+      throw UserError(word + " is for rigid bodies only, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
     n_points += points(one);
   }
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
@@ -193,7 +197,7 @@ void check_several(const Scene& scene) {
   for (Scene one : alone) {
     one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies to deformable particles
     const std::string list = "Particles/" + one.name;
-    if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load: one way of taking the load is for all particles.");
+    if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
     try {
       one.check();
     } catch (UserErrors& errors) {
@@ -226,7 +230,7 @@ void Scene::declare(deck::Section& root) {
   if (several) {
     for (const char* list : {"Particle", "Membrane", "Surface", "Interface", "Adaptation"})
       refuse(root.given(list), std::string(list), "Particles",
-             "each particle has its own, in Particles/<name>, and what they share is said once in Particles/defaults");
+             "give it for each particle in Particles/<name>, or for all particles in Particles/defaults");
   } else {
     root.section("Particle", particle, "resting shape, initial shape and motion of the particle");
     declare_lists(root);
@@ -242,11 +246,11 @@ void Scene::declare(deck::Section& root) {
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
   ChannelList channel{root.given("Channel") ? tube : documented};
-  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one wall");
+  refuse(tube.present && root.given("Channel"), "Channel", "Tube", "a scene has one duct; give one of them");
   if (root.optional_section("Channel", channel, "a tube whose cross-section varies along a centre line, which may bend; none without this section"))
     tube.present = true;
-  domain.present =
-      root.optional_section("Domain", domain, "the periodic lattice, which the flow convects; unbounded fluid without this section");
+  domain.present = root.optional_section(
+      "Domain", domain, "periodic cell of fluid and particles, whose lattice the flow convects; nothing is periodic without this section");
   if (tube.present && !tube.channel && tube.periodic_length) {
     refuse(domain.present, "Tube/periodic length", "Domain", "both give the period along x1");
     domain.present = true, domain.periodic = "x1", domain.side_lengths = std::vector<double>{*tube.periodic_length};
@@ -254,8 +258,8 @@ void Scene::declare(deck::Section& root) {
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
   if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
-  root.section("Quadrature", quadrature, "quadrature of the boundary integrals of the fluid");
-  root.section("Time", time, "integration in time");
+  root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
+  root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
   continuation.present =
       root.optional_section("Continuation", continuation,
@@ -268,7 +272,7 @@ void Scene::declare(deck::Section& root) {
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
   periodic.driven = flow.history.has_value();
-  root.section("Symmetry", symmetry, "use of the symmetries of the scene");
+  root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
   if (!root.documenting()) take_posts(*this);

@@ -49,18 +49,19 @@ bool turns(const Scene& scene) {
 void reject_searches(const Scene& scene, Rejections& to) {
   const bool search = !scene.runs_in_time(), steady = scene.steady.present, drop = scene.membrane.law == "surface tension";
   const std::string& unstressed = scene.membrane.stress_free == "resting" ? scene.particle.shape.shape : scene.membrane.stress_free;
-  to.pair(steady && scene.periodic.present, "Steady", "Periodic", "what rests has no period");
-  to.add(scene.continuation.present && !steady, "Continuation needs a list Steady: it continues steady shapes.");
-  to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history", "nothing is steady in a flow that changes");
+  to.pair(steady && scene.periodic.present, "Steady", "Periodic", "a steady shape has no period; give one of them");
+  to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
+  to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history",
+          "no shape is steady in a flow that changes in time");
   to.pair(search && scene.volume.constraint != "exact", scene.sought(),
           {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
-          "the volume tells which shape");
+          "the volume must be conserved exactly, because it distinguishes between steady shapes");
   to.pair(search && drop && scene.interface_motion() == "material", scene.sought(), "Interface/motion `material`",
-          "points that go with the fluid along an interface do not rest");
+          "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
   to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow_choice(),
-          "the flow turns, and a membrane that is no sphere where it is unstressed swings or tumbles as it treads");
+          "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
   to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow_choice(),
-          "the membrane tank-treads through its steady shape, so that no point of it keeps its strain");
+          "the membrane tank-treads around its steady shape, so that the strain of its material points is not steady");
 }
 
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,

@@ -88,23 +88,40 @@ std::string solids_line(const Scene& scene, int ranks) {
 void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
   constexpr const char *walls = "; with walls in a Domain", *posts = "; with posts", *both = "; with two walls or posts in a Domain";
   if (to.when(scene.wall.solid)) {
-    to.add(wall_force, "x1 x2 x3", {"wall_force_", "force", "force of the fluid on one period of the wall, component #. A uniform pressure is left "
-           "out: between two walls it is chosen so that the fluid presses on both alike", {}, walls});
+    to.add(wall_force, "x1 x2 x3",
+           {"wall_force_",
+            "force",
+            "component # of the force of the fluid on one period of the wall. The uniform part of the pressure, which is arbitrary, is not "
+            "included: between two walls it is chosen such that the normal forces on both are equal",
+            {},
+            walls});
     if (to.when(scene.wall.distance.has_value()))
-      to.add(second_wall_force, "x1 x2 x3", {"second_wall_force_", "force", "force of the fluid on one period of the second wall, component #", {},
-             walls});
+      to.add(second_wall_force, "x1 x2 x3",
+             {"second_wall_force_", "force", "component # of the force of the fluid on one period of the second wall", {}, walls});
   }
   const auto add_force = [&](const std::string& name, const Vec3& force) {
     const std::string prefix = name.empty() ? "" : name + "/";
-    to.add(force, "x1 x2 x3", {prefix + "post_force_", "force", "force of the fluid on one period of the post, component #", {}, posts});
+    to.add(force, "x1 x2 x3",
+           {prefix + "post_force_", "force", "component # of the force of the fluid on one period of the post", {}, posts});
   };
   for (std::size_t k = 0; k < scene.posts.size(); ++k) add_force(scene.posts[k].name, k < post_forces.size() ? post_forces[k] : Vec3::Zero());
   if (scene.posts.empty() && to.when(false)) add_force({}, Vec3::Zero());
   if (!to.when(scene.wall.distance.has_value() || !scene.posts.empty())) return;
-  to.add(mean_velocity, "x1 x2 x3", {"mean_velocity_", "length/time", "mean velocity over the cell between the walls, or over the whole cell, "
-         "particles and posts included: flow rate per area of the cross-section, component #", {}, both});
+  to.add(mean_velocity, "x1 x2 x3",
+         {"mean_velocity_",
+          "length/time",
+          "component # of the mean velocity over the cell between the walls, or over the whole cell, including particles and posts: flow "
+          "rate divided by the area of the cross-section",
+          {},
+          both});
   if (to.when(scene.flow.pressure_gradient.has_value()))
-    to.add(permeability, {"permeability", "length^2", "mu times the mean velocity against the pressure gradient, per pressure gradient", {}, both});
+    to.add(
+        permeability,
+        {"permeability",
+         "length^2",
+         "permeability: outer viscosity times mean velocity opposite to Flow/pressure gradient, divided by the magnitude of this gradient",
+         {},
+         both});
 }
 
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const Solids::Flow& flow, const Vec3& particle_force, const Vec3& carried) {

@@ -79,19 +79,23 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   const bool tube = scene.tube.present, straight = tube && !scene.tube.channel, all_blocks = solvers.tube != "schur";
   const Chosen confined = scene.duct_choice(), system("Solvers/tube `" + solvers.tube + "`", "Solvers/tube other than `schur`");
   to.pair(!scene.runs_in_time() && scene.tube.channel && flow.held == "flow rate", scene.sought(), "Flow/held `flow rate`",
-          "what is carried along in a channel rests only where a pressure drop does not push it through");
+          "a particle in a channel moves with the fluid if the flow rate is prescribed, and can be at rest only if the pressure drop is; "
+          "give `pressure drop`");
   const bool couette = straight && flow.type == "simple shear" && !flow.history;
   to.pair(tube && !couette && flow.type != "duct" && flow.type != "quiescent", confined, scene.flow_choice(),
-          "that flow fills unbounded space; in a tube Flow/type is `duct`, `quiescent` or, in a straight one and unchanging, `simple shear`, "
-          "with which the wall goes along");
-  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the tube is as long as its period");
-  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined, "the wall is not closed");
+          "that flow is for unbounded fluid; in a tube Flow/type is `duct`, `quiescent` or, in a straight tube and without Flow/history, "
+          "`simple shear`, with which the wall moves");
+  to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
+  to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined,
+          "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
-          "the system of all blocks leaves the membrane's own load out; `schur` has it");
-  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined, "the wall of a straight tube is factored");
-  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system, "that takes the factored wall");
+          "the system of all blocks does not include the load of a viscous membrane; give `schur`");
+  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined,
+          "the wall of a straight tube is always factored; the key is for a Channel");
+  to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
+          "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
-          "the system of all blocks holds the flow rate; `schur` may hold either");
+          "the system of all blocks prescribes the flow rate; give `schur`");
 }
 
 void check_fit(const Scene& scene, const Body& body) {
@@ -123,8 +127,9 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   if (const double period = scene.tube.period; period > 0) {
     const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
     if (const double most = most_wall_points() / options.azimuthal_elements; elements > most)
-      throw UserError(formatted("A period of %.4g asks for %d elements along the wall, but at most %.0f fit into memory: give a shorter one.", period,
-                                elements, most));
+      throw UserError(
+          formatted("A period of %.4g needs %d elements along the wall, but at most %.0f fit into memory: give a shorter period.", period,
+                    elements, most));
     return std::make_shared<surface::TubeWall>(surface::periodic_tube_wall(outline, options, period, elements, std::min(length, period) / 2));
   }
   const double along = surface::tube_length(scene.tube, outline.radius(), length);
@@ -150,26 +155,61 @@ std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phase
 void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.tube.present)) return;
   constexpr const char *tube = "; in a tube", *channel = "; in a channel";
-  to.add(pressure_drop, {"disturbed_pressure_drop", "force/length^2", "pressure drop that the particle adds (2.7); of one period of a train", {},
-         tube});
+  to.add(pressure_drop,
+         {"disturbed_pressure_drop",
+          "force/length^2",
+          "pressure drop in the tube caused by the particles, in addition to that of the empty tube (2.7); for a train, of one period",
+          {},
+          tube});
   add_gap(gap, to);
   if (to.when(scene.flow.held == "pressure drop"))
-    to.add(flow_rate, {"flow_rate", "length^3/time", "through the tube, where Flow/held is `pressure drop`", {},
-           "; where the pressure drop is held"});
+    to.add(flow_rate, {"flow_rate",
+                       "length^3/time",
+                       "flow rate through the tube, if Flow/held is `pressure drop`",
+                       {},
+                       "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {
-    to.add(channel_pressure_drop, {"channel_pressure_drop", "force/length^2", "between the ends of the empty channel (2.30)", {}, channel});
-    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop", "force/length^2", "the same, over that of a straight tube of the inlet's "
-           "section and as long", {}, channel});
+    to.add(channel_pressure_drop,
+           {"channel_pressure_drop", "force/length^2", "pressure drop between the ends of the empty channel (2.30)", {}, channel});
+    to.add(channel_extra_pressure_drop, {"channel_extra_pressure_drop",
+                                         "force/length^2",
+                                         "pressure drop of the empty channel minus the pressure drop of a straight tube of the same length "
+                                         "with the cross-section of the inlet",
+                                         {},
+                                         channel});
   }
-  to.add(checks.flux, {"disturbance_flux", "1", "flow rate of the disturbance through the inlet, over the duct's: should vanish (2.14)", {}, tube});
-  to.add(checks.force, {"force_imbalance", "1", "axial force of the disturbance on caps, wall and particle, over the duct's own on the length R_T: "
-         "should vanish (2.14)", {}, tube});
+  to.add(checks.flux, {"disturbance_flux",
+                       "1",
+                       "flow rate of the disturbance velocity through the inlet divided by that of the empty duct; a measure of error that "
+                       "vanishes in the exact solution (2.14)",
+                       {},
+                       tube});
+  to.add(checks.force,
+         {"force_imbalance",
+          "1",
+          "axial force of the disturbance flow on ends, wall and particle, divided by the pressure force of the empty duct over the length "
+          "R_T (radius of the circle with the area of the cross-section); a measure of error that vanishes in the exact solution (2.14)",
+          {},
+          tube});
   if (to.when(!scene.domain.present))
-    to.add(checks.cap_velocity, {"cap_velocity", "1", "largest disturbance velocity left on the caps, over the mean velocity", {}, tube});
-  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux", "force/length^2", "disturbed pressure drop for which the flux of the disturbance "
-         "vanishes", {}, tube});
-  to.add(checks.pressure_by_force, {"pressure_drop_by_force", "force/length^2", "disturbed pressure drop for which the axial forces balance", {},
-         tube});
+    to.add(checks.cap_velocity, {"cap_velocity",
+                                 "1",
+                                 "largest disturbance velocity on the ends of the computed part of the tube divided by the mean velocity; "
+                                 "a measure of error that decreases with the length of the tube",
+                                 {},
+                                 tube});
+  to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
+                                   "force/length^2",
+                                   "pressure drop caused by the particles, computed from zero flow rate of the disturbance; agrees with "
+                                   "`disturbed_pressure_drop` in the exact solution",
+                                   {},
+                                   tube});
+  to.add(checks.pressure_by_force, {"pressure_drop_by_force",
+                                    "force/length^2",
+                                    "pressure drop caused by the particles, computed from the balance of axial forces; agrees with "
+                                    "`disturbed_pressure_drop` in the exact solution",
+                                    {},
+                                    tube});
 }
 
 TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e) {

@@ -21,19 +21,21 @@ void WallOptions::declare(deck::Section& section) {
   section.key("point", point, deck::any(), "length", "position of any point on the plane wall");
   section.key("normal", normal, deck::any(), "1", "normal vector of the plane wall, pointing into the fluid; its length has no effect");
   section.key("distance", distance, deck::positive(), "length",
-              "distance of a second wall along Wall/normal, so that the fluid is between two plates. It needs a Domain that is periodic along both "
-              "directions in the plates");
+              "distance between the wall and a second, parallel wall along Wall/normal, so that the fluid is between two plates. It needs "
+              "a Domain that is periodic along both directions in the plates");
   section.key("velocity", velocity, deck::any(), "length/time",
-              "velocity of a wall in a Domain, three numbers, along the wall. If not given, the wall moves with the flow of Flow/type");
+              "velocity of the wall, or of the first of two walls, in a periodic Domain: three numbers, tangential to the wall. If not "
+              "given, the wall moves with the flow of Flow/type");
   section.key("second velocity", second_velocity, deck::any(), "length/time",
-              "velocity of the second wall, at Wall/distance, three numbers, along the wall. If not given, the wall moves with the flow of "
-              "Flow/type");
+              "velocity of the second wall, which Wall/distance adds: three numbers, tangential to the wall. If not given, the wall moves "
+              "with the flow of Flow/type");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
-              "number of elements of each wall along the longer period of Domain; along the shorter one elements are about as long. If not given, "
-              "elements are as long as a twelfth of Wall/distance, or of R_C beside a single wall, but at most 48 per period");
+              "number of elements of each plane wall along the longer of its two periods; along the shorter one elements are about as "
+              "long. If not given, elements are as long as a twelfth of Wall/distance, or with a single wall a twelfth of R_C, the radius "
+              "of the sphere with the particle's volume, but at most 48 per period");
   section.key("contact gap", contact_gap, deck::between(1e-6, 1), "R_C",
-              "smallest allowed gap between a particle and the plane wall, divided by the R_C of the smallest particle. If a gap is smaller, the "
-              "run ends with a checkpoint");
+              "smallest allowed gap between a particle and the plane wall, divided by R_C, the radius of the sphere with the volume of the "
+              "smallest particle. If a gap is smaller, the run ends with a checkpoint");
 }
 
 void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const {
@@ -44,24 +46,32 @@ void WallOptions::check(const stokes::FlowOptions& flow, const std::optional<sto
       throw UserError("Wall/distance needs a Domain that is periodic along both directions in the plates: give Domain/periodic and "
                       "Domain/side lengths.");
     for (const auto& [name, given] : {std::pair("velocity", velocity.has_value()), {"elements per period", elements_per_period.has_value()}})
-      if (given) throw UserError(std::string("Wall/") + name + " needs a Domain: without one the wall is an image plane, which moves with the flow.");
+      if (given)
+        throw UserError(std::string("Wall/") + name +
+                        " needs a Domain: without a Domain the wall is represented by images and moves with the flow.");
   }
-  if (second_velocity && !distance) throw UserError("Wall/second velocity needs Wall/distance, the distance of the second wall.");
+  if (second_velocity && !distance) throw UserError("Wall/second velocity needs Wall/distance, the distance between the two walls.");
   const Vec3 n = normal.normalized();
   for (const auto& [name, given] : {std::pair("velocity", &velocity), {"second velocity", &second_velocity}})
     if (*given && std::abs(n.dot(**given)) > 1e-9 * (*given)->norm())
-      throw UserError(std::string("Wall/") + name + " must be along the wall, whose place in a Domain stays, but has a component along Wall/normal.");
+      throw UserError(std::string("Wall/") + name +
+                      " must be along the wall, because the position of the wall is fixed, but has a component along Wall/normal.");
   if (solid && cell)
     for (int d = 0; d < 3; ++d)
       if (cell->n() != 2 || (d < 2 && std::abs(cell->vectors().col(d).dot(n)) > 1e-9 * cell->vectors().col(d).norm()))
-        throw UserError("Wall and Domain must fit each other: walls end the fluid along Wall/normal, so that the scene must be periodic along both "
-                        "directions in them and along no other. Give these two as Domain/periodic.");
+        throw UserError(
+            "Wall and Domain do not fit each other: walls bound the fluid along Wall/normal, so that the Domain must be periodic along "
+            "both directions in the walls and along no other. Give these two as Domain/periodic.");
   for (const stokes::PlaneWall& wall : planes()) check_flow(flow, wall);
   if (!flow.pressure_gradient || !solid) return;
-  if (!distance) throw UserError("Flow/pressure gradient needs a second wall, at Wall/distance: beside one wall nothing holds the fluid back.");
-  refuse(flow.type == "parabolic", "Flow/pressure gradient", "Flow/type `parabolic`", "that flow has a pressure gradient already");
+  if (!distance)
+    throw UserError(
+        "Flow/pressure gradient needs a second wall, at Wall/distance, because a single wall does not balance the force of the pressure.");
+  refuse(flow.type == "parabolic", "Flow/pressure gradient", "Flow/type `parabolic`", "that flow already has a pressure gradient");
   if (std::abs(n.dot(*flow.pressure_gradient)) > 1e-9 * flow.pressure_gradient->norm())
-    throw UserError("Flow/pressure gradient must be along the walls, because across them it moves nothing, but has a component along Wall/normal.");
+    throw UserError(
+        "Flow/pressure gradient must be along the walls, because a gradient across them drives no flow, but has a component along "
+        "Wall/normal.");
 }
 
 void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::PlaneWall& wall) const {
@@ -84,13 +94,15 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
   if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // general row for the table of combinations; for a given flow,
                                                                                     // check() throws
-  to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`", "a duct has walls of its own, in a list Tube");
-  to.pair(scene.tube.present, "Wall", scene.duct_choice(), "images are of one plane in a fluid that is unbounded otherwise");
+  to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`",
+          "the wall of a duct is given in a section Tube or Channel");
+  to.pair(scene.tube.present, "Wall", scene.duct_choice(), "a plane wall is represented by images, which need a fluid without other walls");
   to.pair(scene.quadrature.rule != "adaptive", "Wall",
           {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
-          "a film at a wall takes rules by tolerance, `adaptive`");
-  to.pair(!scene.runs_in_time(), scene.sought(), "Wall", "beside a wall nothing that deforms keeps its distance from it");
-  to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "its distance from the wall matters");
+          "the film at a wall needs quadrature to a tolerance; give `adaptive`");
+  to.pair(!scene.runs_in_time(), scene.sought(), "Wall",
+          "a deformable particle next to a wall moves away from it or towards it, so that no shape is steady");
+  to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "the distance from the wall must be free to change");
 }
 
 std::optional<stokes::PlaneWall> WallOptions::plane() const {

@@ -231,7 +231,8 @@ std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net
   std::vector<std::vector<Site>> out(space.n_points);
   for (int i = 0; i < space.n_points; ++i) {
     if (place_of[i] < 0)
-      throw UserError("Control point " + std::to_string(i) + " of the surface has no place where its function is large.");
+      throw UserError("Control point " + std::to_string(i) +
+                      " of the surface has no collocation site, because its basis function is small everywhere.");
     out[i] = at_place[place_of[i]];
   }
   return out;

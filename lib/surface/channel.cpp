@@ -99,9 +99,10 @@ void Channel::check() {
   if (options_.period > 0)
     check_period();
   else if (before > first_ || after < last_ || start_ >= end_)
-    throw UserError(formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
-                              "but the modelled piece goes from %.4g to %.4g.",
-                              straight_end * radius, first_, last_, start_, end_));
+    throw UserError(
+        formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
+                  "but the computed part extends from %.4g to %.4g.",
+                  straight_end * radius, first_, last_, start_, end_));
   double widest = 0;
   for (int k = 0; k <= n_samples; ++k) {
     const double s = start_ + (end_ - start_) * k / n_samples;
@@ -116,22 +117,27 @@ void Channel::check() {
     }
   }
   if (own_.bend_radius && *own_.bend_radius <= 1.05 * widest)
-    throw UserError(formatted("Channel/bend radius must be more than half the channel's width, %.4g, and 5 %% of it, or its sections cross, but is "
-                              "%.4g.",
-                              widest, *own_.bend_radius));
+    throw UserError(
+        formatted("Channel/bend radius must exceed half the channel's width, %.4g, by at least 5 %%, because otherwise its cross-sections "
+                  "intersect, but is %.4g.",
+                  widest, *own_.bend_radius));
 }
 
 void Channel::check_period() {
-  if (own_.start || own_.end) throw UserError("Channel/start and Channel/end are for a channel with two ends, but Domain makes it repeat along x1.");
-  if (own_.bend_radius) throw UserError("Channel/bend radius is for a channel with two ends: one that bends does not repeat along x1.");
+  if (own_.start || own_.end)
+    throw UserError("Channel/start and Channel/end are for a channel with two ends, but Domain makes it periodic along x1.");
+  if (own_.bend_radius)
+    throw UserError("Channel/bend radius is for a channel with two ends: a channel with a bend is not periodic along x1.");
   if (last_ - first_ > options_.period * (1 + 1e-9))
-    throw UserError(formatted("The period of the channel, Domain/side lengths %.4g, must be at least as long as what changes in it, from s = %.4g to "
-                              "%.4g.",
-                              options_.period, first_, last_));
+    throw UserError(
+        formatted("The period of the channel, Domain/side lengths %.4g, must be at least as long as the part in which its cross-section "
+                  "changes, from s = %.4g to %.4g.",
+                  options_.period, first_, last_));
   const Vec2 jumps = place(start_).factor - place(end_).factor;
   if (jumps.cwiseAbs().maxCoeff() > 1e-6)
-    throw UserError(formatted("A channel that repeats must have the same section at both ends of its period, but its factors differ by %.3g.",
-                              jumps.cwiseAbs().maxCoeff()));
+    throw UserError(
+        formatted("A periodic channel must have the same cross-section at both ends of its period, but its factors differ by %.3g.",
+                  jumps.cwiseAbs().maxCoeff()));
 }
 
 /// Returns the equivalent arc length in the modelled period: s plus a multiple of the period.

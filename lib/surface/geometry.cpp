@@ -143,7 +143,8 @@ std::array<Range, Geometry::n_extremes> Geometry::extremes(const Net& net, const
 
 Deformation Geometry::deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes) {
   if (!(extremes[0].smallest <= extremes[0].largest))
-    throw RunFailure("the plane x2 = const. through the centroid misses the surface: it is no longer closed or not a number");
+    throw RunFailure(
+        "the plane x2 = const. through the centroid does not intersect the surface, which is no longer closed or contains NaN");
   Deformation result;
   const Mat3& m = measures.second_moments;
   const double mean = (m(0, 0) + m(2, 2)) / 2, difference = (m(0, 0) - m(2, 2)) / 2, radius = std::hypot(difference, m(0, 2));

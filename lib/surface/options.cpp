@@ -16,9 +16,11 @@
 namespace tanktread::surface {
 
 void MeshOptions::declare(deck::Section& section) {
-  section.key("mesh", mesh, deck::Choice{"cube", "polar"},
-              "mesh of the particle's surface. `cube`: unstructured, eight extraordinary points, 6n^2 + 2 control points with n = Surface/elements "
-              "per side. `polar`: structured, two poles, (r + 1)m + 2 control points with m and r elements around and along the pole axis");
+  section.key(
+      "mesh", mesh, deck::Choice{"cube", "polar"},
+      "mesh of the particle's surface. `cube`: a cube with n x n elements on each side, n = Surface/elements per side, mapped to the "
+      "shape; 6n^2 + 2 control points; the eight corners are extraordinary points. `polar`: a grid from pole to pole, with m = "
+      "Surface/azimuthal elements around the pole axis and r = Surface/meridional elements from pole to pole; (r + 1)m + 2 control points");
   if (polar()) {
     azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
   } else {
@@ -26,26 +28,29 @@ void MeshOptions::declare(deck::Section& section) {
   }
   if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
-              "n: number of elements along each side of the cube mesh, which has 6n^2 elements");
-  section.key("extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
-              "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
-              "continuous tangent planes, with elements of degree 4 around the point (the paper's constrained extraction). `catmull-clark`: limit "
-              "surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
-  section.key("azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
-              "m: number of elements around the pole axis of the polar mesh, 32 if not given; or around a `cylinder`, 24 if not given");
+              "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements");
+  section.key(
+      "extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
+      "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
+      "continuous tangent planes, with elements of degree 4 around the point (constrained extraction of Maestre et al. 2017). "
+      "`catmull-clark`: limit surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
+  section.key(
+      "azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
+      "number m of elements around the pole axis of the polar surface mesh, 32 if not given; or around a `cylinder`, 24 if not given");
   section.key("axial elements", axial_elements, deck::between(4, 400), "1",
               "number of elements along one period of a `cylinder`; if not given, elements are about as long as wide");
   section.key("meridional elements", meridional_elements, deck::between(4, 200), "1",
-              "r: number of elements from pole to pole of the polar mesh; 16 if not given");
+              "number r of elements from pole to pole of the polar surface mesh; 16 if not given");
   section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"},
-              "body-fixed axis of the particle on which the poles of the polar mesh lie; `x3` if not given");
+              "body-fixed axis of the particle on which the poles of the polar surface mesh lie; `x3` if not given");
   section.key("poles", poles, deck::Choice{"bezier transform", "plain", "c1"},
-              "treatment of the poles of the polar mesh. `bezier transform`: the paper's method, which replaces degenerate elements by regular "
-              "ones (P-A.1, P-A.2); the default. `plain`: degenerate elements are kept. `c1`: tangent planes are continuous at the poles; (r - 1)m "
-              "+ 6 control points");
+              "treatment of the poles of the polar surface mesh. `bezier transform`: degenerate elements are replaced by regular ones, as "
+              "by Maestre et al. (2017); the default. `plain`: degenerate elements are kept. `c1`: tangent planes are continuous at the "
+              "poles, with (r - 1)m + 6 control points for m elements around the axis and r from pole to pole");
   if (poles == "bezier transform") pole_subdivisions = 2;
   section.key("pole subdivisions", pole_subdivisions, deck::between(0, 4), "1",
-              "how many times elements at the poles of the polar mesh are halved in azimuth before the Bezier transform; 2 if not given");
+              "number of times that the elements at the poles of the polar surface mesh are halved in azimuth before the transform of "
+              "Surface/poles `bezier transform`; 2 if not given");
 }
 
 void MeshOptions::check() const {
@@ -82,22 +87,23 @@ double MeshOptions::n_elements() const {
 
 void ParticleShape::declare(deck::Section& section) {
   section.key("shape", shape, deck::Choice{"sphere", "spheroid", "ellipsoid", "red cell", "cylinder", "file"},
-              "resting shape of the particle. `red cell`: the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `cylinder`: "
-              "a post in a Domain, one period of a circular cylinder along Particle/axis, which does not move. `file`: the closed surface in "
-              "Particle/file");
+              "resting shape of the particle. `sphere`: of Particle/radius. `spheroid`, `ellipsoid`: with Particle/semi-axes. `red cell`: "
+              "the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `cylinder`: a post, which is a fixed circular "
+              "cylinder along Particle/axis through the whole period of the Domain. `file`: the closed surface in Particle/file");
   section.key("file", file, deck::Choice{},
-              "path of a Bezier-extraction text (.iga) with the resting shape in the deck's unit of length. The run uses its surface and spline "
-              "space. The path is relative to the working directory or to the deck");
+              "path of a file with the resting shape as a spline surface in Bezier-extraction format (.iga), lengths in the deck's unit. "
+              "The run uses its surface and spline space. The path is relative to the working directory or to the deck");
   const bool round = shape == "sphere" || shape == "red cell" || shape == "cylinder";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length",
-              "radius of the `sphere` or `cylinder`, or of the disc of the `red cell`; 1 if not given. R_C, which other keys refer to, is the radius "
-              "of the sphere of equal volume: for a red cell 0.7224 times the radius of the disc");
+              "radius of the `sphere` or `cylinder`, or of the disc of the `red cell`; 1 if not given. Other keys refer to R_C, the radius "
+              "of the sphere with the particle's volume: for a red cell 0.7224 times the radius of the disc");
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
-              "direction of a `cylinder`, along which the Domain must be periodic");
+              "direction of the axis of a particle of the shape `cylinder`; the Domain must be periodic along it");
   section.key("semi-axes", semi_axes, deck::positive(), "length",
-              "semi-axes of the `spheroid` (two of them equal) or `ellipsoid`, three numbers along the particle's body-fixed x1, x2, x3");
-  section.key("center", center, deck::any(), "length", "position of the centroid of the resting shape");
+              "semi-axes of a particle of the shape `spheroid` (two of them equal) or `ellipsoid`: three numbers along the particle's "
+              "body-fixed x1, x2, x3");
+  section.key("center", center, deck::any(), "length", "position of the centroid of the particle's resting shape");
   section.key("orientation", orientation, deck::any(), "degrees",
               "rotation vector (axis times angle, right-hand rule) that turns the axes of space into the particle's body-fixed axes: [0, 90, 0] "
               "turns the body-fixed x3 to x1, and the body-fixed x1 to -x3");
@@ -110,31 +116,33 @@ void ParticleShape::declare(deck::Section& section) {
 
 void InitialShape::declare(deck::Section& section) {
   section.key("stretch", stretch, deck::positive(), "1",
-              "three factors by which the initial shape is stretched along the particle's body-fixed x1, x2, x3, relative to the resting shape and "
-              "about its center");
+              "three factors by which the resting shape is stretched along the particle's body-fixed x1, x2, x3, about its center, to give "
+              "the initial shape");
   section.key("map", map, deck::any(), "1",
-              "nine numbers row by row: matrix in space-fixed axes that maps the resting shape to the initial shape, about the center");
+              "matrix that maps the resting shape to the initial shape, about the center and in space-fixed axes: nine numbers row by row");
   section.key("file", file, deck::Choice{},
-              "path of a Bezier-extraction text (.iga) on the particle's mesh with the initial surface, whose position is kept. The path is "
-              "relative to the working directory or to the deck");
+              "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle; the position "
+              "in the file is used. The path is relative to the working directory or to the deck");
   section.key("run", run, deck::Choice{},
-              "results of another run on the same mesh, whose shape is the initial shape and keeps its position: a directory, whose newest "
-              "checkpoint is used, or one of its snapshots. An adapted mesh is used as well. The path is relative to the working directory or to "
-              "the deck");
+              "path of the results of another run on the same mesh, whose last shape becomes the initial shape, at its position: a "
+              "directory, whose newest checkpoint is used, or one of its snapshots. An adapted mesh is used as well. The path is relative "
+              "to the working directory or to the deck");
   section.key("mode", mode, deck::at_least(1), "1",
-              "index, from 1, of a mode in the Spectrum of the other `run`, which is added to the shape of that run; of a complex mode the real "
-              "part is used");
+              "index, from 1, of an eigenmode in the Spectrum of the other run that Particle/initial shape/run names. The mode is added to "
+              "the shape of that run; of a complex mode the real part is used");
   section.key("mode amplitude", mode_amplitude, deck::any(), "R_C",
-              "largest displacement by the `mode` that is added to the shape of another `run`; modes are scaled to a largest displacement of 1");
+              "largest displacement by the eigenmode Particle/initial shape/mode, which is added to the shape of another run, divided by "
+              "R_C, the radius of the sphere with the particle's volume");
   section.key("volume", volume, deck::Choice{"resting", "own"},
-              "volume that the particle has during the run. `resting`: volume of the resting shape, to which the initial shape is scaled. `own`: "
+              "volume of the particle during the run. `resting`: volume of the resting shape, to which the initial shape is scaled. `own`: "
               "volume of the initial shape");
 }
 
 void InitialShape::check() const {
   if (map.has_value() + stretch.has_value() + file.has_value() + run.has_value() != 1)
-    throw UserError("Particle/initial shape needs one of the keys stretch, map, file and run, and no other of them.");
-  if (mode && !run) throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, the run with a Spectrum that it is taken from.");
+    throw UserError("Particle/initial shape needs exactly one of the keys stretch, map, file and run.");
+  if (mode && !run)
+    throw UserError("Particle/initial shape/mode needs Particle/initial shape/run, a run with a Spectrum that contains the mode.");
   if (map && !(map->determinant() > 0))
     throw UserError("Particle/initial shape/map must have a positive determinant, or the surface is turned inside out; it is " +
                     deck::number_text(map->determinant()) + ".");
@@ -155,8 +163,9 @@ void ParticleShape::check() const {
   refuse(axis.has_value(), "Particle/axis", "Particle/shape `" + shape + "`", "it belongs to `cylinder`");
   refuse(shape != "file" && file, "Particle/file", "Particle/shape `" + shape + "`", "it belongs to `file`");
   if (shape == "file") {
-    if (!file) throw UserError("Particle/shape `file` needs Particle/file, the name of a Bezier-extraction text.");
-    refuse(radius || semi_axes, std::string("Particle/") + (radius ? "radius" : "semi-axes"), "Particle/shape `file`", "the size is the file's");
+    if (!file) throw UserError("Particle/shape `file` needs Particle/file, the path of a file in Bezier-extraction format (.iga).");
+    refuse(radius || semi_axes, std::string("Particle/") + (radius ? "radius" : "semi-axes"), "Particle/shape `file`",
+           "the file determines the size");
     return;
   }
   refuse(round && semi_axes, "Particle/semi-axes", "Particle/shape `" + shape + "`", "give Particle/radius");
@@ -165,7 +174,9 @@ void ParticleShape::check() const {
   if (shape == "spheroid") {
     const Vec3& a = *semi_axes;
     if (a[0] != a[1] && a[1] != a[2] && a[0] != a[2])
-      throw UserError("Particle/semi-axes of a `spheroid` must hold two equal lengths; three different ones are an `ellipsoid`.");
+      throw UserError(
+          "Particle/semi-axes of a `spheroid` must contain two equal lengths; for three different lengths give Particle/shape "
+          "`ellipsoid`.");
   }
 }
 
@@ -203,71 +214,87 @@ double ParticleShape::equivalent_radius() const {
 }
 
 void TubeOptions::declare(deck::Section& list) {
-  list.key(
-      "section", section, deck::Choice{"circle", "ellipse", "rectangle", "file"},
-      "cross-section of the duct in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes` or `rectangle` of `sides`, centred at the "
-      "origin; `file`: any closed `outline`");
+  list.key("section", section, deck::Choice{"circle", "ellipse", "rectangle", "file"},
+           "cross-section of the tube or channel in the plane x2 x3: `circle` of `radius`, `ellipse` of `semi-axes` or `rectangle` of "
+           "`sides`, centred at the origin; `file`: any closed `outline`");
   if (section == "circle") radius = 1;
-  list.key("radius", radius, deck::positive(), "length", "radius of the cross-section `circle`; 1 if not given");
-  list.key("semi-axes", semi_axes, deck::positive(), "length", "semi-axes along x2 and x3 of the cross-section `ellipse`, two numbers");
-  list.key("sides", sides, deck::positive(), "length", "side lengths along x2 and x3 of the cross-section `rectangle`, two numbers");
+  list.key("radius", radius, deck::positive(), "length",
+           "radius of the tube or channel if its cross-section is a `circle`; 1 if not given");
+  list.key("semi-axes", semi_axes, deck::positive(), "length",
+           "semi-axes along x2 and x3 of the cross-section of the tube or channel if it is an `ellipse`, two numbers");
+  list.key("sides", sides, deck::positive(), "length",
+           "side lengths along x2 and x3 of the cross-section of the tube or channel if it is a `rectangle`, two numbers");
   list.key("outline", outline, deck::Choice{},
-           "path of a file with the outline of the cross-section `file`, one row x2,x3 per point, counter-clockwise, without a repetition of the "
-           "first point. A third column holds the word `corner` where two smooth sides meet. A cubic spline interpolates the points. The path is "
-           "relative to the working directory or to the deck");
+           "path of a file with the outline of the cross-section of the tube or channel if it is given by `file`: one row x2,x3 per point, "
+           "counter-clockwise, without a repetition of the first point. A third column holds the word `corner` where two smooth sides "
+           "meet. A cubic spline interpolates the points. The path is relative to the working directory or to the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
-           "number of elements around the wall; it is increased slightly if sides of equal length would otherwise have different numbers");
+           "number of elements around the wall of the tube or channel; it is increased slightly if sides of equal length would otherwise "
+           "have different numbers");
   if (channel) {
     channel->declare(list);
   } else {
     list.key("length", length, deck::positive(), "length",
-             "length of the computed part of the tube; if not given, 2 pi R_T with R_T = sqrt(area of the section / pi), or the particle's length "
-             "plus 4.6 R_T if that is more");
+             "length of the computed part of the tube; if not given, 2 pi R_T, or the particle's length plus 4.6 R_T if that is more. R_T: "
+             "radius of the circle with the area of the cross-section");
     list.key("periodic length", periodic_length, deck::positive(), "length",
-             "period L along x1 of tube and particles, an infinite train. Short form of a Domain that is periodic along x1");
+             "period along x1 of the tube and of an infinite train of particles in it. It is the same as a Domain that is periodic along "
+             "x1 with this length");
     list.key("images", images, deck::between(1, 100), "1", "obsolete key without effect: a periodic tube has all its images");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1",
-             "number of elements along the wall of the tube, or along one period. If not given 25; in a periodic tube as many as give the density "
-             "of a tube that is not periodic");
-    list.key("grading", grading, deck::between(1.0, 20.0), "1",
-             "g: the density of wall elements along the tube varies as 1 + (g - 1)/(1 + (x1/R_T)^4) around the particles; 1: uniform");
+             "number of elements along the wall of the tube, or along one period of it. If not given: 25, or in a periodic tube the number "
+             "that gives as many elements per length as in a tube that is not periodic");
+    list.key(
+        "grading", grading, deck::between(1.0, 20.0), "1",
+        "concentration g of the wall elements of the tube near particles: their number per length varies as 1 + (g - 1)/(1 + (x1/R_T)^4) "
+        "with the distance x1 from the particles along the tube; 1: uniform. R_T: radius of the circle with the area of the cross-section");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
-           "smallest allowed gap between a particle and the wall, divided by the R_C of the smallest particle. If a gap is smaller, the run ends "
-           "with a checkpoint. Integrals keep their accuracy down to a gap of 0.02");
+           "smallest allowed gap between a particle and the wall of the tube or channel, divided by R_C, the radius of the sphere with the "
+           "volume of the smallest particle. If a gap is smaller, the run ends with a checkpoint. Integrals keep their accuracy down to a "
+           "gap of 0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "p: strength of the force by which the wall repels membranes, only if all cross-sections are circles and there is no bend. The force per "
-           "unstressed area is p exp(-g/d) at the gap g between membrane and wall, with the `repulsion range` d (3.22). No repulsion if not given. "
-           "It keeps the film of fluid between membrane and wall open, which would otherwise become ever thinner");
+           "strength p of a repulsive force of the wall on membranes, which keeps the film of fluid between membrane and wall from "
+           "becoming ever thinner: the force per unstressed area is p exp(-g/d) at the gap g between membrane and wall, with d = "
+           "`repulsion range` (3.22). Only if all cross-sections are circles and there is no bend; no repulsion if not given");
   list.key("repulsion range", repulsion_range, deck::positive(), "length",
-           "d: decay length of the repulsion by the wall. It keeps a film of a few d open");
-  list.key("flow", flow, deck::Choice{"exact", "boundary elements"},
-           "computation of the flow in a straight duct of this cross-section. `exact`: in closed form or as a series, if one exists for the "
-           "cross-section, otherwise as `boundary elements` (P-33, P-34, P-35)");
+           "decay length d of the repulsive force of the wall on membranes, p exp(-g/d) at the gap g, with p = `repulsion`. The force "
+           "keeps a film of a few d open");
+  list.key(
+      "flow", flow, deck::Choice{"exact", "boundary elements"},
+      "computation of the flow in the straight empty duct of this cross-section. `exact`: in closed form or as a series, if one exists for "
+      "the cross-section, otherwise as `boundary elements`. `boundary elements`: by a two-dimensional boundary element method");
   list.key("flow elements", flow_elements, deck::between(8, 4000), "1",
-           "number of boundary elements for the computation of the duct flow by `boundary elements`");
+           "number of boundary elements along the outline of the cross-section, if `flow`, the computation of the flow in the empty duct, "
+           "is by `boundary elements`");
 }
 
 void ChannelOptions::declare(deck::Section& list) {
-  list.key("profile", profile, deck::Choice{"straight", "constriction", "expansion", "step", "file"},
-           "profile of the channel: factor f by which the cross-section is scaled at arc length s of the centre line. `constriction`: f = 1 - d (1 "
-           "+ cos(pi s/w))/2 for |s| < w. `expansion`: f = 1 + d (1 + cos(pi s/w))/2 for |s| < w. `step`: f = 1 - d for |s| < w with rounded "
-           "edges. Outside f = 1. `file`: f from the file `points`");
+  list.key(
+      "profile", profile, deck::Choice{"straight", "constriction", "expansion", "step", "file"},
+      "shape of the channel along its centre line: factor f by which the cross-section is scaled at the arc length s of the centre line. "
+      "`straight`: f = 1. `constriction`: f = 1 - d (1 + cos(pi s/w))/2 for |s| < w. `expansion`: f = 1 + d (1 + cos(pi s/w))/2 for |s| < "
+      "w. `step`: f = 1 - d for |s| < w with rounded edges. Outside f = 1. `file`: f from the file `points`. d: `depth`, w: `half length`");
   if (profile == "constriction") depth = 0.5;
   list.key("depth", depth, deck::any(), "1",
-           "d: relative depth of the profile `constriction` (0.5 if not given), `expansion` or `step`; a negative depth of a step widens the "
-           "channel");
-  list.key("half length", half_length, deck::positive(), "length", "w: half the length of the profile `constriction`, `expansion` or `step`");
-  list.key("corner radius", corner_radius, deck::positive(), "length", "radius of the rounded edges of the profile `step`");
-  list.key("directions", directions, deck::Choice{"x2 x3", "x2", "x3"},
-           "directions in which the profile scales the cross-section; the factor of any other direction is 1");
+           "relative depth d of the constriction, expansion or step of the channel, by which `profile` changes the size of the "
+           "cross-section; for `constriction` 0.5 if not given; a negative depth of a step widens the channel");
+  list.key("half length", half_length, deck::positive(), "length",
+           "half length w of the constriction, expansion or step of the channel, along its centre line");
+  list.key("corner radius", corner_radius, deck::positive(), "length",
+           "radius of the rounded edges of the step of the channel (`profile` `step`)");
+  list.key(
+      "directions", directions, deck::Choice{"x2 x3", "x2", "x3"},
+      "directions in which `profile` scales the cross-section of the channel; in any other direction the cross-section keeps its size");
   list.key("points", points, deck::Choice{},
-           "path of a file with the factors of the profile `file`: one row s,f per point, or s,f2,f3 with different factors in x2 and x3; s "
-           "ascending. A cubic spline interpolates the points; beyond them the section is constant. The path is relative to the working directory "
-           "or to the deck");
-  list.key("bend radius", bend_radius, deck::positive(), "length", "radius of the arc along which the centre line bends; straight if not given");
-  list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line at which the bend begins");
-  list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees", "angle of the bend of the centre line, from x1 towards x2");
+           "path of a file with the shape of the channel for `profile` `file`: one row s,f per point, arc length s (ascending) and factor "
+           "f of the cross-section, or s,f2,f3 with different factors in x2 and x3. A cubic spline interpolates the points; beyond them "
+           "the section is constant. The path is relative to the working directory or to the deck");
+  list.key("bend radius", bend_radius, deck::positive(), "length",
+           "radius of the circular arc along which the centre line of the channel bends; straight if not given");
+  list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line of the channel at which its bend begins");
+  list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees",
+           "angle of the bend of the centre line of the channel, from x1 towards x2");
   list.key("start", start, deck::any(), "length",
            "arc length s of the centre line at which the computed part of the channel begins; if not given, 4 R_T before the first change of "
            "cross-section or direction. R_T: radius of the circle with the area of the inlet");
@@ -282,7 +309,7 @@ void ChannelOptions::declare(deck::Section& list) {
 void ChannelOptions::check() const {
   const auto belongs = [this](const char* key, bool given, std::initializer_list<const char*> owners) {
     const bool owned = std::ranges::find(owners, profile) != owners.end();
-    refuse(given && !owned, std::string("Channel/") + key, "Channel/profile `" + profile + "`", "it has none");
+    refuse(given && !owned, std::string("Channel/") + key, "Channel/profile `" + profile + "`", "this profile does not use the key");
     if (!given && owned) throw UserError("Channel/profile `" + profile + "` needs Channel/" + key + ".");
   };
   belongs("depth", depth.has_value(), {"constriction", "expansion", "step"});
@@ -303,7 +330,7 @@ void TubeOptions::check() const {
   };
   if (channel) channel->check();
   if (images && period == 0)
-    throw UserError(list() + "/images belongs to a tube that repeats, but neither " + list() + "/periodic length nor Domain is given.");
+    throw UserError(list() + "/images belongs to a periodic tube, but neither " + list() + "/periodic length nor Domain is given.");
   belongs("radius", radius.has_value(), "circle");
   belongs("semi-axes", semi_axes.has_value(), "ellipse");
   belongs("sides", sides.has_value(), "rectangle");
@@ -311,7 +338,7 @@ void TubeOptions::check() const {
   if (repulsion.has_value() != repulsion_range.has_value())
     throw UserError(list() + "/repulsion and " + list() + "/repulsion range belong together, but one of them is not given.");
   if (repulsion && (section != "circle" || (channel && (channel->bend_radius || channel->directions != "x2 x3"))))
-    throw UserError(list() + "/repulsion is of a straight channel with round sections.");
+    throw UserError(list() + "/repulsion is available in straight channels with circular cross-sections only.");
 }
 
 }  // namespace tanktread::surface

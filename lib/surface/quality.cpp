@@ -77,7 +77,7 @@ Quality worse(const Quality& a, const Quality& b) {
 
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements) {
   for (int a = 0; a < net.rows(); ++a)
-    if (!net.row(a).allFinite()) throw RunFailure("control point " + std::to_string(a) + " is no longer a number");
+    if (!net.row(a).allFinite()) throw RunFailure("control point " + std::to_string(a) + " has become NaN");
   Quality result;
   double bezier[3 * most];
   Tangents a1, a2;

@@ -15,9 +15,10 @@ double Contacts::force() const {
 }
 
 void Contacts::add_columns(Columns& to) const {
-  to.add(force(), {"contact_force", "force", "sum of the forces by which Contact/limiter held particles apart over the step that ended here; 0 where "
-         "the fluid did"});
-  to.add(impulse, {"contact_impulse", "force time", "sum of these forces times the time that they acted for, so far"});
+  to.add(force(), {"contact_force", "force",
+                   "sum of the contact forces of Contact/limiter between all particles in the time step that ended at this time; 0 if the "
+                   "fluid kept the gaps open"});
+  to.add(impulse, {"contact_impulse", "force time", "time integral of `contact_force` since the start of the run"});
 }
 
 void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work) {

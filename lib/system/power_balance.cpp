@@ -33,10 +33,15 @@ double turnover(double flow, double forces, double fluids) {
 
 void Powers::add_columns(Columns& to) const {
   const double all = turnover(flow, forces, fluids);
-  to.add(flow, {"flow_power", "force length/time", "power that the flow puts in beyond what the outer fluid alone would take (6.11)"});
-  to.add(forces, {"force_power", "force length/time", "power of weights, of forces on membranes and bodies, and of contacts"});
-  to.add(fluids, {"fluid_dissipation", "force length/time", "power that the fluids turn into heat, beyond what the outer one alone would (6.12)"});
-  to.add(all > 0 ? left_over / all : 0, {"power_residual", "1", "what the balance of power lacks (6.13), over half the magnitudes of its terms"});
+  to.add(flow, {"flow_power", "force length/time",
+                "power input by the ambient flow that is due to the particles, in addition to that of the flow without particles (6.11)"});
+  to.add(forces, {"force_power", "force length/time",
+                  "power input by the weight of particles, by forces on membranes and rigid bodies, and by contact forces"});
+  to.add(fluids,
+         {"fluid_dissipation", "force length/time",
+          "viscous dissipation in the fluids that is due to the particles, in addition to that of the flow without particles (6.12)"});
+  to.add(all > 0 ? left_over / all : 0,
+         {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms"});
 }
 
 PowerBalance::PowerBalance(Capsule& capsule, const spline::Space& space, const Net& unstressed, double viscosity,

@@ -10,10 +10,10 @@ namespace tanktread::coupling {
 
 void SymmetryOptions::declare(deck::Section& section) {
   section.key("use", use, deck::Choice{"auto", "none"},
-              "use of symmetries. `auto`: finds mirror planes, half turns and the point symmetry that flow, particle and mesh have in common, and "
-              "solves only for control points that are not images of other control points. The particle keeps these symmetries for the whole run, "
-              "which excludes instabilities that break them, for example wrinkles or a drift. `none`: solves for all control points; rounding "
-              "errors may then grow");
+              "use of the symmetries of flow, particles and mesh. `auto`: finds the mirror planes, half turns and point symmetry that they "
+              "have in common, and solves only for control points that are not images of other control points. The particle keeps these "
+              "symmetries for the whole run, which excludes instabilities that break them, for example wrinkles or a drift. `none`: solves "
+              "for all control points; rounding errors may then grow");
 }
 
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net) {

@@ -57,4 +57,4 @@ def answer(main):
         print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(str(mistake).split())}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
-        sys.exit("stopped: the same command goes on from here")
+        sys.exit("stopped: the same command continues from here")

@@ -29,7 +29,7 @@ def _refused(words, *settings, mistakes=1):
 
 
 def what_is_no_channel_is_refused():
-    _refused(["Channel", "Tube", "one wall"], "Tube/section=circle")
+    _refused(["Channel", "Tube", "one duct"], "Tube/section=circle")
     _refused(["Channel/depth", "between 0 and 1", "1.2"], "Channel/depth=1.2")
     _refused(["closed", "0.01 R_T"], "Channel/depth=0.995")
     _refused(["Channel/start", "1.7", "-2.5"], "Channel/start=-2.5")
@@ -41,7 +41,7 @@ def what_is_no_channel_is_refused():
     numpy.savetxt("eight.csv", numpy.column_stack([numpy.sin(turns), numpy.sin(2 * turns)]), delimiter=",")
     _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
-    _refused(["Channel/repulsion", "round"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
+    _refused(["Channel/repulsion", "circular"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
     for setting, mistakes in ("Membrane/load=strong", 1), ("Particle/motion=prescribed", 2):  # the latter also contradicts Membrane
         _refused(["Channel/repulsion", setting.split("=")[1], "contradict"], "Channel/repulsion=10", "Channel/repulsion range=0.01", setting,
                  mistakes=mistakes)

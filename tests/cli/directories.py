@@ -75,7 +75,7 @@ def files_of_another_run_or_changed_ones_are_refused():
     newest.with_name("snapshot_000099.hdf").unlink()
     with h5py.File("flipped/run.h5", "r+") as file:
         file["series/energy"][1] *= 1 + 1e-15
-    _refused("flipped", "run.h5", "not as they were written")
+    _refused("flipped", "run.h5", "differ from what was written")
 
 
 def what_standard_output_does_not_take_is_an_error():

@@ -105,7 +105,7 @@ def the_wall_clock_limit_is_honoured_and_said():
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
                  code=4, timeout=60)
     check("wall-clock limit" in result.stderr or "was stopped" in result.stderr, result.stderr)
-    check("--resume short goes on" in result.stderr, result.stderr)
+    check("--resume short continues the run" in result.stderr, result.stderr)
 
 
 def a_ladder_that_was_killed_gives_the_same_result():

@@ -179,7 +179,7 @@ def a_damaged_newest_checkpoint_is_passed_over():
     newest = sorted(pathlib.Path("damaged").glob("snapshot_*.hdf"))[-1]
     newest.write_bytes(newest.read_bytes()[:2000])
     said = run("--resume", "damaged", "--quiet").stderr
-    check(f"{newest.name} is damaged (" in said and "the run goes on from snapshot_" in said, said)
+    check(f"{newest.name} is damaged (" in said and "the run continues from snapshot_" in said, said)
     check(newest.with_name(newest.name + ".damaged").stat().st_size == 2000, "the damaged file is lost")
     _same_bits("whole", "damaged")
 

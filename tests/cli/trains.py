@@ -149,7 +149,7 @@ def mistakes_are_told():
     refused(["Tube/length", "Domain"], deck(ONE), "--set", "Tube/length=6")
     refused(["Domain/periodic `x2`", "Channel"], deck(CHANNEL), "--set", "Domain/periodic=x2")
     refused(["Channel/start", "two ends"], deck(CHANNEL), "--set", "Channel/start=-4")
-    refused(["Channel/bend radius", "repeat"], deck(CHANNEL), "--set", "Channel/bend radius=3")
+    refused(["Channel/bend radius", "periodic"], deck(CHANNEL), "--set", "Channel/bend radius=3")
     refused(["period", "3", "as long"], deck(CHANNEL), "--set", "Domain/side lengths=[3.0]")
 
 

@@ -53,7 +53,7 @@ def what_contradicts_the_tube_is_refused():
     _refused(["Tube/section", "rectangle", "Tube/sides"], "Tube/section=rectangle")
     _refused(["desingularised", "Tube"], "Quadrature/rule=desingularised")
     without = deck(DECK.replace("  Tube: {section: circle, azimuthal elements: 10, axial elements: 10}\n", ""), "without.yaml")
-    check("needs a list Tube" in run(without, "--check", code=2).stderr, "a duct without a tube")
+    check("needs a section Tube" in run(without, "--check", code=2).stderr, "a duct without a tube")
 
 
 def a_particle_that_does_not_fit_is_refused_with_its_numbers():

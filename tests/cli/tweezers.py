@@ -72,7 +72,7 @@ def one_force_drives_the_centroid():
 def a_deck_that_makes_no_sense_is_refused():
     for setting, sentence in (
         ("Membrane/forces/left/direction=[0, 0, 0]", "must not be zero"),
-        ("Membrane/forces/left/direction=[2, 0, 0]", "pull at one place"),
+        ("Membrane/forces/left/direction=[2, 0, 0]", "act on the same point"),
         ("Membrane/load=strong", "contradict"),
         ("Membrane/forces/left/radius=-1", "positive"),
     ):

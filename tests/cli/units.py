@@ -88,7 +88,7 @@ def values_with_units_give_the_same_as_their_numbers():
         check(abs(series(name, "taylor_inertia") - series("plain", "taylor_inertia")).max() < 1e-11, name)
         check(abs(length**3 * series(name, "volume") - series("plain", "volume")).max() < 1e-10, name)
         check(summary(name)["final in SI"]["volume"].endswith("e-17 m^3"), summary(name)["final in SI"]["volume"])
-    refused(["Flow/shear rate", "list Units", "100 1/s"], deck(said.replace("  Units: {%s}\n", "")), mistakes=8)
+    refused(["Flow/shear rate", "section Units", "100 1/s"], deck(said.replace("  Units: {%s}\n", "")), mistakes=8)
     refused(["Particle/radius", "another kind", "2 uN"], deck(said % ""), "--set", "Particle/radius=2 uN")
     refused(["Particle/center", "1e999"], deck(said.replace("[0, 0, 1 um]", "[1e999, 0, 1 um]") % ""))
     refused(["Units/force", "unit of force", "1 kg"], deck(said % "force: 1 kg"))

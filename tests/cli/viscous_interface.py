@@ -124,7 +124,7 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
 
 def a_deck_that_makes_no_sense_is_refused():
     for setting, sentence in (
-        ("Membrane/load=strong", "viscosity is part of the weak load"),
+        ("Membrane/load=strong", "implemented in the form `weak` only"),
         ("Membrane/relaxation time=1", "the interface has no stress-free shape"),
     ):
         refused([sentence], deck(RUN), "--set", setting)

@@ -123,7 +123,7 @@ def two_processes_do_what_one_does_and_a_run_goes_on():
 def a_deck_that_makes_no_sense_is_refused():
     for setting, sentence in (
         ("Membrane/shear viscosity=-1", "shear viscosity"),
-        ("Membrane/load=strong", "viscosity is part of the weak load"),
+        ("Membrane/load=strong", "implemented in the form `weak` only"),
     ):
         refused([sentence], deck(DECK), "--set", setting)
 

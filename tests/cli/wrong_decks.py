@@ -35,7 +35,7 @@ SETTINGS = [
     (["Solvers/rigid bodies=first kind"], ["Solvers/rigid bodies", "Particle deforms"]),
     (["Periodic/turn=180"], ["Periodic/period", "missing"]),
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
-    (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "as told"], 2),  # and Membrane
+    (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "prescribed motion"], 2),  # and Membrane
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),
     (["Spectrum/number=0"], ["Spectrum/number", "0"]),
     (["Flow/gravity=[0, -1]"], ["Flow/gravity", "three numbers"]),
@@ -260,7 +260,7 @@ def suggested_keys_exist():
         said = run(deck(GOOD), "--set", f"{'' if '/' in name else 'Output/'}{name}=1", code=2).stderr
         for key in re.findall(r"(?:was| or) ([A-Z][a-z]+/[a-z -]+?)(?= meant| or)", said):
             check(key in keys, f"no key {key} of: {said}")
-        check("not there" in said or "cannot be chosen" in said or "meant?" in said, said)
+        check("not available" in said or "cannot be chosen" in said or "meant?" in said, said)
 
 
 def wrong_texts_arerefused():

@@ -77,7 +77,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
   const auto keys = hdf::attribute_names(file, "checkpoint");  // the checksum is not checked if there is none, as in checkpoints of earlier versions
   if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
-    throw std::runtime_error(path.string() + ": the checkpoint is not as it was written");
+    throw std::runtime_error(path.string() + ": the checkpoint is damaged, because its checksum differs");
   return checkpoint;
 }
 

@@ -110,8 +110,8 @@ void check_vacant(const fs::path& directory) {
   if (!fs::is_directory(directory, absent)) return;
   in_directory(directory, [&] {
     if (fs::exists(directory / ladder) || !files_where(directory, is_result).empty())
-      throw UserError(directory.string() + " holds a run: --resume " + directory.string() +
-                      " goes on with it, --overwrite deletes it first, --output names another directory.");
+      throw UserError(directory.string() + " holds the results of a run: --resume " + directory.string() +
+                      " continues it, --overwrite deletes it first, --output chooses another directory.");
   });
 }
 

@@ -275,7 +275,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
 
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time) {
   const motion::AdaptationOptions& options = member.scene.adaptation;
-  const std::string whole = "elements above the limits of Adaptation stay whole: ";
+  const std::string whole = "elements above the limits of Adaptation are not refined: ";
   std::vector<Warning> all;
   const auto add = [&](bool lacks, const std::string& kind, const std::string& sentence) {
     if (lacks) all.push_back({member.label(kind), member.label(formatted("at time %.4g ", time) + sentence)});
@@ -283,9 +283,10 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
   add(change.refused > 0, "levels",
       whole + formatted("they have been halved as often as Adaptation/levels = %d allows", options.levels));
   add(change.full, "number of points",
-      whole + formatted("Adaptation/largest number of points = %d leaves no room for all their cuts", options.largest_number_of_points));
+      whole + formatted("Adaptation/largest number of points = %d does not allow their refinement", options.largest_number_of_points));
   add(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
-      formatted("refinement moved the surface by %.2g R_C, for the spaces are not nested: set Surface/extraordinary points to catmull-clark",
+      formatted("refinement moved the surface by %.2g R_C, because the spline spaces are not nested: set Surface/extraordinary points to "
+                "catmull-clark",
                 change.change));
   return all;
 }

@@ -82,8 +82,8 @@ class Deforming : public ParticleSystem {
       state.places.clear();
     }
     if (first && contacts_.impulse > 0)
-      remarks_.push_back({"limiter", formatted("at time %.4g Contact/limiter begins to hold particles apart, for the film between them is thinner "
-                                               "than Contact/limit, %g R_C = %.4g",
+      remarks_.push_back({"limiter", formatted("at time %.4g Contact/limiter begins to act, because the film between two particles is "
+                                               "thinner than Contact/limit, %g R_C = %.4g",
                                                state.time, scene_.contact.limit, scene_.contact.limit * least)});
     return holds;
   }

@@ -31,16 +31,27 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
   add_drag(solution.force, solution.torque, to);
   const auto exact = exact_body(scene);
   if (to.when(exact && exact->force().norm() > 0)) {
-    to.add(solution.error, {"drag_error", "1", "|F - F_exact|/|F_exact|, where the exact force is known and not zero"});
-    to.add(solution.integral_error, {"drag_error_of_traction", "1", "the same, of the integral of the traction alone"});
+    to.add(solution.error,
+           {"drag_error", "1",
+            "relative error |F - F_exact|/|F_exact| of the force F on the particle, if the exact force is known and not zero"});
+    to.add(solution.integral_error, {"drag_error_of_traction", "1",
+                                     "relative error |F - F_exact|/|F_exact| of the force F on the particle if it is computed as the "
+                                     "integral of the traction, without correction"});
   }
   if (to.when(exact && exact->torque().norm() > 0))
-    to.add(solution.torque_error, {"torque_error", "1", "|T - T_exact|/|T_exact|, where the exact torque is known and not zero"});
+    to.add(solution.torque_error,
+           {"torque_error", "1",
+            "relative error |T - T_exact|/|T_exact| of the torque T on the particle, if the exact torque is known and not zero"});
   if (to.when(exact && exact->presses()))
-    to.add(solution.surface.pressure, {"pressure_l2_error", "1", "L2 norm of p - p_exact over that of p_exact, p = -t.n (6.3), where that is known"});
+    to.add(solution.surface.pressure, {"pressure_l2_error", "1",
+                                       "relative error of the pressure p = -t.n on the surface, with traction t and normal n: L2 norm of p "
+                                       "- p_exact divided by the L2 norm of p_exact, if p_exact is known (6.3)"});
   if (to.when(exact.has_value()))
-    to.add(solution.surface.normal, {"normal_l2_error", "1", "L2 norm of n_h - n over that of n (6.3), where that is known"});
-  to.add(kernel_evaluations, {"kernel_evaluations", "1", "of the layer operator, all rules together"});
+    to.add(solution.surface.normal, {"normal_l2_error", "1",
+                                     "relative error of the computed normal n_h: L2 norm of n_h - n divided by the L2 norm of the exact "
+                                     "normal n, if it is known (6.3)"});
+  to.add(kernel_evaluations,
+         {"kernel_evaluations", "1", "number of kernel evaluations of the boundary integrals, by all quadrature rules"});
 }
 
 coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube) {

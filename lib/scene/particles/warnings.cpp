@@ -88,13 +88,15 @@ std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
 
 std::string Warnings::choice() const {
   if (scene_.elastic() && scene_.membrane.load == "strong")
-    return "the load is taken in the strong form, which feeds the shape's errors until steps vanish: set Membrane/load to weak";
+    return "the load is computed in the strong form, which amplifies errors of the shape until the time step vanishes: set Membrane/load "
+           "to weak";
   if (scene_.surface.polar() && scene_.surface.poles == "plain" && scene_.quadrature.rule == "fixed")
     return "a fixed Gauss rule does not converge on elements of plain poles: set Surface/poles to bezier transform, or Quadrature/rule to "
            "adaptive";
   if (const double k = scene_.membrane.global_area_dilatation;
       k > stiff_area && k * scene_.modulus() > stiff_area * scene_.bending_modulus() / (scene_.radius() * scene_.radius()))
-    return "the whole area resists so much that steps become many: a Membrane/global area dilatation of 1e4 keeps it nearly as well";
+    return "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as "
+           "well";
   return {};
 }
 
@@ -124,8 +126,8 @@ std::string Warnings::stiffness(const StepFindings& signs) {
   memory_.limited = reached > 0.8 * limit ? memory_.limited + 1 : 0;
   if (!(fixed && reached > limit) && memory_.limited < limited_steps) return {};
   const char* what = explicit_scheme ? "explicit step" : "sub-iterated step";
-  return formatted("the %s times the membrane's stiffness is %.2g, where about %.2g is the limit: %s; set Time/scheme to auto", what,
-                   reached, limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
+  return formatted("the %s times the membrane's stiffness is %.2g, and the limit is about %.2g: %s; set Time/scheme to auto", what, reached,
+                   limit, fixed ? "the run may blow up" : "steps are short for stability, not for Time/tolerance");
 }
 
 std::string Warnings::fold(const StepFindings& signs) const {
@@ -135,7 +137,7 @@ std::string Warnings::fold(const StepFindings& signs) const {
                                                                                          : finer_mesh(scene_);
   const bool drawn = !scene_.elastic() && strains(scene_);
   return formatted("an element is about to fold (smallest Jacobian %.2g of the mean): ", signs.jacobian_ratio) + cure +
-         (drawn ? "; or there is no steady shape: above a critical capillary number the flow draws the drop out until it breaks" : "");
+         (drawn ? "; or there is no steady shape: above a critical capillary number the flow stretches the drop until it breaks" : "");
 }
 
 std::string Warnings::stretch(const StepFindings& signs) const {

@@ -28,17 +28,22 @@ namespace {
 constexpr const char* axes_of_space = "x1 x2 x3";
 
 void add_energy(double energy, Columns& to) {
-  to.add(energy, {"energy", "force length", "stored in the membrane, in the springs of a Maxwell element (3.23) too; of a drop with surfactant the "
-         "free energy of its surface (3.21)"});
+  to.add(energy, {"energy", "force length",
+                  "energy stored in the membrane, including the springs of a Maxwell element (3.23); for a drop with surfactant the free "
+                  "energy of its interface (3.21)"});
 }
 
 void add_velocity(const Vec3& velocity, Columns& to) {
-  to.add(velocity, axes_of_space, {"velocity_", "length/time", "of the centroid (6.4), or of the centre of a rigid body, component #; of several "
-         "particles the mean"});
+  to.add(
+      velocity, axes_of_space,
+      {"velocity_", "length/time",
+       "component # of the velocity of the particle's centroid (6.4), or of the centre of a rigid body; for several particles their mean"});
 }
 
 void add_centroid(const Vec3& centroid, Columns& to) {
-  to.add(centroid, axes_of_space, {"centroid_", "length", "centroid (P-42), component #; x1 in a tube is what the frame has travelled"});
+  to.add(centroid, axes_of_space,
+         {"centroid_", "length",
+          "component # of the position of the particle's centroid; in a tube, x1 is the distance travelled since the start"});
 }
 
 /// Returns the cosine of the angle between y and the first direction of the plane.
@@ -86,73 +91,102 @@ std::vector<int> own_elements(const surface::Geometry& geometry, const coupling:
 }  // namespace
 
 void ParticleRow::add_moving(const Scene& one, Columns& to) const {
-  to.add(shape.inclination, {"inclination", "degree", "angle of the long axis of inertia with the first direction of the plane of the flow (x1), "
-         "towards the second (x3)", "the two semi-axes in the plane of the flow (any two if the flow is not planar) differ by less than 1e-6 R_C"});
+  to.add(shape.inclination,
+         {"inclination", "degree",
+          "inclination: angle of the particle's longest axis of inertia with the first direction of the plane of the flow (x1), positive "
+          "towards the second direction (x3)",
+          "the two semi-axes in the plane of the flow (any two if the flow is not planar) differ by less than 1e-6 R_C"});
   add_stresslet(stresslet, to);
-  to.add(shape.lengths, axes_of_space, {"length_", "length", "extent along #"});
+  to.add(shape.lengths, axes_of_space, {"length_", "length", "largest extent of the particle along #"});
   add_points(n_points, to);
   add_velocity(velocity, to);
   if (to.when(strains(one)))
-    to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1", "S:E/(2 mu V E:E) with the stresslet S (6.7) and the rate of strain E of the flow: 5/2 "
-           "of a rigid sphere"});
+    to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1",
+                                 "intrinsic viscosity S:E/(2 mu V E:E), with the stresslet S (6.7), the particle's volume V, the outer "
+                                 "viscosity mu and the rate of strain E of the flow; 5/2 for a rigid sphere"});
 }
 
 void ParticleRow::add_turning(const Scene& one, Columns& to) const {
-  to.add(axes.lengths, "1 2 3", {"axis_", "length", "semi-axis # of the ellipsoid with the same second moments (6.1), the longest one first"});
-  to.add(axes.longest_defined ? Vec3(axes.directions.col(0)) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), axes_of_space, {"axis_1_",
-         "1", "direction of the longest semi-axis, component #; the first nonzero component is positive", "the two longest semi-axes differ by less "
-         "than 1e-6 R_C"});
-  to.add(treading.velocity, {"tank_treading_velocity", "length/time", "mean tangential velocity relative to the centroid on the curve that the plane "
-         "of the flow through it cuts out (6.5); positive where the side of larger x3 moves along x1, clockwise with x1 to the right and x3 up"});
-  to.add(treading.frequency, {"tank_treading_frequency", "1/time", "mean angular velocity of the material points of that curve about the centroid "
-         "(6.6), in radians over time and of the same sense: 2 pi over the period of a steady motion; of a rigid body its angular velocity"});
-  to.add(phase, {"phase", "degree", "angle about the centroid, in the plane of the flow and of the same sense, of the material point that starts at "
-         "the angle 0, on the side of x1, counted on past whole turns; of a drop whose mesh slides the integral of tank_treading_frequency"});
+  to.add(axes.lengths, "1 2 3",
+         {"axis_", "length", "semi-axis # of the ellipsoid with the particle's second moments (6.1); 1 is the longest"});
+  to.add(axes.longest_defined ? Vec3(axes.directions.col(0)) : Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), axes_of_space,
+         {"axis_1_", "1", "component # of the unit vector along the longest semi-axis; the first nonzero component is positive",
+          "the two longest semi-axes differ by less than 1e-6 R_C"});
+  to.add(
+      treading.velocity,
+      {"tank_treading_velocity", "length/time",
+       "tank-treading velocity: mean tangential velocity, relative to the centroid, on the curve in which the plane of the flow through "
+       "the centroid cuts the surface (6.5); positive if the side of larger x3 moves along x1 (clockwise with x1 to the right and x3 up)"});
+  to.add(treading.frequency, {"tank_treading_frequency", "1/time",
+                              "tank-treading frequency: mean angular velocity about the centroid, in radians per time, of the material "
+                              "points of the curve of `tank_treading_velocity` (6.6), positive in the same sense. In a steady motion it is "
+                              "2 pi divided by the period; for a rigid body it is its angular velocity"});
+  to.add(phase, {"phase", "degree",
+                 "phase of tank-treading: angle about the centroid, in the plane of the flow, of the material point that starts at the "
+                 "angle 0 (direction x1), positive like `tank_treading_velocity` and not reduced by whole turns. For a drop whose mesh "
+                 "slides it is the time integral of `tank_treading_frequency`"});
   if (!to.when(one.tube.present)) return;
   const auto off_axis = centre.tail<2>(), moves = velocity.tail<2>();
-  to.add(off_axis.dot(moves) > 0 ? -moves.norm() : moves.norm(), {"migration_velocity", "length/time", "speed of the centroid in the x2 x3 plane, "
-         "positive towards the axis of the tube", {}, "; in a tube"});
+  to.add(off_axis.dot(moves) > 0 ? -moves.norm() : moves.norm(),
+         {"migration_velocity",
+          "length/time",
+          "speed of the centroid in the plane x2 x3, positive towards the axis of the tube",
+          {},
+          "; in a tube"});
 }
 
 void DeformingRow::add_columns(const Scene& one, Columns& to) const {
-  to.add(shape.taylor_inertia, {"taylor_inertia", "1", "Taylor parameter (6.2) of the ellipsoid with the same second moments, in the plane of the "
-         "flow"});
-  to.add(shape.taylor_surface, {"taylor_surface", "1", "Taylor parameter (6.2) of the longest and shortest distance from the centroid, in the plane "
-         "of the flow"});
+  to.add(shape.taylor_inertia, {"taylor_inertia", "1",
+                                "Taylor deformation parameter D = (L - B)/(L + B) (6.2), with the longest and shortest semi-axis L and B, "
+                                "in the plane of the flow, of the ellipsoid with the particle's second moments"});
+  to.add(shape.taylor_surface, {"taylor_surface", "1",
+                                "Taylor deformation parameter D = (L - B)/(L + B) (6.2), with the longest and shortest distance L and B "
+                                "from the centroid to the surface, in the plane of the flow"});
   add_moving(one, to);
   add_size(measures, to);
-  to.add(volume_error, {"volume_error", "1", "V/V0 - 1"});
+  to.add(volume_error, {"volume_error", "1", "relative error V/V0 - 1 of the particle's volume V, with its volume V0 at the start"});
   if (to.when(one.adaptation.enabled))
-    to.add(refit_error, {"refit_error", "1", "sum of what changes of the mesh have moved the present and the unstressed surface by so far, over "
-           "R_C"});
+    to.add(refit_error, {"refit_error", "1",
+                         "displacement of the current and the unstressed surface by all changes of the mesh so far, summed and divided by "
+                         "R_C, the radius of the sphere with the particle's volume"});
   add_energy(energy, to);
   if (to.when(one.viscous_membrane()))
-    to.add(dissipation, {"membrane_dissipation", "force length/time", "power that the membrane's viscosity turns into heat (3.10), (3.25)"});
-  to.add(tension.smallest, {"smallest_tension", "1", "smallest principal tension over G_s, of a drop over sigma"});
-  to.add(tension.compressed_area, {"compressed_area", "1", "share of the area with a negative principal tension"});
+    to.add(dissipation, {"membrane_dissipation", "force length/time", "power dissipated by the viscosity of the membrane (3.10), (3.25)"});
+  to.add(
+      tension.smallest,
+      {"smallest_tension", "1",
+       "smallest principal tension of the membrane divided by the surface shear modulus G_s; for a drop divided by the surface tension"});
+  to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative"});
   if (to.when(one.membrane.law != "surface tension"))
-    to.add(tension.area_change, {"local_area_change", "1", "largest change of area of a place of the membrane, over its area unstressed"});
-  to.add(normal_velocity, {"normal_velocity", "1", "largest |v.n| over rate x R_C (in a tube over the mean velocity; there and in parabolic flow in "
-         "the particle's frame): zero when the shape is steady"});
-  to.add(shape_velocity, {"shape_velocity", "1", "what smooth changes of shape have of it, root mean square (6.8): `Time/steady tolerance` is held "
-         "against this"});
+    to.add(tension.area_change,
+           {"local_area_change", "1", "largest local change of the membrane's area divided by the unstressed area at the same point"});
+  to.add(normal_velocity,
+         {"normal_velocity", "1",
+          "largest normal velocity |v.n| on the surface divided by rate x R_C, or in a tube by the mean velocity; in a tube or parabolic "
+          "flow relative to the particle. It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
+  to.add(shape_velocity, {"shape_velocity", "1",
+                          "root mean square of the part of the normal velocity v.n that changes the shape smoothly (6.8), divided like "
+                          "`normal_velocity`. The run is steady when it falls below Time/steady tolerance"});
   add_centroid(centre, to);
   add_turning(one, to);
 }
 
 void RigidRow::add_columns(const Scene& one, Columns& to) const {
   add_moving(one, to);
-  to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "of the rigid body, component #"});
-  to.add(quaternion, "0 1 2 3", {"quaternion_", "1", "turn from the initial place, component #, of which 0 is the scalar part"});
+  to.add(angular_velocity, axes_of_space, {"angular_velocity_", "1/time", "component # of the angular velocity of the rigid body"});
+  to.add(quaternion, "0 1 2 3",
+         {"quaternion_", "1",
+          "component # of the quaternion of the rotation from the initial to the current orientation; 0 is the scalar part"});
   if (to.when(one.time.steady_tolerance.has_value()))
-    to.add(shape_velocity, {"shape_velocity", "1", "how fast the body turns, as the shape velocity (6.8) of what deforms: `Time/steady tolerance` is "
-           "held against it"});
+    to.add(shape_velocity, {"shape_velocity", "1",
+                            "root mean square of the normal velocity due to the rotation of the rigid body, divided by rate x R_C, or in a "
+                            "tube by the mean velocity (6.8). The run is steady when it falls below Time/steady tolerance"});
   if (one.in_system()) {
     add_size(measures, to);
     add_centroid(centre, to);
     add_drag(drag, torque, to);
   } else {
-    to.add(centre, axes_of_space, {"center_", "length", "centre of the rigid body, component #"});
+    to.add(centre, axes_of_space, {"center_", "length", "component # of the position of the rigid body's centre"});
     add_turning(one, to);
   }
 }
@@ -167,24 +201,24 @@ void Together::add_columns(const Scene& scene, Columns& to) const {
   add_velocity(velocity, to);
 }
 
-void add_points(int n_points, Columns& to) { to.add(n_points, {"n_control_points", "1", "control points of the surface"}); }
+void add_points(int n_points, Columns& to) { to.add(n_points, {"n_control_points", "1", "number of control points of the surface mesh"}); }
 
 void add_size(const surface::Measures& measures, Columns& to) {
-  to.add(measures.volume, {"volume", "length^3", "enclosed volume (P-43)"});
-  to.add(measures.area, {"area", "length^2", "area of the surface"});
+  to.add(measures.volume, {"volume", "length^3", "volume enclosed by the particle's surface"});
+  to.add(measures.area, {"area", "length^2", "area of the particle's surface"});
 }
 
 void add_stresslet(const Mat3& stresslet, Columns& to) {
-  to.add(components(stresslet), "11 22 33 12 13 23", {"stresslet_", "force length", "particle stresslet (6.7), component #"});
+  to.add(components(stresslet), "11 22 33 12 13 23", {"stresslet_", "force length", "component # of the particle stresslet (6.7)"});
 }
 
 void add_drag(const Vec3& drag, const Vec3& torque, Columns& to) {
-  to.add(drag, axes_of_space, {"drag_", "force", "force on the particle, component #"});
-  to.add(torque, axes_of_space, {"torque_", "force length", "torque on the particle about its centre, component #"});
+  to.add(drag, axes_of_space, {"drag_", "force", "component # of the force of the fluid on the particle"});
+  to.add(torque, axes_of_space, {"torque_", "force length", "component # of the torque of the fluid on the particle about its centre"});
 }
 
 void add_gap(double to_wall, Columns& to) {
-  to.add(to_wall, {"gap", "length", "smallest distance between particle and wall", {}, "; in a tube, beside a plane wall"});
+  to.add(to_wall, {"gap", "length", "smallest distance between a particle and the wall", {}, "; in a tube, beside a plane wall"});
 }
 
 Eigen::Vector<double, 6> components(const Mat3& tensor) {

@@ -40,20 +40,28 @@ struct RunTotals {
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";
-  act("steps", moving, "steps", totals.step);
-  act("refinements", moving, "changes of the mesh that cut elements", totals.refinements);
-  act("coarsenings", moving, "changes of the mesh that merged elements", totals.coarsenings);
-  act("evaluations", moving, "velocity evaluations (4.2)", totals.work.evaluations);
-  act("assemblies", moving, "assemblies of the frozen layer operator (4.3)", totals.work.assemblies);
-  act("tangents", moving, "tangents of the membrane", totals.work.tangents);
-  act("linear_solves", moving, "linear solves of the implicit step; of a free body for its motion", totals.work.solves);
-  act("solver_iterations", all, "iterations of these; of a prescribed body of the solve for the traction", totals.work.solver_iterations);
-  act("velocity_iterations", moving, "iterations of the systems that velocities come from", totals.work.velocity_iterations);
-  act("velocity_solves", moving, "solves of these systems", totals.work.velocity_solves);
-  act("most_velocity_iterations", moving, "iterations of one of them, at most", totals.work.most_velocity_iterations);
-  act("kernel_evaluations_far", all, "evaluations of the kernels G and T (2.1), of all ranks: by far rules", totals.kernel.far);
-  act("kernel_evaluations_near", all, "by near rules", totals.kernel.near);
-  act("kernel_evaluations_self", all, "on the element of the target", totals.kernel.self);
+  act("steps", moving, "number of accepted time steps", totals.step);
+  act("refinements", moving, "number of mesh changes that refined elements", totals.refinements);
+  act("coarsenings", moving, "number of mesh changes that merged elements", totals.coarsenings);
+  act("evaluations", moving, "number of velocity evaluations (4.2)", totals.work.evaluations);
+  act("assemblies", moving, "number of times that the boundary-integral operator in the Jacobian was assembled (4.3)",
+      totals.work.assemblies);
+  act("tangents", moving, "number of times that the tangent stiffness of the membrane was evaluated", totals.work.tangents);
+  act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, for its motion",
+      totals.work.solves);
+  act("solver_iterations", all,
+      "number of iterations of the linear solver in `linear_solves`; for a prescribed body, in the solve for the traction",
+      totals.work.solver_iterations);
+  act("velocity_iterations", moving, "number of iterations of the linear solver for velocities", totals.work.velocity_iterations);
+  act("velocity_solves", moving, "number of linear systems solved for velocities", totals.work.velocity_solves);
+  act("most_velocity_iterations", moving, "largest number of iterations of one linear solve for a velocity",
+      totals.work.most_velocity_iterations);
+  act("kernel_evaluations_far", all, "number of evaluations of the Stokes kernels (2.1) on all ranks by far-field quadrature",
+      totals.kernel.far);
+  act("kernel_evaluations_near", all, "number of evaluations of the Stokes kernels on all ranks by near-singular quadrature",
+      totals.kernel.near);
+  act("kernel_evaluations_self", all,
+      "number of evaluations of the Stokes kernels on all ranks by singular quadrature, on the element of the target", totals.kernel.self);
 }
 
 /// Returns every count of the run with its name, for the summary.

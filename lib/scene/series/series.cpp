@@ -67,20 +67,28 @@ void add_series(const Scene& scene, double time, std::span<const RecordedParticl
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
   const bool prescribed = scene.only_solids || (!scene.in_system() && scene.particle.motion == Motion::prescribed);
-  to.add(time, {"time", "time", "simulated time; 0 of a steady problem"});
-  to.add(wall_seconds, {"wall_seconds", "s", "time since the run was started, earlier parts of a resumed run included"});
+  to.add(time, {"time", "time", "simulated time; 0 for a steady problem"});
+  to.add(wall_seconds, {"wall_seconds", "s", "wall-clock time since the start of the run, including the earlier parts of a resumed run"});
   if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
-    to.add(static_cast<double>(work.solver_iterations), {"solver_iterations", "1", "iterations of the linear solver so far"});
+    to.add(static_cast<double>(work.solver_iterations),
+           {"solver_iterations", "1",
+            "number of iterations of the linear solver, for implicit steps or for tractions, since the start of the run"});
   if (prescribed) return;
-  to.add(step.step, {"time_step", "time", "size of the step that ended here"});
-  to.add(step.error, {"step_error", "1", "estimated error of the step, in the norm of Time/tolerance"});
-  to.add(step.rejected, {"rejected_steps", "1", "attempts given up in this step"});
-  to.add(static_cast<double>(evaluations.value_or(work.evaluations)), {"evaluations", "1", "velocity evaluations so far"});
+  to.add(step.step, {"time_step", "time", "length of the time step that ended at this time"});
+  to.add(step.error, {"step_error", "1",
+                      "estimated error of the time step, to be compared with Time/tolerance: root mean square displacement of the control "
+                      "points divided by R_C, the radius of the sphere with the particle's volume"});
+  to.add(step.rejected, {"rejected_steps", "1", "number of rejected attempts at this time step"});
+  to.add(static_cast<double>(evaluations.value_or(work.evaluations)),
+         {"evaluations", "1", "number of velocity evaluations since the start of the run"});
   if (!scene.in_system()) return;
-  to.add(step.iterations, {"iterations", "1", "nonlinear iterations or sub-iterations in this step"});
-  to.add(static_cast<double>(work.assemblies), {"assemblies", "1", "assemblies of the frozen layer operator so far"});
-  to.add(static_cast<double>(work.velocity_iterations), {"velocity_iterations", "1", "iterations of the systems that velocities come from so far "
-         "(viscosity ratio other than 1)"});
+  to.add(step.iterations, {"iterations", "1", "number of nonlinear iterations (quasi-Newton or fixed-point) in this time step"});
+  to.add(
+      static_cast<double>(work.assemblies),
+      {"assemblies", "1", "number of times that the boundary-integral operator in the Jacobian was assembled, since the start of the run"});
+  to.add(static_cast<double>(work.velocity_iterations),
+         {"velocity_iterations", "1",
+          "number of iterations of the linear solver for velocities (viscosity ratio other than 1) since the start of the run"});
 }
 
 Columns run_columns(const Scene& scene, bool every) {
@@ -137,7 +145,7 @@ Columns columns(const Scene& scene) {
 
 void SteadyRow::add_columns(const Scene& scene, Columns& to) const {
   if (scene.continuation.present) point.add_columns(scene.continuation.second_parameter.has_value(), to);
-  if (scene.periodic.present) to.add(period, {"period", "time", "after which the shape is back (Periodic)"});
+  if (scene.periodic.present) to.add(period, {"period", "time", "period of the periodic motion, after which the shape recurs"});
   const auto rigid = [](const Scene& one) { return one.particle.rigid(); };
   if (scene.spectrum.present) motion::add_columns(modes, std::ranges::all_of(scene.alone(), rigid), to);
 }

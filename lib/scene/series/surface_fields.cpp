@@ -91,9 +91,15 @@ void SurfaceFields::set_state(const Net& y, double distance) {
 
 void SurfactantRow::add_columns(Columns& to) const {
   constexpr const char* of = "drop with surfactant";
-  to.add(mass, {"surfactant_mass", "1", "integral of the concentration over the interface, over the initial one: stays 1 to round-off", {}, of});
-  to.add(smallest, {"smallest_concentration", "1", "of surfactant over the initial one", {}, of});
-  to.add(largest, {"largest_concentration", "1", "the same", {}, of});
+  to.add(mass, {"surfactant_mass", "1", "total mass of surfactant divided by its initial value; it stays 1 up to rounding errors", {}, of});
+  to.add(smallest, {"smallest_concentration",
+                    "1",
+                    "smallest concentration of surfactant on the interface divided by the initial concentration",
+                    {},
+                    of});
+  to.add(
+      largest,
+      {"largest_concentration", "1", "largest concentration of surfactant on the interface divided by the initial concentration", {}, of});
 }
 
 surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {

@@ -40,7 +40,7 @@ DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inwa
     const surface::PlaneJet at = flow_.outline().at(cell.side, cell.t[0]);
     const Vec2 arm = at.x - flow_.outline().centroid();
     if (arm[0] * at.d[1] - arm[1] * at.d[0] <= 0)
-      throw UserError("Channel/outline must be seen from its centroid without hiding itself at the ends of a channel.");
+      throw UserError("Channel/outline must be star-shaped about its centroid: each of its points must be visible from there.");
   }
   Nodes nodes;
   cells_ = cells(far_around);

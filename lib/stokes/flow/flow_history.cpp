@@ -44,27 +44,37 @@ Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
 }  // namespace
 
 void FlowHistory::declare(deck::Section& section) {
-  section.key("type", type, deck::Choice{"table", "sine"},
-              "time dependence of the flow. `table`: `amplitudes` and `angles` at `times`, linear in between. `sine`: factor mean + amplitude "
-              "sin(2 pi frequency t + phase)");
+  section.key(
+      "type", type, deck::Choice{"table", "sine"},
+      "time dependence of the ambient flow. `table`: the velocity is multiplied by `amplitudes` and rotated by `angles`, which are given "
+      "at `times` and interpolated linearly. `sine`: the velocity is multiplied by mean + amplitude sin(2 pi frequency t + phase)");
   section.key("times", times, deck::not_negative(), "time",
-              "times of the `table`, in ascending order. Two equal times make a jump, for example a sudden stop of the flow. Before the first and "
-              "after the last time the flow is constant");
-  section.key("amplitudes", amplitudes, deck::any(), "1", "factors by which the velocity of the flow is multiplied at `times`; 1 if not given");
-  section.key("angles", angles, deck::any(), "degree", "angles by which the flow is rotated about `axis` at `times`; 0 if not given");
+              "times at which `amplitudes` and `angles` of the ambient flow are given, in ascending order. Two equal times make a jump, "
+              "for example a sudden stop of the flow. Before the first and after the last time the flow is constant");
+  section.key("amplitudes", amplitudes, deck::any(), "1",
+              "factors by which the velocity of the ambient flow is multiplied, one for each of `times`; 1 if not given");
+  section.key("angles", angles, deck::any(), "degree",
+              "angles by which the ambient flow is rotated about `axis`, one for each of `times`; 0 if not given");
   section.key("file", file, deck::Choice{},
-              "path of a file with the `table`, instead of the keys `times`, `amplitudes` and `angles`. A row holds time, amplitude and optionally "
-              "(in all rows or none) angle, separated by commas; a header row that begins with `time` is allowed. The path is relative to the "
-              "working directory or to the deck");
+              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
+              "holds time, amplitude and optionally (in all rows or none) angle, separated by commas; a header row that begins with `time` "
+              "is allowed. The path is relative to the working directory or to the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
-              "axis through the origin about which `angles` rotate the flow, by the right-hand rule; `x2` if not given");
+              "axis through the origin about which `angles` rotate the ambient flow, by the right-hand rule; `x2` if not given");
   if (type == "sine") mean = 0, amplitude = 1, phase = 0;
-  section.key("mean", mean, deck::any(), "1", "mean value of the `sine` factor that multiplies the flow; 0 if not given");
-  section.key("amplitude", amplitude, deck::any(), "1", "amplitude of the `sine` factor that multiplies the flow; 1 if not given");
+  section.key("mean", mean, deck::any(), "1",
+              "mean value of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
+              "multiplied; 0 if not given");
+  section.key("amplitude", amplitude, deck::any(), "1",
+              "amplitude of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
+              "multiplied; 1 if not given");
   section.key("frequency", frequency, deck::positive(), "1/time",
-              "frequency of the `sine` factor that multiplies the flow, periods per unit of time");
-  section.key("phase", phase, deck::any(), "degree", "phase of the `sine` factor that multiplies the flow, at time 0; 0 if not given");
+              "frequency, in periods per unit of time, of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity "
+              "of the ambient flow is multiplied");
+  section.key("phase", phase, deck::any(), "degree",
+              "phase at time 0 of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
+              "multiplied; 0 if not given");
 }
 
 void FlowHistory::read() {
@@ -73,7 +83,7 @@ void FlowHistory::read() {
     refuse(given->has_value(), "Flow/history/file", std::string("Flow/history/") + key, "the file holds all of them");
   const std::string name = "Flow/history/file " + deck::in_quotes(deck::shortened(*file, 80));
   const std::vector<CsvRow> rows = csv_rows(text_of_file(*file, name, 10'000'000), "time");
-  if (rows.empty()) throw UserError(name + " holds no row of a time and an amplitude.");
+  if (rows.empty()) throw UserError(name + " contains no row with a time and an amplitude.");
   const std::size_t columns = rows.front().fields.size();
   times.emplace(), amplitudes.emplace();
   if (columns == 3) angles.emplace(), axis = axis.value_or("x2");
@@ -86,7 +96,7 @@ void FlowHistory::read() {
     amplitudes->push_back(csv_number(row.fields[1], where));
     if (angles) angles->push_back(csv_number(row.fields[2], where));
     if (times->back() < 0 || (times->size() > 1 && times->back() < times->end()[-2]))
-      throw UserError(where + "times must not be negative, and in order, the earliest first.");
+      throw UserError(where + "times must not be negative and must be in ascending order.");
   }
 }
 
@@ -118,7 +128,7 @@ void FlowHistory::check() const {
   };
   as_many("amplitudes", amplitudes);
   as_many("angles", angles);
-  if (!std::ranges::is_sorted(*times)) throw UserError("Flow/history/times must be in order, the earliest first.");
+  if (!std::ranges::is_sorted(*times)) throw UserError("Flow/history/times must be in ascending order.");
 }
 
 FlowHistory::Moment FlowHistory::at(double time, double start) const {

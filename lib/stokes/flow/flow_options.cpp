@@ -14,39 +14,47 @@ namespace tanktread::stokes {
 void FlowOptions::declare(deck::Section& section) {
   deck::Choice types{"quiescent", "uniform", "simple shear", "four-roll", "planar hyperbolic", "uniaxial extension", "linear", "parabolic", "duct"};
   if (registered) std::ranges::copy(registered->names(), std::back_inserter(types));
-  section.key(
-      "type", type, types,
-      "ambient flow, with rate = Flow/shear rate. `simple shear`: rate (x3, 0, 0), also in a straight Tube, whose wall then moves with the flow. "
-      "`planar hyperbolic`: rate (x1, 0, -x3). `uniaxial extension`: rate (-x1/2, -x2/2, x3). `four-roll` (P-48): with `roll parameter`. `linear`: "
-      "with `gradient`. `uniform`: with `velocity`. `parabolic`: along x1 without a wall, with `profile`, `maximum velocity` and `half width`. "
-      "`duct`: through a Tube or Channel along x1, with `mean velocity`. `quiescent`: no flow");
+  section.key("type", type, types,
+              "ambient flow, that is the flow without particles; rate means Flow/shear rate. `simple shear`: velocity (rate x3, 0, 0); in "
+              "a straight Tube the wall then moves with this velocity. `planar hyperbolic`: velocity (rate x1, 0, -rate x3). `uniaxial "
+              "extension`: velocity rate (-x1/2, -x2/2, x3). `four-roll`: planar flow between extension and rotation, chosen by Flow/roll "
+              "parameter. `linear`: any velocity gradient Flow/gradient. `uniform`: constant Flow/velocity. `parabolic`: Poiseuille "
+              "profile along x1 in unbounded fluid, with Flow/profile, Flow/maximum velocity and Flow/half width. `duct`: pressure-driven "
+              "flow along x1 through a Tube or Channel, with Flow/mean velocity. `quiescent`: fluid at rest");
   section.key("shear rate", shear_rate, deck::positive(), "1/time",
-              "rate of the ambient flow. For Flow/type `linear` it must stay 1, because `gradient` contains the rate");
-  section.key("viscosity", viscosity, deck::positive(), "stress x time", "viscosity of the outer fluid");
+              "shear rate or extension rate of the ambient flow of Flow/type `simple shear`, `planar hyperbolic`, `uniaxial extension` or "
+              "`four-roll`. For `linear`, `parabolic` and `duct` it must stay 1, because other keys set the magnitude of these flows");
+  section.key("viscosity", viscosity, deck::positive(), "stress x time",
+              "dynamic viscosity of the outer fluid, which surrounds the particles");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
-              "a of the `four-roll` flow (P-48): 1 is planar hyperbolic flow, 0 is simple shear rotated by 45 degrees, -1 is rotation");
-  section.key("gradient", gradient, deck::any(), "1/time",
-              "velocity gradient dv_i/dx_j of the `linear` flow, nine numbers row by row; its trace must be 0");
-  section.key("velocity", velocity, deck::any(), "length/time", "velocity of the `uniform` flow, three numbers");
+              "parameter a of Flow/type `four-roll`, whose velocity is r/2 ((1 + a) x1 + (1 - a) x3, 0, (a - 1) x1 - (1 + a) x3) with r = "
+              "Flow/shear rate: 1 is planar hyperbolic flow, 0 is simple shear rotated by 45 degrees, -1 is rotation");
+  section.key(
+      "gradient", gradient, deck::any(), "1/time",
+      "velocity gradient dv_i/dx_j of Flow/type `linear`: nine numbers row by row, each row for one component v_i; the trace must be 0");
+  section.key("velocity", velocity, deck::any(), "length/time",
+              "constant velocity of the ambient flow of Flow/type `uniform`, three numbers");
   section.key("gravity", gravity, deck::any(), "length/time^2",
               "gravitational acceleration, three numbers. It acts on particles with a Particle/density difference");
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
-              "mean velocity of the `duct` flow: flow rate divided by the area of the cross-section, in a channel at its inlet; 1 if not given");
+              "mean velocity of Flow/type `duct` in the empty tube or channel: flow rate divided by the area of the cross-section, in a "
+              "channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "quantity of the `duct` flow that particles do not change: `flow rate`, or `pressure drop` over the computed part. The prescribed "
-              "pressure drop is the one that gives the mean velocity in the empty tube or channel");
+              "quantity of Flow/type `duct` that stays constant when particles are in the duct: `flow rate`, or `pressure drop` over the "
+              "computed part of the duct. Its value is the one for which the empty tube or channel has Flow/mean velocity");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("pressure gradient", pressure_gradient, deck::any(), "force/length^3",
-              "gradient of the mean pressure in a Domain with plates or posts, three numbers; the fluid is driven in the opposite direction. With "
-              "posts in three periodic directions it is 0 if not given, and the mean velocity follows from the balance of forces");
+              "gradient of the mean pressure, three numbers, in a periodic Domain with two plane walls or with posts (fixed cylinders); "
+              "the fluid is driven in the opposite direction. With posts and without walls it is 0 if not given, and the mean velocity "
+              "follows from the balance of forces");
   section.key("profile", profile, deck::Choice{"round", "plane"},
-              "velocity profile of the `parabolic` flow. `round`: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2). `plane`: v1 = maximum "
-              "velocity (1 - x3^2/half width^2). `round` if not given");
+              "velocity profile of Flow/type `parabolic`. `round`: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2). `plane`: v1 = "
+              "maximum velocity (1 - x3^2/half width^2). `round` if not given");
   section.key("maximum velocity", maximum_velocity, deck::positive(), "length/time",
-              "velocity of the `parabolic` flow on its axis or mid-plane; 1 if not given");
+              "velocity of Flow/type `parabolic` on its axis or mid-plane; 1 if not given");
   section.key("half width", half_width, deck::positive(), "length",
-              "distance from the axis or mid-plane at which the velocity of the `parabolic` flow vanishes");
+              "distance from the axis or mid-plane at which the velocity of Flow/type `parabolic` vanishes");
   if (registered) declare_registered(section);
   if (section.given("history") || section.documenting()) {
     history.emplace();
@@ -68,8 +76,9 @@ void FlowOptions::declare_registered(deck::Section& section) {
 }
 
 void FlowOptions::reject(Rejections& to) const {
-  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has nothing to change");
-  to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`", "the flow is along the tube");
+  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has no flow that could vary in time");
+  to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`",
+          "the flow in a tube or channel cannot be rotated");
 }
 
 void FlowOptions::check() const {
@@ -86,7 +95,7 @@ void FlowOptions::check() const {
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
   refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
-  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "that flow has keys of its own, in Flow/" + type);
+  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "the magnitude of that flow is set by its own keys, in Flow/" + type);
   refuse((type == "duct" || type == "parabolic") && shear_rate != 1.0, "Flow/shear rate", choice(),
          std::string("give Flow/") + (type == "duct" ? "mean" : "maximum") + " velocity");
   if (history) {
@@ -96,9 +105,10 @@ void FlowOptions::check() const {
     history->check();
   }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
-    throw UserError("Flow/gradient must have no trace, for the fluid is incompressible; its trace is " + std::to_string(gradient->trace()) +
-                    ".");
-  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient", "the gradient of a `linear` flow holds its rate already");
+    throw UserError("Flow/gradient must have zero trace, because the fluid is incompressible, but its trace is " +
+                    std::to_string(gradient->trace()) + ".");
+  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient",
+         "the gradient of a `linear` flow already contains its rate");
 }
 
 double FlowOptions::rate_between_plates() const {

@@ -17,7 +17,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-const RunFailure not_found("the eigenvalues of the linearised motion cannot be had");
+const RunFailure not_found("the computation of the eigenvalues of the linearised motion failed");
 
 /// Returns eigenpairs from eigenvalues and LAPACK's storage of eigenvectors: the real and the imaginary part of a complex vector in adjacent columns,
 /// shared with its conjugate.

@@ -89,7 +89,8 @@ BelosFactory belos_factory(const IterativeOptions& options) {
     const std::string path = options.path + "/Belos";
     deck::check_foreign(path, *options.belos, factory->getValidParameters()->sublist("Solver Types").sublist(type->second));
     for (const char* output : {"Verbosity", "Output Style", "Output Frequency"})
-      if (options.belos->isParameter(output)) throw UserError(path + "/" + output + " cannot be set: nobody hears what Belos says.");
+      if (options.belos->isParameter(output))
+        throw UserError(path + "/" + output + " cannot be set, because the output of Belos is not shown.");
     own.setParameters(*options.belos);
   }
   factory->setParameterList(all);

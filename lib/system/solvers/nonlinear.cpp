@@ -212,7 +212,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   } catch (const Thyra::CatastrophicSolveFailure&) {
     return {0, false};
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
-    throw UserError(std::string("Solvers/NOX: NOX does not accept the list: ") + error.what());
+    throw UserError(std::string("Solvers/NOX: NOX does not accept these parameters: ") + error.what());
   }
 }
 

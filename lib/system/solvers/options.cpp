@@ -7,32 +7,34 @@
 namespace tanktread::coupling {
 
 void VolumeOptions::declare(deck::Section& section) {
-  section.key(
-      "constraint", constraint, deck::Choice{"exact", "flux", "none"},
-      "conservation of the particle's volume. `flux`: no net flux through the surface in every velocity evaluation (2.8). `exact`: no net flux, "
-      "and the volume is restored after every step. `none`: no constraint");
+  section.key("constraint", constraint, deck::Choice{"exact", "flux", "none"},
+              "conservation of the particle's volume. `flux`: every computed velocity has zero net flux through the surface (2.8). "
+              "`exact`: zero net flux, and the volume is also restored after every step. `none`: no constraint");
 }
 
 void InterfaceOptions::declare(deck::Section& section) {
   section.key("motion", motion, deck::Choice{"material", "normal", "relaxed"},
-              "motion of the control points of a drop. `material`: with the fluid. `normal`: only normal to the interface. `relaxed`: with the "
-              "fluid in the normal direction, and tangentially so that elements keep their shape; the default for a surface tension");
+              "motion of the control points of a drop's interface. `material`: with the fluid. `normal`: only normal to the interface. "
+              "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape; the default for "
+              "Membrane/law `surface tension`");
   section.key("relaxation", relaxation, deck::not_negative(), "1",
-              "speed of the mesh relaxation for the motion `relaxed`: the mesh slides like an elastic membrane of capillary number 1/relaxation");
+              "speed of the tangential mesh relaxation with Interface/motion `relaxed`: the mesh slides like an elastic membrane of "
+              "capillary number 1/relaxation");
 }
 
 void IterativeOptions::declare(deck::Section& section) {
   path = section.path();
   section.key("iterative solver", solver, deck::Choice{},
-              "name of the iterative solver of this system in Belos (a package of Trilinos), instead of Solvers/iterative solver");
+              "name, in Belos (a package of Trilinos), of the iterative solver for the linear system of this section, instead of "
+              "Solvers/iterative solver");
   section.foreign("Belos", belos,
-                  "parameters that are passed unchanged to the iterative solver of this system in Belos (a package of Trilinos), instead of "
-                  "Solvers/Belos");
+                  "parameters that are passed unchanged to Belos (a package of Trilinos), the iterative solver of the linear system that "
+                  "the section above describes, instead of Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
-              "preconditioner of this linear system. `own`: preconditioner specific to the system (inverted isolated rigid bodies and films "
-              "between them; the blocks of Solvers/tube), or none if it has none. `none`: no preconditioner. `neumann`: 2 - A for the scaled "
-              "matrix A, one more product per application. `recycled`: exact for directions whose products are known from earlier solves, and "
-              "`own` for the remainder");
+              "preconditioner of the iterative solver for the linear system of this section. `own`: preconditioner specific to the system "
+              "(for several rigid bodies: inverses of isolated bodies and of films between them; in a tube: the one of Solvers/tube), or "
+              "none if it has none. `none`: no preconditioner. `neumann`: 2I - A for the scaled matrix A, one more product per "
+              "application. `recycled`: exact for directions whose products are known from earlier solves, and `own` for the remainder");
 }
 
 IterativeOptions SolverOptions::of(IterativeOptions system) const {
@@ -44,7 +46,8 @@ IterativeOptions SolverOptions::of(IterativeOptions system) const {
 
 void SolverOptions::declare(deck::Section& section) {
   section.key("iterative solver", krylov, deck::Choice{},
-              "name of the iterative solver in Belos, a package of Trilinos. It is used for all linear systems for which no other solver is set");
+              "name of the iterative linear solver in Belos, a package of Trilinos. It is used for all linear systems for which no other "
+              "solver is set");
   section.foreign("Belos", belos,
                   "parameters that are passed unchanged to the iterative solver of Belos, a package of Trilinos. Verbosity, Output Style and Output "
                   "Frequency cannot be set");
@@ -59,29 +62,35 @@ void SolverOptions::declare(deck::Section& section) {
                   "parameters that are passed unchanged to NOX, the nonlinear solvers of Trilinos: for Steady, and for Time/scheme `crank-nicolson` "
                   "with a Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
-              "relative residual of the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid particles)");
+              "relative residual to which the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid "
+              "particles) are solved");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
-              "double layer in velocity systems with a viscosity ratio other than 1. `assembled`: assembled once per velocity. `matrix-free`: "
-              "summed in every iteration of the solver. `auto`: `matrix-free` if far sums use clusters, unless there are rigid bodies and the "
-              "assembled layer takes less than 1 GB");
+              "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. "
+              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver. `auto`: "
+              "`matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes less than 1 GB");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
-              "form of the velocity system in a tube. `schur`: only the particle's velocity is unknown; wall and pressure drop are eliminated with "
-              "the factored wall, so that no system is left at viscosity ratio 1. `block triangular`, `block diagonal`, `block`: all blocks "
-              "(2.5)-(2.8) are unknown; the factored wall is the preconditioner, except for `block`, which has none");
+              "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction "
+              "and pressure drop are eliminated with the LU factors of the wall, so that no system is left at viscosity ratio 1. `block "
+              "triangular`, `block diagonal`, `block`: all blocks (2.5)-(2.8) are unknown; the LU factors of the wall are the "
+              "preconditioner, except for `block`, which has none");
   section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
-              "treatment of the wall of a Channel. `factored`: factored once. `iterative`: wall tractions are found by GMRES and clusters for each "
-              "velocity, and are neglected in the Jacobian. `auto`: `iterative` if the factors would take more than 4 GB");
-  section.key("rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
-              "equation for several rigid bodies. `second kind`: a double layer (2.23), an iterative solver and clusters. `first kind`: tractions "
-              "as unknowns (2.40), a dense matrix factored for every configuration; only if all particles are rigid. Its forces and motions are "
-              "far more accurate in films. `auto`: `first kind` if all particles are rigid, their meshes adapt to films, and at most 4500 unknowns "
-              "at the start; otherwise `second kind`");
+              "solver of the linear system for the traction on the wall of a Channel. `factored`: LU factors, computed once. `iterative`: "
+              "GMRES with sums by clusters for each velocity; the wall is then neglected in the Jacobian. `auto`: `iterative` if the "
+              "factors would take more than 4 GB");
+  section.key(
+      "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
+      "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, with sums by clusters. "
+      "`first kind`: tractions as unknowns (2.40), a dense matrix factored for every configuration; only if all particles are rigid. Its "
+      "forces and motions are far more accurate if gaps are small. `auto`: `first kind` if all particles are rigid, their meshes adapt to "
+      "films between them, and there are at most 4500 unknowns at the start; otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
-              "projection of velocities onto the splines. `collocation`: one site per control point, error O(h^4). `least squares`: best fit at "
-              "four sites per element, error O(h^6), four times the kernel evaluations; not in a tube, at a wall or with rigid bodies");
+              "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
+              "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
+              "in a tube, at a wall or with rigid bodies");
   section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
-              "single layer in the frozen Jacobian (4.3). `nodal`: one node per control point, summed in every product, with near-field "
-              "corrections. `assembled`: stored as a matrix, 12 bytes per pair of points");
+              "storage of the single-layer operator in the Jacobian of implicit steps, which is kept over several steps (4.3). `nodal`: "
+              "one quadrature node per control point, summed in every product, with near-field corrections. `assembled`: a matrix, 12 "
+              "bytes per pair of points");
   direct.declare(section);
 }
 

@@ -124,7 +124,7 @@ void try_nonlinear(const std::string& method, const List& list) {
   std::string unread;
   const Works works = [&](const List& some) { return runs([&] { return solve(some, unread); }); };
   if (!works(list)) refuse("Solvers/NOX", "NOX", list, works);
-  if (!unread.empty()) throw UserError("Solvers/NOX/" + unread + " is not a parameter that NOX looks at with this list.");
+  if (!unread.empty()) throw UserError("Solvers/NOX/" + unread + " is not a parameter that NOX uses with these settings.");
 }
 
 }  // namespace

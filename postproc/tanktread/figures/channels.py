@@ -109,12 +109,12 @@ def along_the_way(axes, run, c):
     added = f"pressure drop that the particle adds{run.in_units('force/length^2')}"
     axes["pressure"].set_title(f"{added} (empty channel: {c['pressure_drop']:.5g})")
     for name in ("extents", "velocity", "pressure"):
-        axes[name].set_xlabel("way of the centroid along the centre line" + run.in_units("length"))
+        axes[name].set_xlabel("arc length of the centroid along the centre line" + run.in_units("length"))
 
 
 def wall(axis, run, c):
     axis.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
-    axis.set_xlabel("way along the centre line" + run.in_units("length"))
+    axis.set_xlabel("arc length along the centre line" + run.in_units("length"))
     axis.set_title("shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
 
 

@@ -138,7 +138,7 @@ TEST(Xml, IsReadByExtension) {
   EXPECT_EQ(s.kinds.law, "hard");
   EXPECT_EQ(s.kinds.center[1], 2.0);
   EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}),
-            (folder.path / "bad.xml").string() + " is not XML of the kind that Teuchos reads.");
+            (folder.path / "bad.xml").string() + " is not XML in the format of parameter lists of Teuchos, a package of Trilinos.");
   std::string deep;
   for (int i = 0; i < 20000; ++i) deep += "<ParameterList name=\"Tanktread\">";
   EXPECT_EQ(refused({folder.file("deep.xml", deep)}),
@@ -151,7 +151,7 @@ TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
   EXPECT_EQ(refused({missing}), "The deck " + missing + " does not exist.");
   EXPECT_EQ(refused({folder.path}), "The deck " + folder.path.string() + " is a directory, not a file.");
   const auto empty = folder.file("empty.yaml", "# nothing\n\n");
-  EXPECT_EQ(refused({empty}), empty + " is empty; a deck holds one list named `Tanktread`.");
+  EXPECT_EQ(refused({empty}), empty + " is empty; a deck has one section named `Tanktread`.");
   const auto text = folder.file("text.yaml", "To whom it may concern\n");
   EXPECT_EQ(refused({text}), text + ", line 1: this is not YAML that can be read (no key followed by a colon): `To whom it may concern`.");
   const auto pipe = (folder.path / "pipe.yaml").string();
@@ -161,7 +161,7 @@ TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
   EXPECT_EQ(refused({folder.file("long.yaml", std::string(1'000'001, '#'))}),
             "The deck " + (folder.path / "long.yaml").string() + " is larger than 1 MB.");
   const auto binary = folder.file("binary.yaml", std::string("\x89HDF\r\n\x1a\n\0\0", 10));
-  EXPECT_EQ(refused({binary}), binary + ", line 2: this is not text, so no deck.");
+  EXPECT_EQ(refused({binary}), binary + ", line 2: this line is not text, but a deck is a text file.");
 }
 
 TEST(EffectiveDecks, StateEveryKeyThatIsSet) {

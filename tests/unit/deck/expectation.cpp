@@ -45,7 +45,7 @@ TEST(Expectations, NeedValueAndTolerance) {
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 1, tolerance: 1, tol: 2}\n"),
             "Expect/volume/tol is not a key of the deck; was Expect/volume/tolerance meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Expect:\n    volume: {value: 0, tolerance: 1, kind: relative}\n"),
-            "Expect/volume/kind `relative` and the value 0 contradict each other.");
+            "Expect/volume/kind `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");
 }
 
 TEST(Expectations, AreOfSeriesThatThereAre) {

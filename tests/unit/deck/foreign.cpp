@@ -32,9 +32,9 @@ TEST(ForeignLists, OfKnownParametersPass) {
 TEST(ForeignLists, WithUnknownParametersAreRefusedWithAGuess) {
   EXPECT_EQ(
       refusal_of_list("      Maximum Iteration: 5\n"),
-      "Solvers/Belos/Maximum Iteration is not a parameter of the library that gets this list; was Solvers/Belos/Maximum Iterations meant?");
+      "Solvers/Belos/Maximum Iteration is not a parameter of the library that receives this section; was Solvers/Belos/Maximum Iterations meant?");
   EXPECT_EQ(refusal_of_list("      Inner: {Zebra: 5}\n"),
-            "Solvers/Belos/Inner/Zebra is not a parameter of the library that gets this list.");
+            "Solvers/Belos/Inner/Zebra is not a parameter of the library that receives this section.");
 }
 
 TEST(ForeignLists, WithOtherTypesAreRefused) {

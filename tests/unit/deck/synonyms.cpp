@@ -21,15 +21,18 @@ TEST(Synonyms, MayBelongToOneListOnly) {
 TEST(MissingFeatures, AreKnownByPathOrName) {
   EXPECT_NE(missing_feature("Flow/Reynolds number"), "");
   EXPECT_EQ(missing_feature("Flow/viscosity"), "");
-  EXPECT_NE(missing_feature("Surfactant"), "");
+  EXPECT_NE(missing_feature("Temperature"), "");
+  EXPECT_EQ(missing_feature("Surfactant"), "");
 }
 
 TEST(UnknownKeys, AreRefusedWithWhatIsMissingOrMeant) {
-  EXPECT_EQ(refusal("    Surfactant: 1\n"), "Kinds/Surfactant is not a key of the deck: surfactants are not there (see Limits in README.md).");
+  EXPECT_EQ(refusal("    Temperature: 1\n"),
+            "Kinds/Temperature is not a key of the deck: Brownian motion is not available (README.md lists what the program can do).");
+  EXPECT_EQ(refusal("    Surfactant: 1\n"), "Kinds/Surfactant is not a key of the deck; was the section Interface/surfactant meant?");
   EXPECT_EQ(refusal("    tend: 1\n"), "Kinds/tend is not a key of the deck; was Time/final time meant?");
   EXPECT_EQ(refusal_of("Tanktread:\n  Particles:\n    - {a: 1}\n"),
-            "deck.yaml, line 3: Particles is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of "
-            "keys have names, as Particles/<name>.");
+            "deck.yaml, line 3: Particles is a sequence (brackets, or lines with dashes), but a deck has sequences of numbers or words "
+            "only: sections with keys have names, such as Particles/<name>.");
 }
 
 }  // namespace

@@ -59,10 +59,11 @@ TEST(Lists, LieOnlySoDeepAndHoldOnlySoMuch) {
 TEST(Sequences, HoldNumbersOrWords) {
   EXPECT_EQ(kinds("    center:\n      - 1\n      - 2.5\n      - 3\n").center, Vec3(1, 2.5, 3));
   EXPECT_EQ(refusal("    center: [[1, 2], [3]]\n"),
-            "deck.yaml, line 3: Kinds/center is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only.");
+            "deck.yaml, line 3: Kinds/center is a sequence (brackets, or lines with dashes), but a deck has sequences of numbers or words "
+            "only.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds:\n    - law: soft\n    - law: hard\n"),
-            "deck.yaml, line 3: Kinds is a sequence (brackets, or lines with dashes); a deck has those of numbers or words only, and lists of keys "
-            "have names, as Particles/<name>.");
+            "deck.yaml, line 3: Kinds is a sequence (brackets, or lines with dashes), but a deck has sequences of numbers or words only: "
+            "sections with keys have names, such as Particles/<name>.");
 }
 
 TEST(Keys, WithoutAValueAreNothing) {
@@ -92,13 +93,14 @@ TEST(BrokenYaml, IsShownWithItsLine) {
 
 TEST(RootLists, AreNamedAndAlone) {
   EXPECT_EQ(refusal_of("Tanktraed:\n  Kinds: {}\n"),
-            "deck.yaml: the outermost list must be `Tanktread`, and the only one, but there is `Tanktraed`.");
+            "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Tanktraed`.");
   EXPECT_EQ(refusal_of("Tanktread:\n  Kinds: {}\nOther:\n  a: 1\n"),
-            "deck.yaml: the outermost list must be `Tanktread`, and the only one, but there is `Other`.");
+            "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Other`.");
   EXPECT_EQ(refusal_of("Kinds: {count: 1}\n"),
-            "deck.yaml: the outermost list must be `Tanktread`, and the only one, but there is `Kinds`.");
+            "deck.yaml: the outermost section must be `Tanktread`, and the only one, but there is `Kinds`.");
   EXPECT_NE(refusal_of("Tanktread: 3\n"), "");
-  EXPECT_EQ(refusal_of("Tanktread: {}\n---\nTanktread: {}\n"), "deck.yaml, line 2: a second document begins here; a deck is one.");
+  EXPECT_EQ(refusal_of("Tanktread: {}\n---\nTanktread: {}\n"), "deck.yaml, line 2: a second document begins here, but a deck is a single YAML "
+            "document.");
   EXPECT_EQ(refusal_of("%YAML 1.1\n---\nTanktread:\n  Kinds: {count: 1}\n...\n"), "");
 }
 

@@ -72,7 +72,7 @@ TEST(InitialShape, ThatIsWrongIsRefused) {
     return {};
   };
   EXPECT_EQ(refusal({"Particle/initial shape/volume=own"}),
-            "Particle/initial shape needs one of the keys stretch, map, file and run, and no other of them.");
+            "Particle/initial shape needs exactly one of the keys stretch, map, file and run.");
   EXPECT_EQ(refusal({"Particle/initial shape/map=[1, 0, 0, 0, 1, 0, 0, 0, -1]"}),
             "Particle/initial shape/map must have a positive determinant, or the surface is turned inside out; it is -1.");
   EXPECT_NE(refusal({"Particle/initial shape/stretch=[1, 0, 1]"}).find("Particle/initial shape/stretch must be"), std::string::npos);

@@ -131,12 +131,12 @@ TEST(Contradictions, OfFlowsAreOneSentenceEach) {
   EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2, shear rate: 3}\n"),
             "Flow/shear rate and Flow/type `parabolic` contradict each other: give Flow/maximum velocity.");
   EXPECT_EQ(refusal("  Flow: {type: parabolic, half width: 2}\n  Particle: {drift: held}\n"),
-            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is the same everywhere.");
+            "Particle/drift `held` and Flow/type `parabolic` contradict each other: it is for flows whose gradient is uniform.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 1]}}\n"),
             "Flow/history/type `table` needs Flow/history/amplitudes or Flow/history/angles.");
   EXPECT_EQ(refusal("  Flow: {history: {amplitudes: [0, 1]}}\n"), "Flow/history/type `table` needs Flow/history/times or Flow/history/file.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2, 1], amplitudes: [0, 1, 2]}}\n"),
-            "Flow/history/times must be in order, the earliest first.");
+            "Flow/history/times must be in ascending order.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [0, 2], amplitudes: [0, 1, 2]}}\n"),
             "Flow/history/amplitudes must hold as many numbers as Flow/history/times, 2, but holds 3.");
   EXPECT_EQ(refusal("  Flow: {history: {times: [-1, 2], amplitudes: [0, 1]}}\n").find("Flow/history/times must be one number or more"), 0u);
@@ -145,7 +145,7 @@ TEST(Contradictions, OfFlowsAreOneSentenceEach) {
             "Flow/history/times belongs to the type `table`, but is given with Flow/history/type `sine`.");
   EXPECT_EQ(refusal("  Flow: {history: {type: sine, frequency: 1}}\n  Particle: {motion: prescribed}\n"), "");
   EXPECT_EQ(refusal("  Flow: {type: quiescent, history: {type: sine, frequency: 1}}\n  Membrane: {shear modulus: 1}\n"),
-            "Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has nothing to change.");
+            "Flow/history and Flow/type `quiescent` contradict each other: a fluid at rest has no flow that could vary in time.");
   EXPECT_EQ(refusal("  Membrane: {bending modulus: 0, bending number: 0.1}\n"),
             "Membrane/bending modulus and Membrane/bending number contradict each other: give one of them.");
 }
@@ -170,8 +170,7 @@ TEST(Contradictions, AreOneSentenceEach) {
   EXPECT_EQ(refusal("  Surface: {mesh: polar}\n  Adaptation: {enabled: true}\n"), "");
   EXPECT_EQ(refusal("  Surface: {mesh: polar, azimuthal elements: 8, meridional elements: 4}\n"
                     "  Adaptation: {enabled: true, minimum length: 0.7}\n"),
-            "Adaptation/minimum length must be below the length of the elements that the run starts with, 0.627, or nothing is ever cut, "
-            "but is 0.7.");
+            "Adaptation/minimum length must be below the length of the initial elements, 0.627, so that elements can be refined, but is 0.7.");
   EXPECT_EQ(refusal("  Flow: {type: quiescent}\n"),
             "Membrane/capillary number needs a flow with a gradient: give Membrane/shear modulus instead.");
   EXPECT_EQ(refusal("  Flow: {type: four-roll}\n"), "Flow/type `four-roll` needs Flow/roll parameter.");
@@ -191,19 +190,21 @@ TEST(Sizes, BeyondMemoryAreRefusedWithAnEstimate) {
   EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 110}\n"), "");
   EXPECT_EQ(
       refusal(assembled + "  Surface: {elements per side: 120}\n"),
-      "Surface/elements per side must be at most 110, but is 120: the layers of 86402 control points take 90 GB assembled, more than 64.");
+      "Surface/elements per side must be at most 110, but is 120: the assembled boundary-integral operators of 86402 control points take 90 GB, "
+      "more than the limit of 64 GB.");
   EXPECT_EQ(refusal(assembled + "  Surface: {elements per side: 120}\n  Time: {scheme: bs3}\n"), "");
   EXPECT_EQ(
       refusal(assembled + "  Surface: {mesh: polar, azimuthal elements: 400, meridional elements: 200}\n"),
-      "Surface/azimuthal elements and Surface/meridional elements must give at most 73029 control points: the layers of 80402 control "
-      "points take 78 GB assembled, more than 64.");
+      "Surface/azimuthal elements and Surface/meridional elements must give at most 73029 control points: the assembled "
+      "boundary-integral operators of 80402 control points take 78 GB, more than the limit of 64 GB.");
   EXPECT_EQ(
       refusal("  Particle: {motion: free}\n  Surface: {elements per side: 80}\n"),
-      "Surface/elements per side must be at most 70, but is 80: the layers of 38402 control points take 106 GB assembled, more than 64.");
+      "Surface/elements per side must be at most 70, but is 80: the assembled boundary-integral operators of 38402 control points take 106 GB, "
+      "more than the limit of 64 GB.");
   const double of_wall = 72.0 * coupling::Ranks().size();  // every rank stores the factors
   EXPECT_EQ(refusal("  Flow: {type: duct}\n  Tube: {azimuthal elements: 200, axial elements: 200}\n"),
-            formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the layers of 40600 control points "
-                      "take %.0f GB assembled, more than 64.",
+            formatted("Tube/azimuthal elements and Tube/axial elements must give at most %.0f control points: the assembled "
+                      "boundary-integral operators of 40600 control points take %.0f GB, more than the limit of 64 GB.",
                       std::floor(std::sqrt(64e9 / of_wall)), of_wall * 40600. * 40600. / 1e9));
   EXPECT_NE(refusal("  Surface: {elements per side: 1000000}\n").find("between 3 and 200"), std::string::npos);
 }
