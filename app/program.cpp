@@ -214,7 +214,15 @@ void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
   scene.check();
 }
 
-RunRequest run_request(const Arguments& arguments, const std::string& deck) {
+/// Reads a deck given as text with other values of keys, and its files, and checks it.
+Scene scene_of(const std::string& text, const std::vector<std::string>& settings, const Arguments& arguments, const Registry& registry) {
+  deck::Document deck = deck::read({}, settings, text);
+  Scene scene(registry);
+  prepare(deck, arguments, scene);
+  return scene;
+}
+
+RunRequest run_request(const Arguments& arguments, const std::string& deck, const Registry& registry) {
   RunRequest request;
   request.resume = !arguments.resume.empty();
   request.output = request.resume             ? arguments.resume
@@ -223,13 +231,14 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck) {
   request.overwrite = arguments.overwrite;
   request.quiet = arguments.quiet;
   request.deck_text = deck;
+  request.changed = [=, &registry](const std::vector<std::string>& settings) { return scene_of(deck, settings, arguments, registry); };
   request.provenance = provenance();
   return request;
 }
 
 /// Runs the deck on finer and finer levels until its requests are met, or with `--check` prints the prediction. Returns the exit code.
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
-  const RunRequest whole = run_request(arguments, deck.effective());
+  const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
   accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
                       scene.in_system() && scene.runs_in_time()};
@@ -245,12 +254,10 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     return level.effective();
   };
   program.run = [&](const std::string& text, const std::filesystem::path& directory, bool resume, std::optional<double> limit) {
-    deck::Document level = deck::read_text(text);
-    Scene of_level(registry);
-    prepare(level, arguments, of_level);
+    Scene of_level = scene_of(text, {}, arguments, registry);
     if (limit) of_level.output.wall_clock_limit = std::min(*limit, of_level.output.wall_clock_limit.value_or(*limit));
-    RunRequest request = whole;
-    request.output = directory, request.deck_text = text, request.resume = resume, request.overwrite = true, request.quiet = true;
+    RunRequest request = run_request(arguments, text, registry);
+    request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true;
     return simulate(of_level, request);
   };
   if (!arguments.check) return accuracy::climb(task, program);
@@ -311,7 +318,7 @@ int run(const Arguments& arguments, const Registry& registry, bool speaks) {
     return scene.accuracy.present ? climb(scene, deck, arguments, registry, speaks) : static_cast<int>(done);
   }
   if (scene.accuracy.present) return climb(scene, deck, arguments, registry, speaks);
-  RunRequest request = run_request(arguments, deck.effective());
+  RunRequest request = run_request(arguments, deck.effective(), registry);
   request.another_scheme = resume && before.time.scheme != scene.time.scheme;
   return simulate(scene, request);
 }

@@ -71,12 +71,8 @@ class SteadyRun {
     stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
     clock_.emplace(phases_, "steady shape");
-    try {
-      scene_.continuation.present ? follow() : look();
-    } catch (const RunFailure& failure) {
-      failure_ = failure.what();
-      if (results_.last_saved() < 0) throw;
-    }
+    failure_ = coupling::failure_of_any([this] { scene_.continuation.present ? follow() : look(); });
+    if (!failure_.empty() && results_.last_saved() < 0) throw RunFailure(failure_);
     clock_.reset();
     return close();
   }
@@ -208,7 +204,7 @@ class SteadyRun {
       return systems_.front().second;
     }
     const auto clock = phases_.time("set-up");
-    auto made = std::make_shared<System>(at_parameters(scene_, request_.deck_text, parameters), ranks_, phases_);
+    auto made = std::make_shared<System>(request_.changed(settings_of(scene_.continuation, parameters)), ranks_, phases_);
     if (mesh_) carry_to(*made, *mesh_);
     const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
     if (points != expected)
@@ -277,7 +273,7 @@ class SteadyRun {
                                 options.number));
     if (returns_) {
       std::optional<motion::ReturnMap> of_parity;
-      if (options.parity) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
+      if (system != system_) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
       found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs keep the volume
     } else {
@@ -285,7 +281,7 @@ class SteadyRun {
       if (!options.shift) options.shift = system_->scene.rate();
       found_.modes = motion::spectrum(*system->motion, shapes, state_.x, kept, options, scene_.solvers.of(scene_.solvers.spectrum));
     }
-    if (options.parity) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
+    if (system != system_) work_ = work_ + system->particle->work(), kernel_ = kernel_ + system->particle->kernel_evaluations();
     system_->motion->velocity(state_.x);
   }
 

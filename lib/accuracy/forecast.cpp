@@ -8,7 +8,7 @@
 #include "accuracy/outcome.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
-#include "deck/words.hpp"
+#include "motion/guarded.hpp"
 #include "system/agreement.hpp"
 
 namespace tanktread::accuracy {
@@ -51,7 +51,7 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
     const Level level{k, k, k};
     const std::string text = program.deck(settings(task.values, level));
     const fs::path place = directory.path / ("level_" + std::to_string(k));
-    program.run(text, place, false, task.options.wall_clock_limit);
+    if (program.run(text, place, false, task.options.wall_clock_limit) == stopped && !task.options.wall_clock_limit) throw motion::Stopped();
     coupling::decided([&] {
       std::optional<Outcome> outcome = finished(place, level, text);
       if (!outcome) throw RunFailure("the pilot run failed before its final time");

@@ -39,7 +39,7 @@ class Ladder {
         return conclude(stopped, "the runs that balance the parts were stopped");
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
-      if (count_ >= 3 && judge(k)) return conclude(met, "");
+      if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(met, "");
       if (hopeless()) return conclude(missed, "finer levels do not help");
     }
     if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
@@ -52,12 +52,7 @@ class Ladder {
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
   /// Runs `act` on the first rank. All ranks throw if it fails.
-  void serially(const std::function<void()>& act) const {
-    coupling::decided([&] {
-      act();
-      return std::vector<double>{0};
-    });
-  }
+  void serially(const std::function<void()>& act) const { coupling::together(ranks_.rank() == 0, act); }
 
   /// Prints a line on the first rank.
   void say(const std::string& line) const {

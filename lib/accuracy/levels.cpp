@@ -65,6 +65,7 @@ std::vector<std::string> particles(const Values& deck) {
 /// Returns the key of the particle with this prefix: `Particle/<key>`, or `Particles/<name>/<key>`.
 std::string of_particle(const std::string& prefix, const std::string& key) { return (prefix.empty() ? "Particle/" : prefix) + key; }
 
+bool is_post(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "cylinder"; }
 bool from_file(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "file"; }
 
 /// Returns the number of elements per side in the deck; for a polar mesh, half the number of elements from pole to pole. Returns 0 if the mesh is
@@ -98,6 +99,13 @@ void set_mesh(Setter& to, const std::string& prefix, double ratio, int level) {
     to.set_whole(surface + "elements per side", n, 3, 200);
   }
   if (to.text(prefix + "Adaptation/enabled") == "true") set_adaptation(to, prefix + "Adaptation/", deck_n / n);
+}
+
+/// Sets the mesh of a post (a particle of the shape `cylinder`).
+void set_post(Setter& to, const std::string& surface, int level) {
+  const double finer = elements_per_side(level) / 6.;
+  to.set_whole(surface + "azimuthal elements", to.number(surface + "azimuthal elements", 24) * finer, 8, 400);
+  if (to.has(surface + "axial elements")) to.set_whole(surface + "axial elements", to.number(surface + "axial elements", 0) * finer, 4, 400);
 }
 
 void set_wall(Setter& to, const std::string& list, int level) {
@@ -154,27 +162,26 @@ Level balanced(int k, double time, double quadrature) {
 
 std::vector<std::string> settings(const Values& deck, const Level& level) {
   Setter to(deck);
-  const std::vector<std::string> all = particles(deck);
+  std::vector<std::string> all = particles(deck);
+  const auto posts = std::ranges::partition(all, [&](const std::string& prefix) { return !is_post(to, prefix); });
+  for (const std::string& prefix : posts) set_post(to, prefix + "Surface/", level.mesh);
+  all.erase(posts.begin(), posts.end());
   double finest = 0;
   for (const std::string& prefix : all) finest = std::max(finest, side_of(to, prefix));
   for (const std::string& prefix : all)
     if (finest > 0) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
   for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
+  to.scale("Wall/elements per period", elements_per_side(level.mesh) / 6.);
   set_time(to, level.time);
   set_quadrature(to, level.quadrature);
   return to.all;
 }
 
-std::vector<std::string> fixed_meshes(const Values& deck) {
-  std::vector<std::string> fixed;
-  const Setter reads(deck);
-  for (const std::string& prefix : particles(deck))
-    if (from_file(reads, prefix)) fixed.push_back(prefix.empty() ? "Particle" : prefix.substr(0, prefix.size() - 1));
-  return fixed;
-}
-
 void check_levels(const Values& deck) {
   const Setter reads(deck);
+  const bool plates = reads.has("Wall/normal") && (reads.has("Domain/side lengths") || reads.has("Domain/lattice vectors"));
+  if (plates && !reads.has("Wall/elements per period"))
+    throw UserError("Accuracy needs Wall/elements per period, because the levels refine the walls of a Domain in proportion to it.");
   for (const std::string& prefix : particles(deck))
     for (const char* key : {"initial shape/file", "initial shape/run"})
       if (reads.has(of_particle(prefix, key)) && !from_file(reads, prefix))

@@ -50,9 +50,6 @@ Level balanced(int k, double time, double quadrature);
 /// - Tolerances of solvers, and of searches for steady and periodic shapes, are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 
-/// Returns the paths of the sections of particles whose mesh is given by a file and is therefore equal on all levels.
-std::vector<std::string> fixed_meshes(const Values& deck);
-
 /// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh.
 void check_levels(const Values& deck);
 

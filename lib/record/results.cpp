@@ -31,26 +31,6 @@ namespace {
 
 constexpr std::chrono::seconds second(1);
 
-/// Runs `action` on the ranks whose `acts` is true. If it fails on one rank, every rank throws: UserError for a mistake of the user, otherwise
-/// RunFailure. Collective.
-template <class Act>
-void together(const coupling::Ranks& ranks, bool acts, const Act& action) {
-  std::string error;
-  bool mistake = false;
-  if (acts) {
-    try {
-      action();
-    } catch (const std::exception& exception) {
-      error = exception.what();
-      mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
-    }
-  }
-  if (!ranks.any(!error.empty())) return;
-  if (error.empty()) error = "another rank could not do its part";
-  if (ranks.any(mistake)) throw UserError(error);
-  throw RunFailure(error);
-}
-
 /// Returns a new, practically unique identifier of a run: sixteen hexadecimal digits.
 std::string identifier() {
   std::random_device random;
@@ -107,11 +87,11 @@ std::string kept_name(const std::string& file) { return std::filesystem::path(fi
 output::Saved newest_checkpoint(const std::filesystem::path& directory, const coupling::Ranks& ranks) {
   const bool chooses = ranks.rank() == 0;
   std::optional<output::Saved> saved;
-  together(ranks, chooses, [&] { saved = output::newest_checkpoint(directory); });
+  coupling::together(chooses, [&] { saved = output::newest_checkpoint(directory); });
   std::int64_t step = saved ? saved->file.step : -1;
   ranks.first({&step, 1});
   if (step < 0) throw UserError("--resume " + directory.string() + ": there is no checkpoint in this directory");
-  together(ranks, !chooses, [&] {
+  coupling::together(!chooses, [&] {
     const std::filesystem::path path = directory / output::snapshot_name(static_cast<int>(step));
     saved = {{path, static_cast<int>(step)}, output::read_checkpoint(path), {}};
   });
@@ -121,7 +101,7 @@ output::Saved newest_checkpoint(const std::filesystem::path& directory, const co
 void check_vacant(const RunRequest& request) {
   const coupling::Ranks ranks;
   std::error_code absent;
-  together(ranks, ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output, absent), [&] {
+  coupling::together(ranks.rank() == 0 && !request.resume && !request.overwrite && std::filesystem::is_directory(request.output, absent), [&] {
     const output::Occupation occupation(request.output);
     output::check_vacant(request.output);
   });
@@ -130,7 +110,7 @@ void check_vacant(const RunRequest& request) {
 /// Runs `action` on the first rank; all ranks throw if it fails.
 template <class Write>
 void Results::write(const Write& action) {
-  together(ranks_, writes_, action);
+  coupling::together(writes_, action);
 }
 
 std::map<std::string, std::string> Results::origin() const {

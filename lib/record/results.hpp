@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -32,6 +33,8 @@ struct RunRequest {
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
   bool quiet = false;           ///< true to show no progress bar
   std::string deck_text;        ///< the effective deck, to be stored with the results
+  /// Returns the scene of this deck with other values of keys, as settings `Section/key=value`.
+  std::function<Scene(const std::vector<std::string>& settings)> changed;
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 

@@ -93,7 +93,7 @@ class Packing {
     PackedSphere &a = spheres_[i], &b = spheres_[other.number];
     const Vec3 between = apart(i, other);
     const double distance = between.norm(), least = least_distance(a, b);
-    if (distance >= least || (a.fixed && b.fixed)) return distance >= least;
+    if (distance >= least || (a.fixed && b.fixed)) return true;  // check_apart tests the surfaces of particles that cannot be moved
     const Vec3 direction = distance > 1e-12 * least ? Vec3(between / distance) : direction_at_random();
     const double all = clear * least - distance, of_a = a.fixed ? 0 : b.fixed ? 1 : 0.5;
     a.centre -= of_a * all * direction;
@@ -185,6 +185,8 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
   const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
+  if ((half.array() < radius).any())
+    throw UserError(formatted("%s: a particle of radius %g does not fit into the box or ball of the copies; give a larger one.", list.c_str(), radius));
   std::vector<Copy> copies;
   const long most = 20000L * number;
   for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {

@@ -58,7 +58,8 @@ bool repeats(const stokes::AmbientFlow& flow, const Eigen::Ref<const Eigen::Matr
 }  // namespace
 
 bool DomainOptions::deforms(const stokes::FlowOptions& flow) const {
-  const auto columns = vectors().leftCols(directions());
+  const Mat3 all = vectors();
+  const auto columns = all.leftCols(directions());
   const Mat3 gradient = stokes::AmbientFlow(flow).cell_gradient();
   return (gradient * columns).norm() > 1e-12 * gradient.norm() * columns.norm();
 }

@@ -43,7 +43,7 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
 
 /// Throws UserError if the run's mesh options differ from the scene's or, if the mesh adapts, its resting shape. Material properties may differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
-  Scene before;
+  Scene before(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
   deck.declare(before);
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };

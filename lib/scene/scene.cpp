@@ -314,7 +314,10 @@ void Scene::check() const {
   if (domain.present) domain.check(flow, tube.present ? tube.list() : "");
   if (wall.present) wall.check(flow, domain.cell());
   check_posts(*this);
-  if (only_solids) return;
+  if (only_solids) {
+    found.pair(!runs_in_time(), sought(), "Particle/shape `cylinder`", "nothing deforms in a scene of posts only");
+    return found.throw_if_any();
+  }
   particle.shape.check();
   surface.check();
   check_viscosity_ratio(*this);
@@ -383,10 +386,11 @@ bool may_change_on_resume(const std::string& path) {
   if (path == "Tube/contact gap" || path == "Channel/contact gap" || path == "Wall/contact gap" || path == "Contact/limit") return true;
   if (path.starts_with("Particles/")) {
     const std::string of_particle = path.substr(path.find('/', std::string("Particles/").size()) + 1);
-    return (of_particle.starts_with("Interface/") && !of_particle.starts_with("Interface/fields/")) || of_particle.starts_with("Adaptation/");
+    const bool of_fields = of_particle.starts_with("Interface/fields/") || of_particle.starts_with("Interface/surfactant/");
+    return (of_particle.starts_with("Interface/") && !of_fields) || of_particle.starts_with("Adaptation/");
   }
   for (const char* fixed :
-       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Output/series"})
+       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant", "Output/series"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

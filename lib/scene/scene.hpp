@@ -147,7 +147,7 @@ struct Scene : ParticleKind {
            tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
   }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
-  bool has_gaps() const { return !particles.empty() || domain.present; }
+  bool has_gaps() const { return particles.size() > 1 || domain.present; }
 
   /// Returns one scene for each particle, with the options of this particle only.
   std::vector<Scene> alone() const;

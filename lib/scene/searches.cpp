@@ -53,6 +53,8 @@ void reject_searches(const Scene& scene, Rejections& to) {
   to.add(scene.continuation.present && !steady, "Continuation needs a section Steady, because it continues steady shapes.");
   to.pair(search && scene.flow.history && !scene.periodic.present, scene.sought(), "Flow/history",
           "no shape is steady in a flow that changes in time");
+  to.pair(search && !scene.posts.empty(), scene.sought(), "Particle/shape `cylinder`",
+          "a particle among posts drifts past them, so that no shape is steady");
   to.pair(search && scene.volume.constraint != "exact", scene.sought(),
           {"Volume/constraint `" + scene.volume.constraint + "`", "Volume/constraint other than `exact`"},
           "the volume must be conserved exactly, because it distinguishes between steady shapes");
@@ -148,16 +150,10 @@ double number_of(const Scene& scene, const std::string& deck, const std::string&
 
 }  // namespace
 
-Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values) {
-  Scene other = scene;
-  other.particles.clear(), other.expect.all.clear();
-  std::vector<std::string> settings{scene.continuation.parameter + "=" + deck::real_text(values[0])};
-  if (scene.continuation.second_parameter) settings.push_back(*scene.continuation.second_parameter + "=" + deck::real_text(values[1]));
-  deck::Document changed = deck::read({}, settings, deck);
-  changed.declare(other);
-  other.particles = with_copies(other.particles, other.domain);
-  other.check();
-  return other;
+std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values) {
+  std::vector<std::string> settings{branch.parameter + "=" + deck::real_text(values[0])};
+  if (branch.second_parameter) settings.push_back(*branch.second_parameter + "=" + deck::real_text(values[1]));
+  return settings;
 }
 
 Parameters first_parameters(const Scene& scene, const std::string& deck) {

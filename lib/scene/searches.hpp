@@ -41,8 +41,8 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
 /// Values of Continuation/parameter and of the second parameter, 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// Returns the scene with the given values of its branch parameters (Continuation/parameter and the second parameter). `deck`: the effective deck.
-Scene at_parameters(const Scene& scene, const std::string& deck, const Parameters& values);
+/// Returns the settings `Section/key=value` of these values of Continuation/parameter and the second parameter.
+std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values);
 
 /// Returns the parameter values at the start of the branch. Throws UserError if a parameter is not a number of the deck.
 Parameters first_parameters(const Scene& scene, const std::string& deck);

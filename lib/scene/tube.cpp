@@ -64,8 +64,8 @@ void check_fits(const Scene& scene, const Body& body) {
 }
 
 /// Adds the flow rate to the row, and in a channel also the pressure drops of the empty channel.
-TubeRow with_channel(const coupling::Tube& tube, TubeRow now) {
-  now.flow_rate = tube.flow_rate(now.pressure_drop);
+TubeRow with_channel(const coupling::Tube& tube, double amplitude, TubeRow now) {
+  now.flow_rate = tube.flow_rate(now.pressure_drop, amplitude);
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
   if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
   return now;
@@ -212,13 +212,14 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
                                     tube});
 }
 
-TubeRow tube_row(const coupling::Tube& tube, coupling::Evaluation& e) {
+TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluation& e) {
   const coupling::Tube::Checks checks = e.checks();
-  return with_channel(tube, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
+  return with_channel(tube, amplitude, {.pressure_drop = e.response().pressure_drop, .gap = tube.gap(), .checks = checks});
 }
 
-TubeRow tube_row(coupling::Tube& tube, const Net& density, double pressure_drop) {
-  return with_channel(tube, {.pressure_drop = pressure_drop, .gap = tube.gap(), .checks = tube.checks(-density, {}, tube.respond(-density))});
+TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop) {
+  return with_channel(tube, amplitude,
+                      {.pressure_drop = pressure_drop, .gap = tube.gap(), .checks = tube.checks(-density, {}, tube.respond(-density))});
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {

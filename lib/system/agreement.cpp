@@ -91,6 +91,21 @@ std::string failure_of_any(const std::function<void()>& act) {
   return error_of_any(error);
 }
 
+void together(bool acts, const std::function<void()>& act) {
+  std::string error;
+  bool mistake = false;
+  try {
+    if (acts) act();
+  } catch (const std::exception& exception) {
+    error = exception.what();
+    mistake = dynamic_cast<const UserError*>(&exception) != nullptr;
+  }
+  error = error_of_any(error);
+  if (error.empty()) return;
+  if (largest(mistake) > 0) throw UserError(error);
+  throw RunFailure(error);
+}
+
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason) {
   const int worst = largest(mine, reason);
   return {worst, worst > 0 ? error_of_any(reason) : std::string()};

@@ -25,6 +25,10 @@ std::string error_of_any(const std::string& mine);
 /// Collective.
 std::string failure_of_any(const std::function<void()>& act);
 
+/// Calls `act` on the ranks whose `acts` is true. If it fails on any of them, every rank throws: UserError for a mistake of the user, otherwise
+/// RunFailure. Collective.
+void together(bool acts, const std::function<void()>& act);
+
 /// Returns the largest outcome of all ranks and, if it is not 0, the reason given by one rank. Collective; see `largest`.
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 

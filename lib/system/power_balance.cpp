@@ -92,7 +92,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   if (flow.duct()) {
     const Tube& tube = *capsule_.tube();
     const double drop = e.response().pressure_drop;
-    return flow.amplitude() * tube.flow_rate(drop) * drop;
+    return tube.flow_rate(drop, flow.amplitude()) * drop;
   }
   if (SolidResponse* const solids = capsule_.solids(); solids && solids->scene().planes.size() != 1) {
     const Evaluation::SolidFlow found = e.solid_flow();

@@ -3,13 +3,12 @@
 import os
 import pathlib
 import re
-import subprocess
 import sys
 
 import numpy
 import yaml
 
-from harness import PROGRAM, SOURCE, check, close, deck, main
+from harness import PROGRAM, check, close, deck, main, package
 
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
@@ -36,7 +35,7 @@ Tanktread:
 
 def _fit(text, code=0):
     pathlib.Path("experiment.yaml").write_text(text if isinstance(text, str) else yaml.safe_dump(text, sort_keys=False))
-    result = subprocess.run([SOURCE / "postproc/tanktread-fit", "experiment.yaml", "--jobs", "1"], capture_output=True, text=True)
+    result = package("fit", "experiment.yaml", "--jobs", "1")
     check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
     return result.stdout if code == 0 else "".join(line for line in result.stderr.splitlines(True) if not re.search(r"\d+ runs", line))  # progress
 
@@ -151,13 +150,12 @@ def an_edge_is_found_to_a_twentieth_of_a_pixel():
     from matplotlib.image import imsave
     imsave("picture.png", image, cmap="gray", vmin=0, vmax=1)
     imsave("cut.png", image[:, 100:], cmap="gray", vmin=0, vmax=1)
-    script = SOURCE / "postproc/tanktread-outline"
-    said = subprocess.run([script, "picture.png", "-o", "edge.csv", "--overlay", "check.png"], capture_output=True, text=True)
+    said = package("outline", "picture.png", "-o", "edge.csv", "--overlay", "check.png")
     check(said.returncode == 0 and "60 points" in said.stdout, said)
     datum = fit_data.OutlineData({"outline": "edge.csv", "scale": 1.0}, "edge", pathlib.Path())
     check(abs(edge.distances(datum.points * [1, -1])).max() < 0.2, "the points in the file")
     close(datum.error, error, 0.1 * error, "the error in the file")  # the file's picture has 256 levels
-    said = subprocess.run([script, "cut.png"], capture_output=True, text=True)
+    said = package("outline", "cut.png")
     check(said.returncode == 2 and "does not close" in said.stderr and said.stderr.count("\n") == 1, said)
 
 

@@ -86,6 +86,17 @@ def in_a_tube_an_amplitude_is_a_mean_velocity():
         _same(f"{name}_steady", f"{name}_twice", 1e-9, OVER_MEAN_VELOCITY)
 
 
+def a_body_in_a_tube_is_found_where_the_flow_rests_and_a_held_pressure_drop_follows_the_amplitude():
+    sine = ", history: {type: sine, frequency: 1.0}"  # zero at the start
+    run(deck(TUBE % (1, sine, ", motion: free, center: [0, 0, 0.1]", "Output: {interval: 0.1}", 0.1)), "--output", "sine", "--quiet")
+    drop = series("sine", "disturbed_pressure_drop")
+    check(drop[0] == 0 and drop[-1] > 0, drop)
+    half = ", held: pressure drop, history: {times: [0], amplitudes: [0.5]}"
+    run(deck(TUBE % (1, half, "", CAPSULE, 0.02)), "--output", "half", "--quiet")
+    run(deck(TUBE % (0.5, ", held: pressure drop", "", CAPSULE, 0.02)), "--output", "of_half", "--quiet")
+    close(series("half", "flow_rate")[-1], series("of_half", "flow_rate")[-1], 1e-9, "flow rate at half the amplitude")
+
+
 def a_capsule_in_a_tube_whose_flow_stops_comes_to_rest():
     history = ", history: {times: [0, 0.5, 0.5], amplitudes: [1, 1, 0]}"
     run(deck(TUBE % (1, history, ", center: [0, 0, 0.1]", CAPSULE, 2.0)), "--output", "stops", "--quiet")

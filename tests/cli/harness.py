@@ -15,6 +15,7 @@ main() runs every function of the script whose docstring is not "not a test", ea
 fails. A script of two ranks has two processors: its functions that start one rank run two at a time, before the others. Relative paths given to run() that exist in the source directory are taken from there.
 """
 import concurrent.futures
+import importlib
 import inspect
 import itertools
 import multiprocessing
@@ -98,6 +99,40 @@ def start(*arguments, ranks=1):
     """Starts the program in the background: a subprocess.Popen, for tests that kill it."""
     return subprocess.Popen(command(*arguments, ranks=ranks), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True)
+
+
+def package(name, *arguments):
+    """Runs the command tanktread-<name> of the Python package in a fork of this process, which has made its imports once. Returns stdout, stderr and
+    returncode."""
+    os.environ["TANKTREAD"] = str(PROGRAM)
+    if str(SOURCE / "postproc") not in sys.path:
+        sys.path.append(str(SOURCE / "postproc"))
+    from tanktread import __main__ as commands
+
+    for module, _ in commands.COMMANDS.values():
+        importlib.import_module(f"tanktread.{module}")
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as said:
+        child = os.fork()
+        if child == 0:
+            for number, file in (1, out), (2, said):
+                os.dup2(file.fileno(), number)
+            sys.stdout, sys.stderr = (os.fdopen(number, "w") for number in (1, 2))
+            sys.argv, code = [f"tanktread-{name}", *map(str, arguments)], 1
+            try:
+                commands.main()
+                code = 0
+            except SystemExit as end:
+                if isinstance(end.code, str):
+                    print(end.code, file=sys.stderr)
+                else:
+                    code = end.code or 0
+            except BaseException:
+                traceback.print_exc()
+            sys.stdout.flush(), sys.stderr.flush()
+            os._exit(code)
+        _, status = os.waitpid(child, 0)
+        out.seek(0), said.seek(0)
+        return subprocess.CompletedProcess([name, *arguments], os.waitstatus_to_exitcode(status), out.read(), said.read())
 
 
 def series(results, name):

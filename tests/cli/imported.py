@@ -80,6 +80,21 @@ def a_file_is_found_beside_the_deck_and_a_run_goes_on_without_it():
         close(series("part", name)[-1], series("whole", name)[-1], 1e-6, name)  # steps land on other snapshots
 
 
+def a_branch_finds_the_file_beside_the_deck_for_each_of_its_points():
+    file = _written()
+    pathlib.Path("branches").mkdir()
+    file.rename("branches/surface.iga")
+    text = """
+Tanktread:
+  Flow: {type: uniaxial extension}
+  Particles: {drop: {shape: file, file: surface.iga, Membrane: {law: surface tension, capillary number: 0.02}}}
+  Steady: {}
+  Continuation: {parameter: Particles/drop/Membrane/capillary number, to: 0.04, points: 3}
+"""
+    run(deck(text, "branches/deck.yaml"), "--output", "branch", "--quiet")
+    check(len(series("branch", "parameter")) >= 2, series("branch", "parameter"))
+
+
 def a_file_in_the_directory_of_results_stays():
     file = _written()
     text = file.read_text()

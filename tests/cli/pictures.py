@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 # The figures of the package draw what a run wrote, and say in one sentence when they cannot.
-import os
 import pathlib
 import re
 import subprocess
@@ -9,7 +8,7 @@ from unittest import mock
 
 import numpy
 
-from harness import PROGRAM, SOURCE, check, close, deck, main, run
+from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
@@ -31,8 +30,7 @@ Tanktread:
 
 def _command(name, *arguments, code=0):
     """Runs a command of the package, tanktread-figure unless it is another one, and returns what it prints."""
-    words = [SOURCE / f"postproc/tanktread-{name}"] if name in ("read", "report") else [SOURCE / "postproc/tanktread-figure", name]
-    result = subprocess.run([*words, *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
+    result = package(name, *arguments) if name in ("read", "report") else package("figure", name, *arguments)
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
 

@@ -157,6 +157,22 @@ Tanktread:
     close(gradient, -1, 1e-12, "pressure gradient")
 
 
+def a_drop_among_posts_is_carried_by_the_flow():
+    """Without a post and an ambient flow its shape has all mirror planes; with them it has not."""
+    text = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
+  Domain: {side lengths: [3.0, 3.0, 3.0]}
+  Particles:
+    post: {shape: cylinder, axis: x3, radius: 0.5, Surface: {azimuthal elements: 12}}
+    drop: {radius: 0.4, center: [0.1, 1.5, 0.1], Surface: {elements per side: 3}, Membrane: {law: surface tension, surface tension: 5.0}}
+  Time: {scheme: bs3, fixed step: 1.0e-3, final time: 1.0e-3}
+"""
+    velocity = _first("drop", text, names=["drop/velocity_x1"])[0]
+    check(velocity > 0.1, f"velocity {velocity}")
+    refused(["Steady", "posts"], deck(text, "steady.yaml"), "--set", "Steady/tolerance=1e-6")
+
+
 def what_no_deck_may_ask_for():
     refused(["Wall/distance", "Domain"], deck(SPHERE.replace("  Domain: {periodic: x1 x2, side lengths: [16.0, 16.0, 1.0]}\n", "")))
     refused(["Wall and Domain", "normal"], deck(SPHERE.replace("x1 x2", "x1 x3").replace("16.0, 1.0]", "16.0, 16.0]")))

@@ -12,7 +12,7 @@ import time
 import h5py
 import numpy
 
-from harness import PROGRAM, SOURCE, check, close, deck, main, run
+from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))
@@ -34,7 +34,7 @@ record: {D: taylor_inertia, top: {series: area, take: largest}, D(t): {series: t
 
 
 def _sweep(*arguments, code=0):
-    result = subprocess.run([SOURCE / "postproc/tanktread-sweep", *arguments], capture_output=True, text=True)
+    result = package("sweep", *arguments)
     check(result.returncode == code and "Traceback" not in result.stderr, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -53,7 +53,7 @@ def what_stays_in_a_constriction_is_told_from_what_creeps():
     check(critical.stays(t, 1.3e-5 * t**2, 1, 1) is None, "it is slow and grows faster")
     check(critical.stays(t, 0.0005 * numpy.maximum(t - 25, 0), 1, 1) is None, "it is slow and sets off")
     check(critical.stays(t[:50], 0 * t[:50], 1, 1) is None, "nobody looked for long enough")
-    refused = subprocess.run([SOURCE / "postproc/tanktread-critical", "deck.yaml", "--between", "2", "1", "--past", "0"], capture_output=True, text=True)
+    refused = package("critical", "deck.yaml", "--between", "2", "1", "--past", "0")
     check(refused.returncode == 2 and "ascend" in refused.stderr, refused.stderr)
 
 
@@ -130,21 +130,21 @@ curves: {one: {}, other: {Particle/viscosity ratio: [1], Membrane/law: [Skalak]}
     check(made[1] <= 6 < made[0], f"runs of each border: {made}")
     check(diagram.rows["other"] == [{"Particle/viscosity ratio": 1, "Membrane/law": "Skalak"}], diagram.rows)
     deck("deck: deck.yaml\nalong: {key: a, from: 2, to: 1, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
-    refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
+    refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "ascend" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
     deck("deck: deck.yaml\nmotion: rolling\nalong: {key: a, from: 1, to: 2, within: 1.1}\nacross: {b: [1]}\ncurves: {one: {}}\n", "wrong.yaml")
-    refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
+    refused = package("phases", "wrong.yaml")
     check(refused.returncode == 2 and "shear or capillary, not rolling" in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
     for words, said in (("begin: half", "half is not a number"), ("begin: 2", "less than 1"), ("literature: {paper: [1, 2]}", "rows of"), ("set: 3", "list of keys")):
         deck(f"deck: deck.yaml\nalong: {{key: a, from: 1, to: 2, within: 1.1}}\nacross: {{b: [1]}}\ncurves: {{one: {{}}}}\n{words}\n", "wrong.yaml")
-        refused = subprocess.run([SOURCE / "postproc/tanktread-phases", "wrong.yaml"], capture_output=True, text=True)
+        refused = package("phases", "wrong.yaml")
         check(refused.returncode == 2 and said in refused.stderr and len(refused.stderr.splitlines()) == 1, refused.stderr)
 
 
 def a_phase_diagram_without_a_border_is_a_table_and_a_sentence():
     deck(DECK)
     deck("deck: deck.yaml\nalong: {key: Flow/shear rat, from: 1, to: 2, within: 1.1}\nacross: {Particle/radius: [1]}\ncurves: {one: {}}\n", "phases.yaml")
-    ended = subprocess.run([SOURCE / "postproc/tanktread-phases", "phases.yaml"], capture_output=True, text=True)
+    ended = package("phases", "phases.yaml")
     check(ended.returncode == 2 and "no border was found" in ended.stderr and len(ended.stderr.splitlines()) == 1, ended.stderr)
     check("shear rat" in pathlib.Path("results/phases/borders.csv").read_text(), "why there is none")
 
@@ -174,11 +174,11 @@ def what_sharp_edges_do_is_told_from_two_roundings():
     q = step.power() / 2
     close(numpy.sin(1.5 * numpy.pi * q), q, 1e-14, "the velocity beside an edge of 90 degrees")
     close(step.sharp_edges(2 + 0.1**(2 * q), 2 + 0.05**(2 * q), 2), 2, 1e-14, "without rounding")
-    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "deck.yaml", "--radii", "0.05", "0.1"], capture_output=True, text=True)
+    refused = package("figure", "step", "deck.yaml", "--radii", "0.05", "0.1")
     check(refused.returncode == 2 and "larger one first" in refused.stderr, refused.stderr)
-    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "deck.yaml", "--radii", "0.1", "0.05", "--set", "Time"], capture_output=True, text=True)
+    refused = package("figure", "step", "deck.yaml", "--radii", "0.1", "0.05", "--set", "Time")
     check(refused.returncode == 2 and "KEY=VALUE" in refused.stderr, refused.stderr)
-    refused = subprocess.run([SOURCE / "postproc/tanktread-figure", "step", "none.yaml", "--radii", "0.1", "0.05"], capture_output=True, text=True)
+    refused = package("figure", "step", "none.yaml", "--radii", "0.1", "0.05")
     check(refused.returncode == 2 and "no such deck" in refused.stderr, refused.stderr)
 
 

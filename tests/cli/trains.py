@@ -103,6 +103,14 @@ def a_channel_that_repeats_does_the_same_across_its_seam():
     check(abs(by_force - drop).max() < 5e-3 * drop.max(), f"by force {by_force}, {drop}")
 
 
+def a_channel_that_repeats_has_the_same_balance_of_power_on_two_ranks():
+    short = ("Output/power balance=true", "Time/final time=0.05", "Surface/elements per side=4")  # more than 64 points, which ranks divide
+    for ranks in (1, 2):
+        _run(CHANNEL, f"power_{ranks}", *short, ranks=ranks)
+    one, two = (series(f"power_{ranks}", "power_residual") for ranks in (1, 2))
+    check(abs(one - two).max() < 1e-9, f"power residual {one} and {two}")
+
+
 def the_extra_pressure_drop_of_a_long_period_is_that_of_one_constriction():
     """Own axisymmetric solution; at this wall the channel with two ends errs by as much."""
     _run(CHANNEL.replace("depth: 0.3", "depth: 0.5").replace("[5.0]", "[12.0]").replace("elements: 12", "elements: 16"), "long", "Time/final time=0.05")

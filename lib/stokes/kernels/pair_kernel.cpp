@@ -50,18 +50,6 @@ struct Sums {
     project<Degree, 6>(table, g, moment);
   }
 
-  static void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
-    const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
-    Register total[3] = {};
-    for (int k = 0; k < table.packs(); ++k) {
-      Register r[3], n[3];
-      const Register normal = Points<Degree>(table, k).height(x, n_b, x0, r, n);
-      const Register inverse = inverse_root(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]), weighted = inverse * registers(table.weights.data())[k];
-      for (int c = 0; c < 3; ++c) total[c] += weighted * (n[c] + r[c] * (normal * inverse * inverse));
-    }
-    for (int c = 0; c < 3; ++c) u[c] = sum(total[c]);
-  }
-
   static void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
     const int n_b = Degree ? (Degree + 1) * (Degree + 1) : (table.degree + 1) * (table.degree + 1);
     Register ux{}, uy{}, uz{};
@@ -110,10 +98,6 @@ void single_moments(const PointTable& table, const double* x, const Pack* weight
   with_degree<Sums>(table.degree, [&](auto sums) { sums.single_moments(table, x, registers(weight), x0, registers(scratch), moment); });
 }
 
-void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u) {
-  with_degree<Sums>(table.degree, [&](auto sums) { sums.pressure_sum(table, x, x0, u); });
-}
-
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u) {
   with_degree<Sums>(table.degree, [&](auto sums) { sums.double_sum(table, x, v, x0, v0, u); });
 }
@@ -129,7 +113,6 @@ KERNEL(void, single_sum, (const PointTable& table, const double* x, const double
        (table, x, f, weight, x0, u))
 KERNEL(void, single_moments, (const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment),
        (table, x, weight, x0, scratch, moment))
-KERNEL(void, pressure_sum, (const PointTable& table, const double* x, const double* x0, double* u), (table, x, x0, u))
 KERNEL(void, double_sum, (const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u),
        (table, x, v, x0, v0, u))
 KERNEL(void, double_moments, (const PointTable& table, const double* x, const double* x0, Pack* scratch, double* moment),

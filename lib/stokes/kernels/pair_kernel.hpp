@@ -15,9 +15,6 @@ void single_sum(const PointTable& table, const double* x, const double* f, const
 /// points.
 void single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment);
 
-/// Computes u[3] = sum_q G(x_q, x0) n_q weight_q: the single layer of the normal.
-void pressure_sum(const PointTable& table, const double* x, const double* x0, double* u);
-
 /// Computes u[3] = sum_q (v_q - v0)_j T_ijk(x_q, x0) n_q weight_q (2.2), where n_q weight_q is the weight of the rule times x_,s x x_,t.
 void double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u);
 

@@ -114,23 +114,16 @@ void TreeSum::take_part() {
   });
 }
 
-/// Determines which source clusters need strengths at their Chebyshev nodes, and which source nodes are needed, for the pairs of clusters to be
-/// summed.
+/// Determines which source clusters need strengths at their Chebyshev nodes for the pairs of clusters to be summed.
 void TreeSum::ask() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);
-  asked_.assign(sources_.order().size(), 0);
-  const auto ask_points = [&](const Cluster& c) {
-    for (int k = c.first; k < c.last; ++k) asked_[sources_.order()[k]] = 1;
-  };
-  for (const Pair& pair : pairs_) pair.source_nodes ? void(in_use_[pair.source] = 1) : ask_points(all[pair.source]);
-  for (std::size_t c = 0; c < all.size(); ++c) {
-    if (!in_use_[c]) continue;
-    if (all[c].leaf())
-      ask_points(all[c]);
-    else
-      for (const int child : all[c].child) all[child].bare ? ask_points(all[child]) : void(in_use_[child] = 1);
-  }
+  for (const Pair& pair : pairs_)
+    if (pair.source_nodes) in_use_[pair.source] = 1;
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (in_use_[c] && !all[c].leaf())
+      for (const int child : all[c].child)
+        if (!all[child].bare) in_use_[child] = 1;
 }
 
 void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {

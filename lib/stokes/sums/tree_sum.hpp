@@ -34,9 +34,6 @@ class TreeSum {
   /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.
   void want(std::span<const int> rows);
 
-  /// Returns whether later sums use the source strength of node k. If sums are shared among ranks, each uses only some nodes.
-  bool asks(int k) const { return asked_[k]; }
-
   /// Computes the selected rows of the sum for these source strengths of the nodes; values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& carried, double* values) {
@@ -92,7 +89,7 @@ class TreeSum {
   std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at
                                                 // Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
-  std::vector<char> asked_, in_use_;            // flags: source nodes in use (strengths); source clusters whose Chebyshev nodes are used
+  std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
   long long interactions_ = 0;
 };

@@ -44,6 +44,7 @@ class LoneRigidBody : public Dynamics {
 
   void at(double time, double start) override { flow_.at(time, start); }
   double next_kink(double time) const override { return flow_.next_kink(time); }
+  const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set last
   Net velocity(const Net& place) override;
   void freeze(const Net&) override {}
   void linearise(const Net&) override {}

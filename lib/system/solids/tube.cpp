@@ -74,7 +74,7 @@ double Tube::pressure_of_velocity(const Net& v, const Net& on_wall) {
 
 double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work) {
   if (fixed()) work += dot(between.weights * (at_places - amplitude * (between.values * particle_->interpolated_ambient)), f);
-  return -work / (amplitude * flow_->flow_rate());
+  return amplitude == 0 ? 0 : -work / (amplitude * flow_->flow_rate());
 }
 
 Net Tube::load_on_wall(const Net& f) {
@@ -166,7 +166,7 @@ void Tube::velocity_at(const Net& x, const Response& response, std::span<const i
   Net at = x;
   at.col(0).array() -= particle_->centroid;
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, rows, u);
-  const Net some = at(rows, Eigen::all), by_pressure = driven(some);
+  const Net by_pressure = cell() ? Net(driven(at)(rows, Eigen::all)) : driven(at(rows, Eigen::all));
   for (std::size_t k = 0; k < rows.size(); ++k)
     u.row(rows[k]) = (response.pressure_drop * by_pressure.row(static_cast<Eigen::Index>(k)) - u.row(rows[k])) / viscosity();
   if (cell()) particle_->add_images(response.load, response.moves, at, rows, u);

@@ -95,7 +95,7 @@ class Tube {
   Response respond(const Net& f, const Net& v = {}, double lacking = 0);
 
   /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
-  /// Not collective.
+  /// Not collective, except if the duct repeats or its pressure drop is prescribed: then every rank must call it with the same x.
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
@@ -145,9 +145,9 @@ class Tube {
   /// `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
-  /// Returns the flow rate if the particle causes this additional pressure drop: Q, or the reduced flow rate if the pressure drop of the duct is
-  /// prescribed.
-  double flow_rate(double pressure_drop) const { return flow_->flow_rate() * (1 - slowed(pressure_drop)); }
+  /// Returns the flow rate if the particle causes this additional pressure drop: `amplitude` times Q, or less if the pressure drop of the duct is
+  /// prescribed. `amplitude`: current factor of the duct flow.
+  double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - slowed(pressure_drop)); }
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
   double gap() const;

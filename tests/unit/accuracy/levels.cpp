@@ -63,6 +63,18 @@ TEST(Levels, RefineWalls) {
   EXPECT_TRUE(sets(deck, {5, 5, 5}, "Tube/azimuthal elements=48"));
 }
 
+TEST(Levels, RefinePlatesAndPosts) {
+  const Values posts = with(plain, {{"Wall/elements per period", "12"},
+                                    {"Particles/post/shape", "cylinder"},
+                                    {"Particles/post/Surface/axial elements", "8"},
+                                    {"Particles/ball/shape", "sphere"}});
+  for (const char* finer : {"Wall/elements per period=24", "Particles/post/Surface/azimuthal elements=48", "Particles/post/Surface/axial elements=16",
+                            "Particles/ball/Surface/elements per side=12"})
+    EXPECT_TRUE(sets(posts, {5, 5, 5}, finer)) << finer;
+  EXPECT_FALSE(sets(posts, {5, 5, 5}, "Particles/post/Surface/elements per side=12"));
+  EXPECT_THROW(check_levels(with(plain, {{"Wall/normal", "[0, 0, 1]"}, {"Domain/side lengths", "[4, 4, 4]"}})), UserError);  // default not known
+}
+
 TEST(Levels, HalveFixedSteps) {
   const Values deck = with(plain, {{"Time/fixed step", "0.01"}});
   EXPECT_TRUE(sets(deck, {3, 3, 3}, "Time/fixed step=0.005"));
@@ -72,8 +84,6 @@ TEST(Levels, HalveFixedSteps) {
 TEST(Levels, KeepMeshesOfFiles) {
   const Values deck = with(plain, {{"Particle/shape", "file"}});
   EXPECT_FALSE(sets(deck, {5, 5, 5}, "Surface/elements per side=12"));
-  EXPECT_EQ(fixed_meshes(deck), std::vector<std::string>{"Particle"});
-  EXPECT_TRUE(fixed_meshes(plain).empty());
 }
 
 TEST(Levels, RefuseShapesOfOneMesh) {
