@@ -28,8 +28,8 @@ class SymmetricSolver {
   /// Factors A, shape (N, N). Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& a);
 
-  /// Returns the components, ordered such that components that share a factor are adjacent. Solving for several components with one factor takes
-  /// little more time than for one component.
+  /// Returns the components 0, 1, 2 of a vector field, ordered such that components with the same LU factors are adjacent. Solving for several
+  /// components with one factorisation takes little more time than for one component.
   std::vector<int> components() const;
 
   /// Returns the symmetric x with A x = b, shape (N, 3), from the fundamental rows of b.

@@ -17,7 +17,7 @@ constexpr int N = 3;
 
 Row unit(int point) { return Row::Unit(point); }
 
-/// Converts coefficients of the 19 control points from face 0 to face j, by rotation about the extraordinary point.
+/// Rotates a row of coefficients of the 19 control points (OneRing) from face 0 to face j about the extraordinary point.
 Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
@@ -105,7 +105,8 @@ struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };
 Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
-  std::array<Row, N> s0, s1, s2, s3;  // c0 .. c3 of the cubics along the mesh lines from the point
+  std::array<Row, N> s0, s1, s2, s3;  // Bezier points c0 .. c3 of the boundary curve along each spoke (mesh line from the extraordinary point), as
+                                      // rows of coefficients
   for (int j = 0; j < N; ++j) {
     s0[j] = turned_row(bicubic.row(0), j);
     s1[j] = turned_row(bicubic.row(1), j);
@@ -195,7 +196,8 @@ int ring_point(int j, int u, int v) {
 
 Row coarse(int j, int u, int v) { return Row::Unit(ring_point(j, u, v)); }
 
-/// Returns control point (a, b) of sector j after one subdivision. The unit of a and b is half the spacing of the original control net.
+/// Returns control point (a, b) of sector j (the face between the mesh lines j and j + 1 from the extraordinary point) after one subdivision. a and b
+/// count half spacings of the original control net along these two mesh lines.
 Row fine(int j, int a, int b) {
   if (b < 0) return fine(j + 2, -b, a);
   if (a < 0) return fine(j + 1, b, -a);

@@ -59,7 +59,7 @@ void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
   }
 }
 
-/// Adds coordinates for the tangential directions at a site that the parity of the fields permits.
+/// Adds a coordinate for each tangential direction at a site in which fields of this parity need not vanish.
 void ShapeCoordinates::add_along(int site, const Vec3& normal) {
   const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
   const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
@@ -141,7 +141,8 @@ Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the coordinates y, without the tangential motion that following meshes and translations of drops add to it.
+/// Returns the control values of the displacement with the coordinates y. Leaves out the tangential mesh motion that belongs to y: the motion of
+/// meshes that follow (4.26), and the tangential part of translations of drops.
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());

@@ -170,8 +170,8 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
   std::erase_if(marks, degenerate);
 }
 
-/// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with tolerances and limits multiplied by 2, 4, …
-/// up to 64.
+/// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with the tolerances and limits of the section
+/// Adaptation multiplied by 2, 4, … up to 64.
 Adapted refined(const Subject& of, const Findings& found) {
   const auto& [scene, body, block, state, x, films] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
