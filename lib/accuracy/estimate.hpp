@@ -6,14 +6,14 @@
 
 namespace tanktread::accuracy {
 
-/// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor
+/// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor C
 /// that depends on the series, so that d_l is about C (E_(l-1) - E_l). The error of the finest level is
 ///
 ///   e_l = 1.2 C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                  (9.1)
 ///
-/// The factor was found with 118 estimates for the series that users ask for in 18 scenes: 92 of 100 were 1/3 to 3 times the true error, and so were
-/// 89 of 100 of the 905 estimates for all series. An estimate with the largest or the mean C of several levels is farther off, and so is one from a
-/// ratio fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
+/// The factor 1.2 was found with estimates in 18 scenes. Of the 118 estimates for the series that users request, 92 % were 1/3 to 3 times the true
+/// error; of the 905 estimates for all series, 89 %. Two other estimates are less accurate: with the largest or the mean C of several levels, and
+/// with a ratio r fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is

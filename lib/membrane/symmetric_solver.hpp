@@ -17,9 +17,9 @@ namespace tanktread::membrane {
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
-/// Here m_a is the number of images of a, a factor that keeps a symmetric matrix symmetric, and s_c(g) is the sign by which g multiplies component c.
-/// If an image maps a point onto itself with sign -1, component c vanishes there, and the point is left out. Components of equal signs share a
-/// factor. Without symmetry this is DirectSolver.
+/// Here m_a is the number of images of a, and s_c(g) is the sign by which the image g multiplies component c. With the factor m_a, A^c is symmetric
+/// if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the system has no unknown for it. Components
+/// with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
 class SymmetricSolver {
  public:
   /// Throws as DirectSolver does.

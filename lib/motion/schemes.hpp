@@ -156,14 +156,15 @@ class TrBdf2 : public Scheme {
   StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
 };
 
-/// Third-order backward differentiation with variable steps and the quasi-Newton solve on the frozen-geometry Jacobian (4.3): the derivative
-/// at t_{n+1} of the cubic through x_{n+1}, x_n, x_{n-1}, x_{n-2} is v(x_{n+1}),
+/// Third-order backward differentiation with variable steps. The derivative at t_{n+1} of the cubic through x_{n+1}, x_n, x_{n-1}, x_{n-2} is
+/// v(x_{n+1}); a_i are the weights of the earlier positions in this derivative:
 ///
 ///   x_{n+1} - shift v(x_{n+1}) = -shift (a_0 x_n + a_1 x_{n-1} + a_2 x_{n-2}),   1/shift = sum 1/(t_{n+1} - t_{n-i})              (4.9)
 ///
-/// One stage per step, predicted by the cubic through the last four positions. The local error is the difference to this prediction times
-/// shift/(t_{n+1} - t_{n-3}); its limit is reduced by (4.31). Steps grow by at most a factor of 1.5 (zero-stable below 1.53; Hairer, Norsett &
-/// Wanner, Solving ODEs I, III.5). The first three steps, and three steps after repeated failures of the iteration, are TR-BDF2 steps.
+/// This single stage is solved by quasi-Newton iteration with the frozen-geometry Jacobian (4.3). The start value is the prediction by the cubic
+/// through the last four positions. The local error is the difference between result and prediction times shift/(t_{n+1} - t_{n-3}). Its limit is
+/// reduced by (4.31). Steps grow by at most a factor of 1.5 (zero-stable below 1.53; Hairer, Norsett & Wanner, Solving ODEs I, III.5). The first
+/// three steps, and three steps after repeated failures of the iteration, are TR-BDF2 steps.
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}

@@ -31,8 +31,8 @@ Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last
   return (4 * near + 2 * next + opposite + 2 * last) / 9;
 }
 
-/// Returns control point (u, v) of the 4 x 4 net around face 0, u, v = 0 .. 3; the corners of face 0 have u, v = 1, 2. Point (0, 0), across the
-/// extraordinary point, does not exist.
+/// Returns the control point (u, v) of the 4 x 4 net that determines the bicubic patch on face 0, u, v = 0 .. 3. The corners of face 0 are the points
+/// with u, v = 1, 2; (1, 1) is the extraordinary point. Point (0, 0) does not exist, because only three faces meet there.
 Row net(int u, int v) {
   using R = Ring;
   static const int id[4][4] = {{-1, R::E + 2, R::F + 1, R::B + 1},
@@ -203,7 +203,7 @@ Row fine(int j, int a, int b) {
   if (a < 0) return fine(j + 1, b, -a);
   const int u = a >> 1, v = b >> 1;
   auto face = [&](int x, int y) -> Row {  // mean of the four control points of the face whose lower left corner is (x, y)
-    // x or y may be -1. In this case the face is in the neighbouring sector, whose control points ring_point() finds.
+    // If x or y is -1, the face is in the neighbouring sector, whose control points ring_point() finds.
     return (coarse(j, x, y) + coarse(j, x + 1, y) + coarse(j, x + 1, y + 1) + coarse(j, x, y + 1)) / 4;
   };
   if ((a & 1) && (b & 1)) return face(u, v);

@@ -81,11 +81,12 @@ struct PlacedEdge {
 };
 PlacedEdge placed(const Lattice& l, Ray edge);
 
-/// Returns the distances of the nearer and the farther end of an edge from a corner of its face. The distance is the larger coordinate difference.
+/// Returns the distances of the two ends of an edge from a corner of its face, the smaller distance first. The distance of a point from the corner is
+/// the larger of its two coordinate differences.
 std::array<int, 2> distances(const Lattice& l, const PlacedEdge& e, int corner);
 
-/// Converts coordinates (a, b) in a square of side n, with the origin at corner `turn` and the first axis along the side from there to the next
-/// corner, to coordinates with the origin at corner 0.
+/// Rotates coordinates by `turn` quarter turns in the square [0, n] x [0, n]: (a, b) are measured from corner `turn`, with a along the side to the
+/// next corner. The result is measured from corner 0.
 template <class Number>
 std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
   const std::array<Number, 2> places[4] = {{a, b}, {n - b, a}, {n - a, n - b}, {b, n - a}};

@@ -78,8 +78,8 @@ using Corners = std::array<Eigen::Vector3d, 4>;
 /// is exact, because barycentric coordinates are bilinear functions of U and V, and a cubic polynomial of bilinear functions is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
-/// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle: at the corner T_003, at the pole, at
-/// the corner T_030.
+/// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle with Bezier points T_ijk. Order: at the
+/// corner T_003, at the corner T_300 (pole), at the corner T_030.
 const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.

@@ -235,7 +235,7 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
-  if (constrained) constrain(v, b, c);  // removes the small volume flux that interpolating the normal motion causes
+  if (constrained) constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
@@ -391,7 +391,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of the assembled rows of all ranks with v, at all targets
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of v and assembled rows, at all targets; each rank multiplies
+                                                                           // its rows
     Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
     for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();

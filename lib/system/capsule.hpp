@@ -217,8 +217,8 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Net of the particles that was set in the tube last. `origin` and `origin_of_net`: x1 of the origin of the frame of a straight periodic wall, now
-  /// and when the net was set.
+  /// Net of the particles for which the tube was set up last. `origin`: x1 of the origin of the frame of a straight periodic wall at the present
+  /// time. `origin_of_net`: this x1 when `net` was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;

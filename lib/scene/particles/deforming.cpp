@@ -148,8 +148,8 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the flow due to a tube or
-                                                                      // solids depends on it
+    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the response of a tube or
+                                                                      // solids is computed from it
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -360,7 +360,7 @@ class Deforming : public ParticleSystem {
   Phases& phases_;
   std::vector<Member> members_;
   std::optional<coupling::SolidScene> solids_;
-  std::unique_ptr<Body> all_;  // body that stands for all particles (stacked nets) if there are several, or null
+  std::unique_ptr<Body> all_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // state of the latest snapshot, to which its fields refer

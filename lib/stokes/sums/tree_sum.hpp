@@ -89,7 +89,7 @@ class TreeSum {
   int n_trees_ = 1;                             // number of target trees: one, and one per reflection
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
-  std::vector<double> target_at_, node_at_;     // positions of targets and of the Chebyshev nodes of target clusters, in blocks of far_block
+  std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
   std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: sum to be computed. wanted_: target cluster with a target whose sum is to be computed.
                                                 // has_nodes_: target cluster with values at its Chebyshev nodes

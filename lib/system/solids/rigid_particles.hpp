@@ -98,8 +98,8 @@ class RigidParticles {
   /// Returns the collocation correction (OwnLacking) of the velocity that a unit load k on the body causes on the body itself, in the axes at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
-  /// Valid for the body in its position at rest.
+  /// Returns the coefficients with which component k of <w> (velocity, then angular velocity) is a linear function of the body's rows of w, three
+  /// coefficients per row. Valid for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:

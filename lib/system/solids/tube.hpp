@@ -181,8 +181,8 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate and in the axial force; set by weigh_flow(), like the members
-                                      // below
+  Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
+                                      // set by weigh_flow(), like the members below
   Net flow_of_wall_;  // weights of a velocity u on the wall: the traction that cancels u causes the flow rate weights.u through the inlet
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
                                                 // pressure drop of c and of the wall traction that it causes
