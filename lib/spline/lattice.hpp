@@ -17,8 +17,8 @@ struct Ray {
 
 /// Unit quadrilaterals (cells) on a few square macro faces, which are joined along their sides to one closed surface. The lattice does not change;
 /// a T-mesh is a subset of its edges. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary
-/// point). The parity of a slot is its axis. Straight on, left and right follow from the slots, so differently oriented face coordinates need no
-/// special treatment.
+/// point). Even slots lie along one axis, odd slots along the other. Straight on, left and right follow from the slots, so differently oriented
+/// face coordinates need no special treatment.
 struct Lattice {
   int faces = 0;
   int units = 0;               ///< number of cells along x of a macro face; on the cube also along y

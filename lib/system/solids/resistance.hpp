@@ -66,8 +66,8 @@ class Resistance {
   /// Returns the pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 
-  /// Returns the correction of pressure_drop(f) if the flow is a duct flow (2.41). The correction has two parts: the interpolation error of v_inf,
-  /// and `work`, the residual work of f for the velocity v_inf on the surface.
+  /// Returns the correction (2.41) of pressure_drop(f) for collocation errors, if the flow is a duct flow. The correction contains the interpolation
+  /// error of v_inf and `work`. `work`: residual work (2.11) of f for the velocity v_inf on the surface.
   double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0);
 
   /// Returns the correction of (2.11) for a density f that is collocated for the velocity u: int z.(u - (1/mu) A f) dG for each density z, by Gauss

@@ -123,7 +123,7 @@ class Tube {
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
-  /// Independent checks: errors of a response in conditions (2.14) that it satisfies exactly if discretisation errors vanish.
+  /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
     double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle. It is
@@ -183,7 +183,7 @@ class Tube {
   std::unique_ptr<Particle> particle_;
   Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
                                       // set by weigh_flow(), like the members below
-  Net flow_of_wall_;  // weights of a velocity u on the wall: the traction that cancels u causes the flow rate weights.u through the inlet
+  Net flow_of_wall_;  // weights for a velocity u on the wall; weights.u is the flow rate through the inlet of the traction that cancels u
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
                                                 // pressure drop of c and of the wall traction that it causes
 };
