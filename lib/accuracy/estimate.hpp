@@ -6,17 +6,18 @@
 
 namespace tanktread::accuracy {
 
-/// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor
+/// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor C
 /// that depends on the series, so that d_l is about C (E_(l-1) - E_l). The error of the finest level is
 ///
 ///   e_l = 1.2 C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                  (9.1)
 ///
-/// The factor was found with 118 estimates for the series that users ask for in 18 scenes: 92 of 100 were 1/3 to 3 times the true error, and so were
-/// 89 of 100 of the 905 estimates for all series. An estimate with the largest or the mean C of several levels is farther off, and so is one from a
-/// ratio fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
+/// The factor 1.2 was found with estimates in 18 scenes. Of the 118 estimates for the series that users request, 92 % were 1/3 to 3 times the true
+/// error; of the 905 estimates for all series, 89 %. Two other estimates are less accurate: with the largest or the mean C of several levels, and
+/// with a ratio r fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
-  double ratio = 0;       ///< observed ratio of the errors of the last two levels: E_(l-1)/E_l times C_(l-1)/C_l; NaN if it is unknown
+  double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is
+                          ///< unknown
   std::string untrusted;  ///< reason for which the estimate cannot be trusted; empty if it can
   bool trusted() const { return untrusted.empty(); }
 };
@@ -30,8 +31,9 @@ constexpr double margin = 1.5;
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
-/// Returns the estimate. `differences`: of all pairs of successive levels, coarse to fine. `expected`: expected sizes of the errors of all levels,
-/// one entry more. `scale`: largest magnitude of the series; differences below 1e-10 times `scale` are round-off.
+/// Returns the estimate. `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected size of the error of
+/// each level; it has one entry more than `differences`. `scale`: largest magnitude of the series; differences below 1e-10 times `scale` are
+/// round-off.
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected);
 
 /// A quantity as a function of time, or of another abscissa. Abscissas ascend.
@@ -54,7 +56,8 @@ double mean(const Curve& curve);
 double statistical_error(const Curve& curve);
 
 /// Returns an upper envelope of a curve at the abscissas `at`: at each abscissa, the largest of the values at the two nearest points of the curve on
-/// each side. The error is then not taken for zero where a difference crosses zero. NaN values are skipped.
+/// each side. A difference between two levels that crosses zero at an abscissa is therefore not taken for an error of zero there. NaN values are
+/// skipped.
 std::vector<double> envelope(const Curve& curve, const std::vector<double>& at);
 
 }  // namespace tanktread::accuracy

@@ -46,8 +46,8 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 
 /// Climbs the ladder (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of the directory. The results of the finest
 /// finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a section `accuracy` in `summary.yaml`. If the
-/// ladder is resumed, finished levels are kept and an unfinished one is resumed. Returns the code. Throws UserError if the directory is occupied,
-/// RunFailure if no level comes to its end. Collective.
+/// ladder is resumed, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws UserError if the directory already contains
+/// results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed. Collective.
 int climb(const Task& task, const Program& program);
 
 /// Runs the two lowest levels in a temporary directory. Returns, one line each, the level that is predicted to meet each request, and the predicted

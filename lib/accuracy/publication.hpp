@@ -13,8 +13,9 @@ namespace tanktread::accuracy {
 std::string sentence(const Answer& answer);
 
 /// Makes the results of the finest level the results in the directory of the ladder: its files, with `/error/<series>` in `run.h5`, the field
-/// `position error` in snapshots, and the sections `error`, `accuracy` and `expect` in `summary.yaml`. `why` is the reason for which
-/// the ladder has ended without meeting all requests, or empty. Returns the binding expectations that were missed, in one line. Serial.
+/// `position error` in snapshots, and the sections `error`, `accuracy` and `expect` in `summary.yaml`. `why`: reason why the ladder ended without
+/// meeting all requests; empty if it met them. Returns one line that lists the missed expectations, without expectations that are not binding.
+/// Serial.
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
                     const std::string& why, double seconds);
 

@@ -28,7 +28,8 @@ class Columns {
   /// `every`: if true, `when` always returns true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
-  /// Returns whether to add a column that exists only under this condition.
+  /// Returns whether to add a column that exists only under this condition. Returns true for every condition if the Columns list all columns
+  /// (`every`).
   bool when(bool condition) const { return condition || every_; }
 
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.

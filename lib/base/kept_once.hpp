@@ -9,7 +9,7 @@
 
 namespace tanktread {
 
-/// Start positions of the tables in an array, by the hash of their content.
+/// Start positions, in an array, of tables of numbers that are stored one after the other. The key is a hash of the content of the table.
 using Tables = std::unordered_multimap<std::size_t, std::size_t>;
 
 /// Returns the start position of the table that was added to `all` from `first` to its end. If an earlier table is bitwise equal, removes the added

@@ -99,7 +99,7 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   const std::size_t rows = times.size();
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   if (above < rows && times[above] == t) return values[above];
-  std::size_t begin = above, end = above;  // range of up to four rows around t, without NaN
+  std::size_t begin = above, end = above;  // rows without NaN around t, up to four on each side
   while (begin > 0 && above - begin < 4 && !std::isnan(values[begin - 1])) --begin;
   while (end < rows && end - above < 4 && !std::isnan(values[end])) ++end;
   if (begin == above || end == above) return std::numeric_limits<double>::quiet_NaN();

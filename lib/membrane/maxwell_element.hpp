@@ -69,7 +69,8 @@ class MaxwellElement : public Field {
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  Net unit_;  // g^11, sqrt(g^11 g^22), g^22 of the surface `initial`, one row per Gauss point: the scales of C
+  Net unit_;  // g^11, sqrt(g^11 g^22), g^22 of the surface `initial`, one row per Gauss point; the coefficients are the components of C divided by
+              // these
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
   Eigen::VectorXd rate_;

@@ -22,9 +22,11 @@ constexpr int max_gauss = max_order * max_order;
 /// Elements of one call of the packed kernels, in packed form, with the unstressed surface at their Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< material of each group: the materials of the surface, then area elasticities in groups of their own
-  std::vector<Law> whole;           ///< per material: complete law for the computation of tensions, including separate area elasticity
-  std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of its group
+  std::vector<Material> materials;  ///< the materials of the surface; then, for each area elasticity with its own Gauss rule, a material with only
+                                    ///< this elasticity
+  std::vector<Law> whole;           ///< per material: law with all terms, from which tensions are computed, even if the area elasticity has a
+                                    ///< separate group
+  std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of the groups of this material
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending
@@ -32,7 +34,8 @@ struct Part {
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
   void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);
 
-  /// A batch with the data of its n Gauss points. Its first point has the index `first` in group g. c0 is null without bending.
+  /// A batch (elements in the lanes of one register) with the data of its n Gauss points. The data of its first Gauss point have the index `first` in
+  /// the arrays of group g. `c0`: curvature c0 of `Bending`; null without bending.
   struct Points {
     const Group& group;
     const Batch& batch;

@@ -17,9 +17,9 @@ namespace tanktread::membrane {
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
-/// Here m_a is the number of images of a, a factor that keeps a symmetric matrix symmetric, and s_c(g) is the sign by which g multiplies component c.
-/// If an image maps a point onto itself with sign -1, component c vanishes there, and the point is left out. Components of equal signs share a
-/// factor. Without symmetry this is DirectSolver.
+/// Here m_a is the number of images of a, and s_c(g) is the sign by which the image g multiplies component c. With the factor m_a, A^c is symmetric
+/// if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the system has no unknown for it. Components
+/// with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
 class SymmetricSolver {
  public:
   /// Throws as DirectSolver does.
@@ -28,8 +28,8 @@ class SymmetricSolver {
   /// Factors A, shape (N, N). Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& a);
 
-  /// Returns the components, ordered such that components that share a factor are adjacent. Solving for several components with one factor takes
-  /// little more time than for one component.
+  /// Returns the components 0, 1, 2 of a vector field, ordered such that components with the same LU factors are adjacent. Solving for several
+  /// components with one factorisation takes little more time than for one component.
   std::vector<int> components() const;
 
   /// Returns the symmetric x with A x = b, shape (N, 3), from the fundamental rows of b.

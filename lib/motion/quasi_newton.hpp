@@ -25,14 +25,15 @@ struct Stage {
   double rate_or_assumed() const { return rate > 0 ? rate : 0.5; }
 };
 
-/// Solves a stage by quasi-Newton iteration with the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in every iteration, and the
-/// secants (4.13), to which it adds one pair. With d_k the correction of iteration k,
+/// Solves a stage by quasi-Newton iteration. The approximate Jacobian is the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in
+/// every iteration, with the secants (4.13). Adds one pair to the secants. With d_k the correction of iteration k,
 ///
 ///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
 ///
-/// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. A rate observed earlier in the same step is used, because
-/// shape and shift are the same. If none was observed yet, the rate is assumed to be 1/2, so a second evaluation is made unless the first correction
-/// is small. The rate is never taken below the relative residual of the linear solves.
+/// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. If an earlier stage of the same step has observed a rate,
+/// this rate is used from the first iteration on, because the shape of the Jacobian and the shift are the same. Otherwise the first rate is assumed
+/// to be 1/2, so that a second evaluation is made unless the first correction is small. The rate is never taken below the relative residual of the
+/// linear solves.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
 
 /// Decision on an attempted step.
@@ -41,10 +42,10 @@ struct Verdict {
   double factor = 0.5;  ///< next step divided by this step
 };
 
-/// Decides on an attempted step that ended with the stage `last`. `error` is its local error divided by the tolerance, which scales with the given
-/// power of the step. Restores the volume at the end of an accepted step; if this fails, the step is rejected. If the iteration failed or contracted
-/// too slowly, and the shape has changed since the last assembly, assembles the layer operators again at state.x and deletes the secants. Throws
-/// RunFailure if a step of fixed size was not solved.
+/// Decides on an attempted step that ended with the stage `last`. `error`: local error of the step divided by the tolerance; it is proportional to
+/// the step size to the power `power`. Restores the volume at the end of an accepted step; if this fails, the step is rejected. Assembles the layer
+/// operators again at state.x, and deletes the secants, if this can make the iteration faster: it failed or contracted too slowly, and the shape has
+/// changed since the last assembly. Throws RunFailure if a step of fixed size was not solved.
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory);
 

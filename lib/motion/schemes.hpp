@@ -50,14 +50,14 @@ class Attempts {
   bool holds(double error, const char* kind) const;
 
   /// Rejects the attempt. `error`: error of the attempt divided by the tolerance; 0 if unknown. The size of the next attempt is `part` times the size
-  /// of this attempt. If two successive attempts are rejected, the order p of the error, error ~ dt^p, is computed from their errors, with p >= 1/2.
-  /// The next attempt is then no longer than p predicts, but at least a tenth of the rejected attempt. While a shape relaxes after mesh refinement, p
-  /// is below 1. Source: Gustafsson 1994.
+  /// of this attempt. If two successive attempts are rejected, their errors give the power p of error ~ dt^p, which is taken as at least 1/2. The
+  /// size for which p predicts an acceptable error is then an upper bound of the next attempt. This bound is at least a tenth of the rejected size.
+  /// (p is below 1 while a shape relaxes after mesh refinement.) Source: Gustafsson 1994.
   void reject(double part, double error = 0);
 
-  /// Ends the step at y and returns the report. Sets the position and time of the state, and sets the next step to `factor` times this step. If this
-  /// step was shortened to meet the limit, the next step is not reduced. The scheme updates its history and memory itself. `error`: error of the step
-  /// divided by the tolerance times `share` (4.31).
+  /// Ends the step at y and returns the report. Sets the position and time of the state, and the size of the next step: `factor` times the size of
+  /// this step. If this step was shortened, for example to end at the time `limit`, the next step is at least as long as this step would have been.
+  /// The scheme updates its history and memory itself. `error`: error of the step divided by the tolerance times `share` (4.31).
   StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`
@@ -107,14 +107,14 @@ int rkc2_stages(double dt, double rho);
 /// velocity evaluation if nothing is assembled.
 double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& direction, int iterations);
 
-/// The paper's Crank-Nicolson scheme (P-38), by default with its sub-iteration and its step rule (4.1):
+/// The Crank-Nicolson scheme (P-38) of the paper by Maestre et al. (2017), by default with its sub-iteration and its step rule (4.1):
 ///
 ///   x^{k+1} = x_n + dt/2 (v(x_n) + v(x^k))   until  |x^{k+1} - x^k|_2 / (R_C sqrt(m_C)) <= 1e-7;
 ///   after more than 8 sub-iterations, the step is repeated with 0.75 dt; after fewer than 4, the next step is 1.33 dt.
 ///
-/// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If it is
-/// counted, as in the text of the paper, steps stay near the first step. If it is not counted, the mean step agrees with Table 3 of the paper. The
-/// sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
+/// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If the
+/// number of sub-iterations includes it, as in the text of the paper, all steps stay near the size of the first step. If not, the mean step agrees
+/// with Table 3 of the paper. The sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
 ///
 /// `Time/nonlinear solver` accelerates this fixed-point iteration (Anderson) or replaces it by matrix-free Newton-Krylov iteration, both by NOX.
 /// `Time/step control: error` chooses steps by the difference to the explicit formula of the same order (Gresho, Lee & Sani 1980):
@@ -137,32 +137,34 @@ class CrankNicolson : public Scheme {
   std::unique_ptr<coupling::FixedPoint> solver_;  // null for the plain sub-iteration
 };
 
-/// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: a one-step method of third order, L-stable with the exact Jacobian.
+/// TR-BDF2 (Hosea & Shampine 1996) with local extrapolation: a one-step method of third order, L-stable with the exact Jacobian J.
 ///
 ///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
-/// b^ is of third order but not stable; e2 is its difference from b without the stiff part. A step multiplies a mode by R(z) + (R^ - R)/(1 - d z)^2
-/// with z = dt J, whose modulus is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth
-/// order, so its secants are not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus
-/// the errors of the two stages (4.28).
+/// The formula b^ is of third order but not stable. e2 is the difference between b and b^, in which the two solves damp the stiff modes. A step
+/// multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the stability functions of b and b^. The modulus of this factor
+/// is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth order, so its secants are not
+/// used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors of the two stages
+/// (4.28).
 ///
-/// The first slope is the last one of the previous step. Slopes follow from the stage equations without further evaluations. Stages are predicted by
-/// a polynomial through the known slopes.
+/// The first slope is the last slope of the previous step. Slopes follow from the stage equations without further evaluations. Stages are predicted
+/// by a polynomial through the known slopes.
 class TrBdf2 : public Scheme {
  public:
   using Scheme::Scheme;
   StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) override;
 };
 
-/// Third-order backward differentiation with variable steps and the quasi-Newton solve on the frozen-geometry Jacobian (4.3): the derivative
-/// at t_{n+1} of the cubic through x_{n+1}, x_n, x_{n-1}, x_{n-2} is v(x_{n+1}),
+/// Third-order backward differentiation with variable steps. The derivative at t_{n+1} of the cubic through x_{n+1}, x_n, x_{n-1}, x_{n-2} is
+/// v(x_{n+1}); a_i are the weights of the earlier positions in this derivative:
 ///
 ///   x_{n+1} - shift v(x_{n+1}) = -shift (a_0 x_n + a_1 x_{n-1} + a_2 x_{n-2}),   1/shift = sum 1/(t_{n+1} - t_{n-i})              (4.9)
 ///
-/// One stage per step, predicted by the cubic through the last four positions. The local error is the difference to this prediction times
-/// shift/(t_{n+1} - t_{n-3}); its limit is reduced by (4.31). Steps grow by at most a factor of 1.5 (zero-stable below 1.53; Hairer, Norsett &
-/// Wanner, Solving ODEs I, III.5). The first three steps, and three steps after repeated failures of the iteration, are TR-BDF2 steps.
+/// This single stage is solved by quasi-Newton iteration with the frozen-geometry Jacobian (4.3). The start value is the prediction by the cubic
+/// through the last four positions. The local error is the difference between result and prediction times shift/(t_{n+1} - t_{n-3}). Its limit is
+/// reduced by (4.31). Steps grow by at most a factor of 1.5 (zero-stable below 1.53; Hairer, Norsett & Wanner, Solving ODEs I, III.5). The first
+/// three steps, and three steps after repeated failures of the iteration, are TR-BDF2 steps.
 class Bdf3 : public Scheme {
  public:
   explicit Bdf3(const TimeOptions& options) : Scheme(options), starter_(options) {}
@@ -175,12 +177,13 @@ class Bdf3 : public Scheme {
 
 /// Chooses the scheme of each step. The choice uses the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
 ///
-///   TR-BDF2 is used if a velocity requires the solution of a linear system but the residual of a stage does not (3.14).
-///   Otherwise BS3 is used as long as the step that the error allows is stable, dt < 2.3/rho. This includes the first step.
-///   Otherwise TR-BDF2 is used, and its work per unit of time is measured.
-///   If this work exceeds 1.5 times 3/min(dt, 2.3/rho), BS3 is used until rho has changed or fifty steps have passed, then TR-BDF2 again.
+/// If the frozen operator would be larger than `Time/largest operator`, every step uses RKC2, which needs no frozen operator. If a velocity requires
+/// the solution of a linear system but the residual of a stage does not (3.14), every step uses TR-BDF2. Otherwise:
 ///
-/// If the frozen operator would be larger than `Time/largest operator`, RKC2 is used instead, because RKC2 needs no frozen operator.
+///   BS3 is used as long as the step that the error allows is stable, dt < 2.3/rho. This includes the first step.
+///   If the error allows a longer step, TR-BDF2 is used, and its work per unit of time (in velocity evaluations) is measured.
+///   If this work exceeds 1.5 times the work of BS3, 3/min(dt, 2.3/rho), BS3 is used again.
+///   TR-BDF2 is tried again when rho has changed by a third or fifty steps have passed.
 class Automatic : public Scheme {
  public:
   explicit Automatic(const TimeOptions& options) : Scheme(options), explicit_(options), implicit_(options), stabilised_(options) {}

@@ -16,8 +16,8 @@ struct Demand {
   double allowed = 0, steep = 0, tolerance = 1e-5;
   int smooth_order = 4;
 
-  /// Returns the largest value of rho^(-2 n), the error of n Gauss points, that is allowed on a part with this area at this distance from the target.
-  /// The error of the steeper kernel is ten times as large at the same n.
+  /// Returns the largest error rho^(-2 n) of n Gauss points that is allowed on a part of the element with this area at this distance from the target.
+  /// For the kernel 1/r^2 (`steep` > 0), the error is taken as ten times as large as rho^(-2 n).
   double error(double area, double distance) const {
     return allowed * distance / area * (steep > 0 ? 0.1 * std::min(1., distance / steep) : 1.);
   }

@@ -8,9 +8,9 @@
 
 namespace tanktread::quadrature {
 
-/// Shape of the metric at the target, rounded to few values (bins), so that one rule serves many elements. The rounding costs one or two points and
-/// no accuracy. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents is about `steps` times 15 degrees, with `steps` from 1 to
-/// 11.
+/// Shape of the metric at the target, rounded to few values (bins), so that one rule serves many elements. s and t are the local coordinates of the
+/// element. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents x_,s and x_,t is about `steps` times 15 degrees, with `steps`
+/// from 1 to 11. A rule for the rounded metric needs one or two Gauss points more, and is as accurate.
 struct Shear {
   int doublings = 0, steps = 6;
 
@@ -30,20 +30,22 @@ struct PolarOrders {
   auto operator<=>(const PolarOrders&) const = default;
 };
 
-/// Returns the orders for a target at (s, t) of an element that is nearly affine. In the angular coordinate mu of polar() the integrand has poles at
-/// +- i pi / 2, the directions in which r^2 = 0. Measurements on deformed surfaces (tests/verify/layers.cpp) show that the angular order must be
-/// chosen for the error tolerance^1.25 exp(-m/2), with m the length of the interval of mu.
+/// Returns the orders for a target at (s, t) of an element that is nearly affine. The angular coordinate is mu of polar(). As a function of mu, the
+/// integrand has poles at +- i pi / 2, the directions in which r^2 = 0. The angular order is chosen such that the error due to these poles is
+/// tolerance^1.25 exp(-m/2), with m the length of the interval of mu. This choice follows from measurements on deformed surfaces
+/// (tests/verify/layers.cpp).
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
-/// Returns orders that are larger if the element is so distorted that its actual corners cause closer poles than the corners of the affine element.
+/// Returns the orders for an element that is not affine. Estimates the poles of the integrand also from the actual positions of the corners. If these
+/// poles are closer to the interval of integration than the poles of the affine element, the orders are larger than without `corner` and `affine`.
 /// Both arrays hold the corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: `corner` the actual positions, `affine` the positions
 /// predicted by the tangents at the target.
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
                          const std::array<Vec3, 4>& affine);
 
-/// Returns the polar rule about (s, t) in the closed unit square. It consists of up to four triangles with apex (s, t) in the plane of the metric,
-/// with Gauss points in the radial coordinate and in mu. h is the distance of the side opposite the apex, and h sinh(mu) is the arc length along this
-/// side, measured from the foot of the perpendicular.
+/// Returns the polar rule about (s, t) in the closed unit square. It consists of up to four triangles with apex (s, t), in a plane in which lengths
+/// and angles are those of the metric `shear`. Each triangle has Gauss points in the radial coordinate and in an angular coordinate mu. With h the
+/// distance of the side opposite the apex, h sinh(mu) is the arc length along this side, measured from the foot of the perpendicular.
 Rule polar(double s, double t, Shear shear, const PolarOrders& orders);
 
 /// Returns the rule of Maestre et al. (2017): up to four triangles with apex (s, t) in the parameter plane, each with n x n Gauss points under the

@@ -37,7 +37,7 @@ struct DomainOptions {
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
-  /// Returns whether the flow at amplitude 1 changes the lattice vectors.
+  /// Returns whether the flow, with the amplitude 1 (without its history in time), changes the lattice vectors.
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;
@@ -49,7 +49,8 @@ struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
   Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
-  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< differences in the axes of the plane of the flow
+  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< S_aa - S_bb and S_bb - S_cc of `stress` S; a, b: axes in the plane of the
+                                                                        ///< flow, c: normal
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all members except `cell` (6.9), (6.10) from the total volume and stresslet of all particles and their total force on the fluid. `of`:

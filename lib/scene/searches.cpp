@@ -15,7 +15,8 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the conditions that the loads of all particles impose on a rigid motion.
+/// Returns the conditions that the loads of all particles impose on a rigid motion with which they move (Load::rigid_conditions), one row per
+/// condition.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
   membrane::RigidConditions all(0, 6);
   for (const coupling::Particle& particle : particles)
@@ -73,7 +74,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
-  // A rotation about a point turns lattice vectors h into other ones, unless it is about h itself.
+  // A rotation changes all lattice vectors h except those along its axis.
   const std::vector<Vec3> lattice = lattice_vectors(scene);
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
@@ -132,8 +133,8 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
 
 namespace {
 
-/// Returns the number that the deck sets for the key at `path`. `of`: name of the key, such as Continuation/parameter, whose value is this path.
-/// Throws UserError if the deck has no such number.
+/// Returns the number that the deck sets for the key at `path`. `of`: name, for the error message, of the key whose value is `path`, for example
+/// Continuation/parameter. Throws UserError if the deck has no such number.
 double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
   Scene again = scene;

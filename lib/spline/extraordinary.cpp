@@ -17,7 +17,7 @@ constexpr int N = 3;
 
 Row unit(int point) { return Row::Unit(point); }
 
-/// Converts coefficients of the 19 control points from face 0 to face j, by rotation about the extraordinary point.
+/// Rotates a row of coefficients of the 19 control points (OneRing) from face 0 to face j about the extraordinary point.
 Row turned_row(const Row& r, int j) {
   Row out = r;
   for (int group = 1; group < Ring::size; group += N)
@@ -31,8 +31,8 @@ Row inner(const Row& near, const Row& next, const Row& opposite, const Row& last
   return (4 * near + 2 * next + opposite + 2 * last) / 9;
 }
 
-/// Returns control point (u, v) of the 4 x 4 net around face 0, u, v = 0 .. 3; the corners of face 0 have u, v = 1, 2. Point (0, 0), across the
-/// extraordinary point, does not exist.
+/// Returns the control point (u, v) of the 4 x 4 net that determines the bicubic patch on face 0, u, v = 0 .. 3. The corners of face 0 are the points
+/// with u, v = 1, 2; (1, 1) is the extraordinary point. Point (0, 0) does not exist, because only three faces meet there.
 Row net(int u, int v) {
   using R = Ring;
   static const int id[4][4] = {{-1, R::E + 2, R::F + 1, R::B + 1},
@@ -105,7 +105,8 @@ struct Conditions {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(3 * N, unknowns), g = Eigen::MatrixXd(3 * N, Ring::size);
 };
 Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biquartic) {
-  std::array<Row, N> s0, s1, s2, s3;  // c0 .. c3 of the cubics along the mesh lines from the point
+  std::array<Row, N> s0, s1, s2, s3;  // Bezier points c0 .. c3 of the boundary curve along each spoke (mesh line from the extraordinary point), as
+                                      // rows of coefficients
   for (int j = 0; j < N; ++j) {
     s0[j] = turned_row(bicubic.row(0), j);
     s1[j] = turned_row(bicubic.row(1), j);
@@ -195,13 +196,14 @@ int ring_point(int j, int u, int v) {
 
 Row coarse(int j, int u, int v) { return Row::Unit(ring_point(j, u, v)); }
 
-/// Returns control point (a, b) of sector j after one subdivision. The unit of a and b is half the spacing of the original control net.
+/// Returns control point (a, b) of sector j (the face between the mesh lines j and j + 1 from the extraordinary point) after one subdivision. a and b
+/// count half spacings of the original control net along these two mesh lines.
 Row fine(int j, int a, int b) {
   if (b < 0) return fine(j + 2, -b, a);
   if (a < 0) return fine(j + 1, b, -a);
   const int u = a >> 1, v = b >> 1;
   auto face = [&](int x, int y) -> Row {  // mean of the four control points of the face whose lower left corner is (x, y)
-    // x or y may be -1. In this case the face is in the neighbouring sector, whose control points ring_point() finds.
+    // If x or y is -1, the face is in the neighbouring sector, whose control points ring_point() finds.
     return (coarse(j, x, y) + coarse(j, x + 1, y) + coarse(j, x + 1, y + 1) + coarse(j, x, y + 1)) / 4;
   };
   if ((a & 1) && (b & 1)) return face(u, v);

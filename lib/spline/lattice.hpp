@@ -17,8 +17,8 @@ struct Ray {
 
 /// Unit quadrilaterals (cells) on a few square macro faces, which are joined along their sides to one closed surface. The lattice does not change;
 /// a T-mesh is a subset of its edges. A direction at a vertex is a slot 0 .. 3, counter-clockwise seen from outside (0 .. 2 at an extraordinary
-/// point). The parity of a slot is its axis. Straight on, left and right follow from the slots, so differently oriented face coordinates need no
-/// special treatment.
+/// point). Even slots lie along one axis, odd slots along the other. Straight on, left and right follow from the slots, so differently oriented
+/// face coordinates need no special treatment.
 struct Lattice {
   int faces = 0;
   int units = 0;               ///< number of cells along x of a macro face; on the cube also along y
@@ -38,7 +38,7 @@ struct Lattice {
   std::vector<int> extraordinary;              ///< vertices of valence 3
   std::vector<std::uint8_t> is_extraordinary;  ///< for each vertex, nonzero if it is extraordinary
 
-  std::vector<std::array<int, 4>> point_at;  ///< index in `extraordinary` of the point at corner 0 .. 3 of each macro face, or -1
+  std::vector<std::array<int, 4>> point_at;  ///< index in `extraordinary` of the extraordinary point at corner 0 .. 3 of each macro face, or -1
 
   int vertices() const { return int(neighbour.size()); }
   int cells() const { return int(corners.size()); }
@@ -48,7 +48,7 @@ struct Lattice {
   int x_of(int c) const { return c % units; }
   int y_of(int c) const { return c / units % rows; }
 
-  /// Returns the parametric y, in lattice units, of the lower border of cell row y. Rows of zero height do not count.
+  /// Returns the height, in lattice units, of the lower border of the cells in row y (index). Rows of zero height at the poles do not contribute.
   int height(int y) const { return std::clamp(y - pad, 0, rows - 2 * pad); }
   bool is_flat(int c) const { return y_of(c) < pad || y_of(c) >= rows - pad; }
   bool ends(int v, int k) const { return neighbour[v][k] < 0; }  ///< whether the polar lattice ends at v in direction (slot) k
@@ -65,8 +65,8 @@ struct Lattice {
   /// Sets or clears an edge at both of its ends. `edges` has one entry per vertex; its bit k is the edge in direction (slot) k.
   void set(std::vector<std::uint8_t>& edges, Ray edge, bool present) const;
 };
-/// Returns the next ray on the same line, one unit edge further. If that vertex is an extraordinary point, where straight on is not defined, the
-/// slot of the result points back.
+/// Returns the next ray on the same line, which begins at the other end of the edge of r. If the other end is an extraordinary point, no direction
+/// continues the line, and the result points back along the edge of r.
 inline Ray step(const Lattice& l, Ray r) {
   const auto [v, back] = l.reverse(r);
   return {v, l.is_extraordinary[v] ? back : (back + 2) & 3};
@@ -81,11 +81,12 @@ struct PlacedEdge {
 };
 PlacedEdge placed(const Lattice& l, Ray edge);
 
-/// Returns the distances of the nearer and the farther end of an edge from a corner of its face. The distance is the larger coordinate difference.
+/// Returns the distances of the two ends of an edge from a corner of its face, the smaller distance first. The distance of a point from the corner is
+/// the larger of its two coordinate differences.
 std::array<int, 2> distances(const Lattice& l, const PlacedEdge& e, int corner);
 
-/// Converts coordinates (a, b) in a square of side n, with the origin at corner `turn` and the first axis along the side from there to the next
-/// corner, to coordinates with the origin at corner 0.
+/// Rotates coordinates by `turn` quarter turns in the square [0, n] x [0, n]: (a, b) are measured from corner `turn`, with a along the side to the
+/// next corner. The result is measured from corner 0.
 template <class Number>
 std::array<Number, 2> turned(Number a, Number b, Number n, int turn) {
   const std::array<Number, 2> places[4] = {{a, b}, {n - b, a}, {n - a, n - b}, {b, n - a}};

@@ -14,7 +14,7 @@ namespace tanktread::spline {
 /// Representation of the surface around a pole.
 enum class PoleRule {
   plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
-  bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces, as in the paper
+  bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (P-A.1, P-A.2)
   c1,                ///< three functions per pole, such that the tangent plane is continuous; elements as in `plain`
 };
 
@@ -27,8 +27,9 @@ struct PolarMesh {
 };
 
 /// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (first pole, "behind") to r (last pole,
-/// "ahead"), and azimuth v in elements. `distance`: distance of the control point from the axis divided by the distance of its row from the axis.
-/// With `c1`, the three control points of a pole replace row 1 of the tensor net, at distances from the axis that differ from row 1.
+/// "ahead"), and azimuth v in elements. Without `c1`, the control points are the poles and the rows of m points of the tensor-product net. With `c1`,
+/// three control points per pole replace the pole and the row next to it. `distance`: distance of the point from the axis, divided by the distance
+/// from the axis of the row at this u; 1 except for these three points.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
@@ -49,19 +50,20 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 /// condition numbers of collocation are equal to the condition numbers of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
-/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the
-/// poles, in the order of the lattice vertices.
+/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the poles,
+/// in the order of the lattice vertices.
 ///
-/// With `c1`, knot insertion transfers the positions d_j of the base mesh to the finer functions of row 1. These positions are multiplied by the
-/// ratio of the height of the first element to its height in the base mesh, so spaces of nested meshes are nested. The triangle is chosen again
-/// from these positions and the pole. `plain` spaces are nested, too. `bezier_transform` spaces are not, but they have the control points of the
-/// `plain` spaces, between which fields can be transferred.
+/// With `c1`, knot insertion transfers the positions d_j in the plane at the pole from the functions of row 1 of the base mesh to the finer
+/// functions. The positions are then multiplied by the ratio of the heights of the first element in the refined mesh and in the base mesh. With this
+/// factor, spaces of nested meshes are nested. The triangle around the d_j and the pole is chosen again. `plain` spaces are nested, too.
+/// `bezier_transform` spaces are not, but they have the control points of the `plain` spaces, between which fields can be transferred.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
 
 /// Order of the Bezier points T_ijk, i + j + k = 3, of the cubic triangle in barycentric coordinates r = u (1 at the pole), s = (1 - u) v,
-/// t = (1 - u)(1 - v). The Bezier points of the degenerate element are Q_ij, u -> i fastest; the pole is the side u = 1.
+/// t = (1 - u)(1 - v). The Bezier points of the degenerate element are Q_ij, in an order in which the index i along u varies fastest. The pole is the
+/// side u = 1.
 constexpr std::array<std::array<int, 3>, 10> triangle_points{
     {{0, 0, 3}, {1, 0, 2}, {2, 0, 1}, {3, 0, 0}, {0, 1, 2}, {1, 1, 1}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {0, 3, 0}}};
 
@@ -72,17 +74,18 @@ Eigen::MatrixXd triangle_of_degenerate();
 /// Corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in a triangle, as barycentric coordinates with respect to the triangle.
 using Corners = std::array<Eigen::Vector3d, 4>;
 /// Returns the matrix of (P-A.2), shape (16, 10). The matrix maps the control points of a cubic Bezier triangle to the Bezier points of a bicubic
-/// quadrilateral in the triangle, U fastest. The representation is exact, because the quadrilateral is a bilinear map, and a cubic polynomial of a
-/// bilinear map is bicubic.
+/// quadrilateral in the triangle. The quadrilateral has the local coordinates U and V; Bezier points are numbered along U first. The representation
+/// is exact, because barycentric coordinates are bilinear functions of U and V, and a cubic polynomial of bilinear functions is bicubic.
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners);
 
-/// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle: at the corner T_003, at the pole, at
-/// the corner T_030.
+/// Returns the three quadrilaterals into which lines from the barycentre to the mid-sides divide a triangle with Bezier points T_ijk. Order: at the
+/// corner T_003, at the corner T_300 (pole), at the corner T_030.
 const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range, in the coordinate v of the degenerate element, of the triangle that contains the piece
+  double from = 0, to = 1;     ///< range of v (coordinate of the degenerate element) of the part of the degenerate element that is converted to the
+                               ///< triangle around this piece
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 

@@ -24,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The measured error of the double layer by clusters is half of the tolerance set here.
+  // The tolerance of the clusters is halved for the double layer. The measured error of the double layer is half of this tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
@@ -226,7 +226,8 @@ void Layer::add_by_clusters(const Targets& targets, Net& u) {
   evaluations_.far += tree_->interactions();
 }
 
-/// Evaluates (2.19). On a lattice all panels are clustered, and targets have no reflections.
+/// Adds the far sums of the single layer by clusters. In a symmetric scene the sources are the nodes of the fundamental panels, and the sums at the
+/// reflections of the targets are added (2.19). On a lattice the sources are the nodes of all panels, and targets have no reflections.
 void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
   const auto& [fundamental, weight] = surface_.fundamental();
   const std::span<const surface::Reflection> images = lattice_.cell ? std::span<const surface::Reflection>() : surface_.reflections();
@@ -274,7 +275,8 @@ void Layer::take_constant_moments(int component) {
   take_moments_of([&](int, int i) { return i == component ? 1. : 0.; });
 }
 
-/// Evaluates sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k with the mean density m, so that a translation gives exactly 0.
+/// Evaluates sum_q (f - m)_j T_ijk n_k - (f0 - m)_j sum_q T_ijk n_k, with f the density, m its mean and f0 the constant that is subtracted from f at
+/// this target. The result is exactly 0 for a uniform density.
 void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   const Vec3 mean = mean_density();
   take_moments(mean);
@@ -302,7 +304,7 @@ const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pai
   return weights.data();
 }
 
-/// Computes the Bernstein moments of panel e by a rule, including the factor k.
+/// Computes the Bernstein moments of panel e by a rule, including the factor of the panel (1 - lambda in a double layer).
 void Layer::panel_moments(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const double* bezier = &surface_.bezier[surface_.panels[e].first_bezier];
   scratch_.resize(static_cast<std::size_t>(6) * table.packs());

@@ -16,11 +16,12 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Basis functions of some panels at their far nodes, and the row of the sums to which each function adds. The number of functions is padded to a
-/// multiple of `assembly_tile`. Padding functions, and functions of control points that are not requested, add to a spare row.
+/// Values of basis functions of some panels at the far nodes of the panels, for the sums over these nodes. Each function adds to one row of the sums,
+/// the row of its control point. The number of functions is padded to a multiple of `assembly_tile`. Padding functions, and functions of control
+/// points that are not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
-  std::vector<int> panels, index;  ///< the panels; for each panel of the surface, its index in this list, or -1
+  std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1
   std::vector<Real> values;
   std::vector<int> rows;
   std::vector<std::size_t> first_value, first_row;
@@ -179,8 +180,8 @@ class Layer::RowSums {
   std::vector<std::uint32_t> skip_;
 };
 
-/// Subtracts N_B(x_i) sum_C A_iC from the sums of a site: the term with f(x_i) in the double layer (2.2), integrated by the same rules as the term
-/// with f(x).
+/// Subtracts the term with the density f(x_i) at the site x_i from the double layer (2.2). With the sums A_iC of all control points C, this subtracts
+/// N_B(x_i) sum_C A_iC from the sum of control point B. The term is thereby integrated by the same quadrature rules as the term with f(x).
 template <class Real>
 void Layer::subtract_density_at_site(int site, Real* sums) const {
   double total[6] = {};
@@ -276,9 +277,11 @@ void Layer::assemble(std::span<const int> sites, const NearPoints& near, std::ve
   if (surface_.options.rule == "desingularised") subtract_identities(sites, near, entries);
 }
 
-/// Returns M of the rule `desingularised`: u_i = sum_q G f w - M f(x_i), f = f_n n0 + f_t,
+/// Returns the correction matrix M of the quadrature rule `desingularised` for the collocation site x_i: u_i = sum_q w G f - M f(x_i). With
+/// f(x_i) = f_n n0 + f_t, f_t tangential, M f(x_i) is the quadrature error of an integral that vanishes:
 ///   M f = sum_q w [G (f_n n + f_t (n0.n) + n0 (f_t.n)) - (n0.r) T f_t n].
-/// If the rule is exact, M = 0. M refers to the area to which the density refers.
+/// n0 is the normal at x_i, w and n are the weight and the normal at the node x_q, and r = x_q - x_i. If the density is a force per unstressed
+/// area, M is scaled to this area.
 Mat3 Layer::identities(int site) const {
   const auto normal_of = [&](const std::vector<double>& bezier) -> Vec3 {
     const auto [a1, a2] = surface_.self_field.tangents(site, surface_.panels, bezier);

@@ -14,9 +14,9 @@ struct Clearance {
   int pieces = 0;  ///< number of pieces (parts of elements) examined, a measure of the work
 };
 
-/// Returns the point of the surface nearest to the outline, or farthest outside it. No other point is nearer by more than 1e-8 of the outline's
-/// radius, or farther outside by more than 1e-3 of it. For each piece of the surface, a disc that osculates the outline gives a lower bound of the
-/// distance.
+/// Returns the point of the surface nearest to the outline, or farthest outside it. No other point is nearer by more than 1e-8 R, or farther outside
+/// by more than 1e-3 R, with R the radius of the outline. The search divides the surface into pieces. For each piece, a disc that osculates the
+/// outline gives a lower bound of the distance.
 Clearance clearance(const Patches& surface, const Outline& outline);
 
 }  // namespace tanktread::surface

@@ -12,7 +12,7 @@ namespace tanktread::surface {
 /// moves in the direction of x1: clockwise with x1 to the right and x3 up.
 struct Treading {
   double velocity = 0;   ///< mean tangential velocity V_T (6.5), along e2 x n
-  double frequency = 0;  ///< mean angular velocity omega (6.6) of the material points of the curve, radians/time
+  double frequency = 0;  ///< mean angular velocity omega (6.6) of the material points on this curve, radians/time
 };
 
 /// Returns the tank-treading of a surface whose centroid `centre` moves with velocity `of_centre`. Points of an elastic membrane are weighted by

@@ -15,7 +15,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Returns the integral of the density 1 + (g - 1)/(1 + x^4) from 0 to x, g = `grading`.
+/// Returns the number of elements between 0 and x up to a constant factor: the integral of the element density 1 + (g - 1)/(1 + x^4), g = `grading`.
 double count(double x, double grading) {
   const double r = std::numbers::sqrt2;
   const double bell =
@@ -36,8 +36,8 @@ std::vector<double> graded_knots(double length, int elements, double grading, do
   return knots;
 }
 
-/// Makes the densities of a wall periodic. `knots`: knots of the periodic splines. They divide the wall into elements, the last of which is cut in
-/// two by the seam.
+/// Sets up periodic splines for the densities on a wall. `knots`: knots of the periodic splines. They divide the period into elements. The ends of
+/// the wall cut the last element in two.
 void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots) {
   const RepeatingLine along = repeating(knots, {wall.start, wall.end});
   wall.sites = sites_of(along.open, around);
@@ -57,8 +57,8 @@ void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots
   wall.period = wall.end - wall.start;
 }
 
-/// Returns a wall without its control points, and the control points of the outline. `periodic`: knots of the periodic splines for densities, all
-/// of them between the first and the last of `knots`; empty if the wall is not periodic.
+/// Returns a wall with an empty control net, and the control points of the outline. `knots`: knots of the wall's surface along the wall. `periodic`:
+/// knots of the periodic splines for densities, which lie between the first and the last of `knots`; empty if the wall is not periodic.
 std::pair<TubeWall, std::vector<Vec2>> woven(const Outline& section, const std::vector<double>& knots, int azimuthal_elements,
                                              const std::vector<double>& periodic = {}) {
   Line along, around;
@@ -148,7 +148,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // the wall begins and ends at a quarter of a periodic element, one period apart
+  if (channel->repeats()) {  // the wall is one period long, and its ends cut an element of the periodic splines at a quarter
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);
@@ -164,7 +164,8 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    // If several sections are equally narrow, uses the smallest length, because elements are longer at the ends of a straight channel.
+    // If several knots have the narrowest section, uses the smallest of their element lengths, because the elements at the ends of a straight channel
+    // are longer.
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);
     narrowest = at.factor.minCoeff();
   }

@@ -35,37 +35,41 @@ Net Capsule::ambient(const Net& x) const {
 
 void Capsule::replicate(Net& net) { ranks_.replicate(net); }
 
-/// Sums the contributions of all ranks' elements. If the elements are fundamental, folds the sums onto the fundamental points first.
+/// Sums the contributions of all elements over all ranks. If only one element of each symmetry orbit contributes, first adds the sums at image points
+/// to the fundamental points.
 void Capsule::replicate_sums(Net& net) {
   if (folded_) surface::fold(parameters_.symmetry, net);
   replicate(net);
 }
 
-/// Gathers the result of an operator from all ranks: sums the contributions of the ranks if far sums are shared, and otherwise replicates owned rows.
+/// Gathers the result of an operator on all ranks. If the ranks shared the far sums (`shared`), adds up the results of all ranks. Otherwise copies
+/// each row from the rank that owns it.
 void Capsule::gather(bool shared, Net& net) {
   if (!shared) return replicate(net);
   Net* const one[] = {&net};
   ranks_.add(one);
 }
 
-/// Gathers a velocity at the targets from all ranks.
+/// Gathers the velocity at the points where velocities are evaluated (the targets) on all ranks. `shared`: see gather().
 void Capsule::gather_targets(bool shared, Net& net) {
   if (!projection_) return gather(shared, net);
   ranks_.add({net.data(), static_cast<std::size_t>(net.size())});
 }
 
-/// Returns dE/dx of all loads minus the virtual work of forces. Sets `sums` to the loads' surface integrals, summed over all ranks.
+/// Returns dE/dx of all loads minus the virtual work of the forces set by set_forces(), one row per control point; 0 for rigid bodies. Sets `sums` to
+/// the surface integrals of the loads, summed over all ranks.
 Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   Net work(x.rows(), 3);
   membrane_.load(x, own_elements_, work);
   sums = complete_work(x, work);
   for (const Net& of_forces : forces_)
     if (of_forces.size() > 0) work -= of_forces;
-  rigid_.clear(work);  // cleared because push_bodies sets the forces on rigid bodies
+  rigid_.clear(work);  // rows of rigid bodies are 0; push_bodies() applies the forces on rigid bodies instead
   return work;
 }
 
-/// Adds the work of the loads at x to `work`, a sum over rank-owned elements, and sums it over all ranks. Returns the loads' surface integrals.
+/// Adds the virtual work of the loads at x other than elasticity and bending to `work` (one row per control point). Then sums `work`, to which each
+/// rank has added its elements, over all ranks. Returns the surface integrals of the loads, also summed over all ranks.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);
@@ -121,8 +125,9 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-/// Returns the load at x, which is the shape of `e` or its image in the cell. If `other` is given, replaces it by M0^-1 times `other` (M0: mass
-/// matrix), in the same solve where possible, because six columns are divided among the ranks more evenly than three columns in each of two solves.
+/// Returns the load of the membranes at x. x is the shape of `e`, or on a lattice this shape with particles moved into the cell. If `other` is given,
+/// replaces it by M0^-1 times `other` (M0: mass matrix). Where possible, both systems are solved in one call, because the six columns of two
+/// right-hand sides are divided among the ranks more evenly than three columns.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;
@@ -230,7 +235,7 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
-  if (constrained) constrain(v, b, c);  // removes the small volume flux that interpolating the normal motion causes
+  if (constrained) constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
 
@@ -279,8 +284,9 @@ Net Capsule::double_layer_of(const Net& v) {
   return hv;
 }
 
-/// Returns v_inf - (1/mu) R^-1 A f of (4.2) plus, in a tube with eliminated wall unknowns, the response of the wall to the load f and, if given, to
-/// the velocity `moves` of the particle. Stores the response in `answer`, if given, unless a system for the velocity follows and changes it.
+/// Returns v_inf - (1/mu) R^-1 A f of (4.2), with R the collocation matrix and A the single layer. In a tube with eliminated wall unknowns, adds the
+/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given, unless a
+/// linear system for the velocity must still be solved, because its solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {
@@ -369,9 +375,10 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   return rows;
 }
 
-/// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. The projection P (2.8) removes the change of volume; if b and c are empty, the volume is free
-/// and P = 1. In a tube, B includes the response of the wall to v (schur), or the block system is solved. If `guess` is empty or there are rigid
-/// bodies, the iteration starts from rhs instead of `guess`.
+/// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. P is the projection (2.8) that removes changes of the volumes, given by the vectors b and c;
+/// if b and c are empty, the volumes are free and P = 1. In a tube, B either includes the response of the wall to v (option `schur`), or
+/// solve_blocks() solves for v and the wall tractions together. The iteration starts from `guess`; from rhs if `guess` is empty or there are rigid
+/// bodies.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
@@ -384,7 +391,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of the assembled rows of all ranks with v, at all targets
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of v and assembled rows, at all targets; each rank multiplies
+                                                                           // its rows
     Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
     for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();

@@ -74,10 +74,10 @@ struct CapsuleParameters {
 ///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
 /// R is the collocation matrix, M0 the mass matrix, E the energy of the membranes and V the volume of a particle. A and D are the single and the
-/// double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each particle has its own condition b.v =
-/// 0, and its own factor of P. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise P B P v = P (...) is solved by Belos.
-/// This is the block system of v and the multiplier of (2.8) after elimination of the multiplier. P removes the mode for which B becomes singular as
-/// lambda -> 0.
+/// double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each particle has its own condition
+/// b.v = 0, and P is the product of the projections of all particles. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise
+/// P B P v = P rhs is solved by Belos, with rhs the right-hand side of the equation above. This is the block system of v and the Lagrange multipliers
+/// of b.v = 0 after elimination of the multipliers. P removes the mode for which B becomes singular as lambda -> 0.
 ///
 /// The load M0^{-1} C v (3.10) of a viscous membrane or interface, with the fluid velocity v, is part of B. If loads are measured per current area,
 /// the mass matrix M of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                 (3.11)
@@ -88,9 +88,8 @@ struct CapsuleParameters {
 /// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The rows of all other control points are
 /// mirror images of these rows.
 ///
-/// On a lattice the layers include all images (Layer::repeat). Each particle is evaluated at its image whose mean lies in the cell around the origin.
-/// The ambient velocity at the particle's own position minus the ambient velocity at the image is added to its velocity. Frozen operators omit the
-/// images.
+/// On a lattice the layers include all images (Layer::repeat). Each particle is replaced by its image in the cell around the origin. The velocity of
+/// the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions. Frozen operators omit the images.
 ///
 /// In front of a plane wall the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
 ///
@@ -110,9 +109,9 @@ class Capsule : public Dynamics {
   /// changed. `guess`, if given, is the initial guess of the linear solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
 
-  /// Returns an evaluation of x that computes its quantities at their first use. `velocity`: velocity of the control points if known; otherwise no
-  /// rows. The linear system is solved only if a quantity is used that does not follow from the velocity. If the shape evaluated last is within
-  /// `distance` of x (in `norm`), its rigid motions and fluid velocities are used instead of solving.
+  /// Returns an evaluation of the shape x that computes each quantity when it is first used. `velocity`: velocity of the control points if known;
+  /// otherwise no rows. The linear system is solved only if a used quantity does not follow from the velocity. Even then no system is solved if the
+  /// shape evaluated last is within `distance` of x (in `norm`): its rigid motions and fluid velocities are used instead.
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
@@ -138,7 +137,8 @@ class Capsule : public Dynamics {
   Net symmetric(Net field) const override;
 
   /// Sets the virtual work of forces for all later calls, one row per control point. `contacts`: contact forces, which keep their directions and
-  /// material points. `fields`: loads of the fields on surfaces; their work is minus their contribution to dE/dx. An empty net removes the forces.
+  /// material points. `fields`: loads due to the fields on surfaces; this net is minus their contribution to dE/dx (4.2). An empty net removes the
+  /// forces.
   enum class Forces { contacts, fields };
   void set_forces(Forces of, Net work);
 
@@ -147,9 +147,9 @@ class Capsule : public Dynamics {
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes, linear in a displacement dx and in a change `work` of the virtual work of additional loads, about the shape of the last linearisation.
-  /// `rate`: change of the velocity, in some functions multiplied by B. `slip`: change of the difference between the fluid velocity and the velocity
-  /// of the control points; empty if no control points slide.
+  /// Changes due to a displacement dx and to a change `work` of the virtual work of additional loads. They are linear in dx and `work`, about the
+  /// shape of the last linearisation. `rate`: change of the velocity; rate_change() returns it multiplied by B. `slip`: change of the difference
+  /// between the fluid velocity and the velocity of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
@@ -208,7 +208,7 @@ class Capsule : public Dynamics {
   const surface::Geometry& geometry() const { return geometry_; }
   const Phases& layer_phases() const { return layer_.phases(); }  ///< run time of the parts of the single layer
   stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
-  /// Returns the net whose area the loads refer to.
+  /// Returns the net whose area defines the loads (force per area): for each particle, its rows of x or of the unstressed net.
   Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }
   void forget_recycled() const;  ///< discards the data of earlier solves that preconditioners `recycled` keep
   const Work& work() const { return work_; }
@@ -217,8 +217,8 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Net of the particles that was set in the tube last. `origin` and `origin_of_net`: x1 of the origin of the frame of a straight periodic wall, now
-  /// and when the net was set.
+  /// Net of the particles for which the tube was set up last. `origin`: x1 of the origin of the frame of a straight periodic wall at the present
+  /// time. `origin_of_net`: this x1 when `net` was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;
@@ -299,7 +299,8 @@ class Capsule : public Dynamics {
   Phases& phases_;
   std::vector<int> own_points_;
   std::vector<int> own_elements_;  // elements that contribute to the integrals for the rank-owned points
-  bool folded_ = false;            // true if own_elements_ are fundamental elements only; integrals are then folded onto fundamental points
+  bool folded_ = false;            // true if own_elements_ contain one element of each symmetry orbit; fold() then adds the integrals at image points
+                                   // to fundamental points
   surface::Geometry geometry_;
   membrane::MassMatrix mass_matrix_;
   membrane::Membrane membrane_;
@@ -323,7 +324,8 @@ class Capsule : public Dynamics {
   Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
   RigidParticles rigid_;
   std::optional<RigidTractions> tractions_;  // set if all particles are rigid and solved for by their tractions
-  std::optional<OneBodyInverses> alone_;  // inverses for isolated rigid bodies; set up at the first use
+  std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first
+                                          // use
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
@@ -332,7 +334,8 @@ class Capsule : public Dynamics {
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift gamma dt of the implicit system solved last
   Net flux_, flux_response_;            // b and c of the volume projection P (2.8) in the Jacobian; empty if the Jacobian has no P
-  std::vector<Mat3> gradients_;         // velocity gradients at the sites, at the last linearisation; only in a tube or if the flow is not affine
+  std::vector<Mat3> gradients_;         // velocity gradients of the ambient flow at the collocation sites, for the shape linearised last; only in a
+                                        // tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;
   std::shared_ptr<Evaluation> latest_;

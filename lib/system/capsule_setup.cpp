@@ -28,9 +28,9 @@ std::optional<VelocityProjection> chosen_projection(const spline::Space& space, 
   return VelocityProjection(space, unstressed, of.symmetry, of.solvers.direct, ranks);
 }
 
-/// Returns the mobility of each control point (velocity per force) at one wave number k, which lies between the wave numbers of the longest wave on
-/// the surface and of the shortest wave on the mesh. A sheet in a fluid has the mobility 1/(4 mu k) (velocity per force per area), reduced by the
-/// viscosity of the sheet.
+/// Returns the mobility of each control point (velocity per force) for waves of one wave number k. A sheet with the surface shear viscosity eta in a
+/// fluid has the mobility 1/(4 mu k + eta k^2) (velocity per force per area). k is the geometric mean of the wave number of the shortest wave on the
+/// mesh and 1/(2 R_C).
 Eigen::VectorXd mobilities(std::span<const Particle> particles, const Eigen::VectorXd& areas, double viscosity) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(areas.size());
   for (const Particle& one : particles) {

@@ -59,7 +59,7 @@ void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
   }
 }
 
-/// Adds coordinates for the tangential directions at a site that the parity of the fields permits.
+/// Adds a coordinate for each tangential direction at a site in which fields of this parity need not vanish.
 void ShapeCoordinates::add_along(int site, const Vec3& normal) {
   const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
   const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
@@ -92,7 +92,8 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   following_ = Eigen::Map<const Eigen::MatrixXd>(first.data(), n, shape_size());
 }
 
-/// Adds the translations of a drop, so that they are represented exactly, including their tangential parts.
+/// Makes the coordinates represent translations of a drop exactly: adds the tangential part of the displacement to each translation that the symmetry
+/// of the fields admits.
 void ShapeCoordinates::carry_whole(const spline::Block& block) {
   for (int c = 0; c < 3; ++c) {
     Net field = Net::Zero(sites_.rows(), 3);
@@ -141,7 +142,8 @@ Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the coordinates y, without the tangential motion that following meshes and translations of drops add to it.
+/// Returns the control values of the displacement with the coordinates y. Leaves out the tangential mesh motion that belongs to y: the motion of
+/// meshes that follow (4.26), and the tangential part of translations of drops.
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());

@@ -39,13 +39,13 @@ class VelocityProjection {
 
  private:
   surface::Symmetry symmetry_;
-  bool folded_ = false;  // true if the sites lie on fundamental elements only, so that sums must be folded onto fundamental points
+  bool folded_ = false;  // true if the sites lie on one element of each symmetry orbit; sums at image points are then added to fundamental points
   stokes::Sites sites_;
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // N_A and its derivatives, shape (sites, N); w_q N_A, shape (N, sites)
   membrane::SymmetricSolver mass_;
-  Eigen::SparseMatrix<double> fundamental_, images_;  // maps scalar sums to the fundamental rows; maps fundamental control values to all control
-                                                      // values
+  Eigen::SparseMatrix<double> fundamental_, images_;  // fundamental_: adds up sums at the control points to sums at the fundamental points. images_:
+                                                      // maps the fundamental values of a symmetric scalar to all control points
   membrane::DirectSolver scalar_mass_;
 };
 

@@ -170,8 +170,8 @@ void leave_poles(const Scene& scene, const Body& body, std::vector<spline::Mark>
   std::erase_if(marks, degenerate);
 }
 
-/// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with tolerances and limits multiplied by 2, 4, …
-/// up to 64.
+/// Refines all marked elements. If the mesh would exceed the allowed number of points, tries again with the tolerances and limits of the section
+/// Adaptation multiplied by 2, 4, … up to 64.
 Adapted refined(const Subject& of, const Findings& found) {
   const auto& [scene, body, block, state, x, films] = of;
   const int room = scene.adaptation.largest_number_of_points - body.space.n_points;
@@ -253,7 +253,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    // In a straight tube, x1 of the wall is measured from the centroid of the particle, so the particle is moved accordingly.
+    // The coordinate x1 of the wall of a straight tube is measured from the centroid of the particle, so the particle is moved to centroid x1 = 0.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = scene;

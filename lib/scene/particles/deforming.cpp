@@ -148,8 +148,8 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the flow due to a tube or
-                                                                      // solids depends on it
+    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the response of a tube or
+                                                                      // solids is computed from it
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -217,8 +217,8 @@ class Deforming : public ParticleSystem {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
-  /// Returns the stresslet of the two forces of a contact if the forces act at the centroids of the particles. The stresslet of each particle refers
-  /// to the centroid of the particle and does not contain this part.
+  /// Returns the stresslet of two opposite contact forces that act at the centroids of the two particles. It is added because the stresslet of each
+  /// particle is computed about the centroid of this particle.
   Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
     const auto centroid = [&](std::size_t k) {
       const Member& member = members_[contact.particle[k]];
@@ -249,7 +249,7 @@ class Deforming : public ParticleSystem {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
-  /// Returns the data of particle p for a row of the results, except tank-treading. Adds the columns of its fields.
+  /// Returns the data of particle p for a row of the results, except tank-treading. Adds the columns of the particle's surface fields to `to`.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
     if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));
@@ -281,7 +281,8 @@ class Deforming : public ParticleSystem {
         rows[p]->velocity = found.row(p).head<3>().transpose(), rows[p]->treading = {found(p, 3), found(p, 4)};
   }
 
-  /// Advances the phase of the followed material point of particle p and sets it in the row.
+  /// Advances the phase angle of particle p, the angle of the material point Member::followed about the centroid, over the last step. Sets it in the
+  /// row.
   void advance_phase(std::size_t p, const Net& x, double step, ParticleRow& now) {
     Member& member = members_[p];
     const Body& body = *member.body;
@@ -359,7 +360,7 @@ class Deforming : public ParticleSystem {
   Phases& phases_;
   std::vector<Member> members_;
   std::optional<coupling::SolidScene> solids_;
-  std::unique_ptr<Body> all_;  // body that stands for all particles (stacked nets) if there are several, or null
+  std::unique_ptr<Body> all_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
   motion::State pictured_;  // state of the latest snapshot, to which its fields refer

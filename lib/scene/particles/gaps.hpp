@@ -34,17 +34,17 @@ struct Approach {
 /// Returns the contact at the local minimum of the distance that is nearest to the two sites of `contact`, with its normal and gap.
 Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact);
 
-/// Returns, for every pair of particles that are closer than `reach` at x, the points of smallest distance and this gap, 0 if they touch. On a
-/// lattice, each image within reach counts as a pair. The ranks share the pairs; the result does not depend on their number. Collective.
+/// Returns, for every pair of particles whose gap at x is below `reach`, the points of smallest distance and the gap. The gap is 0 if the particles
+/// touch. On a lattice, each image within reach counts as a pair. The ranks share the pairs; the result does not depend on their number. Collective.
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell);
 
 /// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the width of the film at each element (of Body::nested()) of particle p at x. Widths that are not computed, because the elements of the
-/// first mesh resolve such wide films, are infinite. `cell`: cell of the lattice, whose images bound films too. `wall`: wall of the tube around the
-/// particle, in whose coordinates x is given, or null.
+/// Returns the width of the film at each element (of Body::nested()) of particle p at x. Widths above a limit are not computed and are infinite; all
+/// elements of the present mesh resolve films of this width. `cell`: cell of the lattice; the images of particles bound films, too. `wall`: wall of
+/// the tube around the particle, or null; x is given in its coordinates.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

@@ -38,7 +38,7 @@ class Warnings {
  public:
   /// Data with which a resumed run continues.
   struct Memory {
-    double waves = 0;            ///< number of e-folds by which the shortest waves can have grown
+    double waves = 0;            ///< estimated growth of unresolved waves on the compressed membrane so far: logarithm of their amplitude ratio
     int limited = 0;             ///< number of consecutive latest steps whose size was limited by stability
     std::vector<Warning> said;  ///< warnings shown so far
   };
@@ -67,8 +67,8 @@ class Warnings {
   Memory memory_;
 };
 
-/// Returns the stiffness rho of an elastic membrane on elements of size h, 1/time: the larger of (4.5), with the mean of both viscosities, and the
-/// rate of the shortest bending waves.
+/// Returns the stiffness rho of an elastic membrane on elements of size h, 1/time. This is the larger of two rates of the shortest waves on the mesh:
+/// the rate of in-plane deformation (4.5), and the rate of bending. The viscosity is the mean of the inner and the outer viscosity.
 double stiffness(const Scene& scene, double h);
 
 /// Computes the quality of the mesh in the shape x. Throws RunFailure on all ranks if an element is folded or a control point is NaN. The ranks share

@@ -75,8 +75,9 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
 /// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves by v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
-/// Computes D and inclination in the plane of the flow, and extents. If the flow is not planar, the plane contains the longest and the shortest
-/// semi-axis of inertia. If one of these two equals the middle semi-axis, the inclination is NaN. Ranks share the elements. Collective.
+/// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, the
+/// plane contains the longest and the shortest axis of inertia. If the middle axis is as long as the longest or the shortest axis, this plane is not
+/// determined, and the inclination is NaN. Ranks share the elements. Collective.
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
@@ -93,8 +94,8 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest |v.n| at these collocation sites, divided by rate x R_C: zero if the shape is steady. In a tube, v is relative to the axial
-/// velocity of the centroid, and the divisor is the mean velocity.
+/// Returns the largest |v.n| at these collocation sites divided by Scene::rate() R_C. It is zero if the shape is steady. In a tube, v is relative to
+/// the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

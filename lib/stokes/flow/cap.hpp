@@ -35,7 +35,7 @@ class Cap {
   /// int (1 / 8 pi) T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
-  /// Returns the flow rate through the cap due to c itself: int c_1 dS.
+  /// Returns the flow rate along x1 through the cap of the field c (2.13): int c_1 dS over the cap.
   double own_flow() const;
 
  private:
@@ -46,7 +46,7 @@ class Cap {
   const Nodes& nodes_for(double distance) const;
 
   surface::Outline outline_;
-  double place_, reach_ = 0;                     ///< `reach_`: half the length of the longest curve segment of the outline
+  double place_, reach_ = 0;                     ///< x1 of the cap; half the length of the longest curve segment of the outline
   std::vector<std::pair<double, Nodes>> rules_;  ///< for each rule, the smallest distance from the plane at which it is used, and its nodes
 };
 

@@ -36,8 +36,8 @@ class ImageSum {
   /// the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
-  /// Returns the sum over a few nodes, starting with node `first`, at one target. The caller subtracts this sum if a better rule replaces the nodes.
-  /// `carried`: source strengths of these nodes.
+  /// Returns the part of the sum that belongs to the nodes first, first + 1, ... of `carried`, at one target. The caller subtracts this part if
+  /// near-singular quadrature replaces these nodes. `carried`: source strengths of these nodes.
   Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum

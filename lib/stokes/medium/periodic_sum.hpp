@@ -13,10 +13,10 @@
 
 namespace tanktread::stokes {
 
-/// Splits the kernel of a lattice into near images, for the far sum, and a smooth rest (PeriodicKernel). Each source and each target is first moved
-/// into the cell. The rest is interpolated at both sources and targets in lattice coordinates, as between clusters (TreeSum). In one direction let y
-/// be twice the distance of the nearest image in the rest divided by the length of the cell. With p nodes in this direction the error is of the order
-/// rho^(-p), rho = y + sqrt(1 + y^2), cf. (2.9).
+/// Splits the kernel of a lattice into near images, which the far sum contains, and a smooth rest, the sum over all other images (PeriodicKernel).
+/// Each source and each target is first moved into the cell. The rest is interpolated at both sources and targets in lattice coordinates, as between
+/// clusters (TreeSum). Let y be the distance to the nearest image in the rest divided by half the length of the cell in one direction. With p nodes
+/// in this direction the error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9).
 class PeriodicSum {
  public:
   /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all
@@ -29,8 +29,8 @@ class PeriodicSum {
   /// Returns whether a PeriodicSum constructed for `extent` would be equal to this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
-  /// Returns the position moved into the cell. The cell is far from the origin, because near the origin kernels would treat close points as
-  /// identical.
+  /// Returns the position moved into the cell. The cell is displaced from the origin. Kernels take a node and a target for coincident if their
+  /// distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
   /// Adds the smooth rest (all images that are not near) at targets in the cell: u[3 k + c]. Sources are positions in the cell with 3 components of a
@@ -55,7 +55,8 @@ class PeriodicSum {
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // for each direction, index of the difference of nodes a and b, at n a + b
+  std::array<std::vector<int>, 3> difference_;  // for each direction, at n a + b (n: number of nodes): index of the distance between nodes a and b in
+                                                // the list of all distances between two nodes
   std::array<std::size_t, 3> differences_;      // number of differences in each direction
   std::vector<double> table_;  // kernel of the smooth rest: components_ values for the node difference (i, j, k), from components_ ((n_1 i + j) n_2 +
                                // k) on

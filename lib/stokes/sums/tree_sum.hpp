@@ -22,8 +22,9 @@ class TreeSum {
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Sets the positions of the nodes x, y, z, in groups starts[g] .. starts[g + 1] - 1 that clusters do not split, and of all n targets. Row i + n k
-  /// of the sums belongs to the image of target i in reflections[k - 1]. The clusters of image targets are the images of clusters.
+  /// Sets the positions x, y, z of the nodes and of all n targets. Clusters do not split a group of nodes starts[g] .. starts[g + 1] - 1. The sums
+  /// have n rows for the targets, then n rows for the images of the targets in each of the `reflections`: row i + n k belongs to the image of target
+  /// i in reflections[k - 1]. The clusters of image targets are the images of the clusters of targets.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
@@ -34,7 +35,8 @@ class TreeSum {
   /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.
   void want(std::span<const int> rows);
 
-  /// Computes the selected rows of the sum for these source strengths of the nodes; values[Kernel::out i + c].
+  /// Computes the rows of the sum that want() has selected, from the source strengths `carried` of the nodes, one array per component. Component c of
+  /// row i is values[Kernel::out i + c].
   template <class Kernel>
   void sum(const std::array<const double*, 6>& carried, double* values) {
     in_ = Kernel::in, out_ = Kernel::out, kernel_ = precision_ == Precision::single ? Kernel::single : Kernel::sum;
@@ -84,10 +86,10 @@ class TreeSum {
   int n_trees_ = 1;                             // number of target trees: one, and one per reflection
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
-  std::vector<double> target_at_, node_at_;     // positions of targets and of the Chebyshev nodes of target clusters, in blocks of far_block
+  std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
-  std::vector<char> row_, wanted_, has_nodes_;  // flags: rows needed; target clusters with any needed row; target clusters with values at
-                                                // Chebyshev nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: sum to be computed. wanted_: target cluster with a target whose sum is to be computed.
+                                                // has_nodes_: target cluster with values at its Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;

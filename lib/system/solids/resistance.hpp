@@ -24,9 +24,10 @@ namespace tanktread::coupling {
 
 /// The first-kind equation of a fixed rigid surface, collocated:  (1/mu) A f = u on the surface, f the force per area on the fluid   (2.4)
 ///
-/// A n = 0, so that f is determined only up to a multiple of n (a constant pressure inside), and u must have zero flux. Both are handled explicitly:
-/// with b_A = int N_A n dG and c = M^-1 b the operator that is solved is R^-1 A + s c b^T / (b.c). It is regular, gives the f without net normal
-/// force, int f.n dG = 0, and absorbs any flux of the discrete u. (2.10)
+/// A is the single layer; its null vector is the normal n. f is therefore determined only up to a multiple of n (a constant pressure inside), and u
+/// must have zero flux. With the collocation matrix R, the mass matrix M, the basis functions N_A, b_A = int N_A n dG, c = M^-1 b and a scale s, the
+/// operator that is solved is R^-1 A + s c b^T / (b.c)   (2.10). It is regular, and gives the f with int f.n dG = 0. A flux of the interpolated u
+/// changes only the multiple of c.
 ///
 /// Near a plane wall the contribution of the images to A is assembled at each position (Layer::assemble_images), and the operator is factored there,
 /// because GMRES alone does not converge for thin films.
@@ -65,15 +66,15 @@ class Resistance {
   /// Returns the pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 
-  /// Returns the correction of pressure_drop(f) if the flow is a duct flow (2.41). The correction has two parts: the interpolation error of v_inf,
-  /// and `work`, the residual work of f for the velocity v_inf on the surface.
+  /// Returns the correction (2.41) of pressure_drop(f) for collocation errors, if the flow is a duct flow. The correction contains the interpolation
+  /// error of v_inf and `work`. `work`: residual work (2.11) of f for the velocity v_inf on the surface.
   double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0);
 
-  /// Returns int z.(u - (1/mu) A f) dG for each density z: the weighted residual velocity of a discrete f, at Gauss points away from the collocation
-  /// sites (2.11). By the reciprocal theorem int z_exact.f is too small by this amount, up to the product of the errors of f and z. If z is the
-  /// density of a unit translation (rotation), the force (torque) of f is too small by this amount. The remaining error is the error of the fitted
-  /// surface. In a channel the residual on the wall is included (2.42). `u`: the exact velocity at points of `surface`, one row each, not its
-  /// interpolation.
+  /// Returns the correction of (2.11) for a density f that is collocated for the velocity u: int z.(u - (1/mu) A f) dG for each density z, by Gauss
+  /// points between the collocation sites. By the reciprocal theorem, int z_exact.f is smaller than its exact value by this integral, up to the
+  /// product of the errors of f and z. Example: for the density z of a unit translation (rotation), the integral is the error of the force (torque)
+  /// of f. The error of the fitted surface is not corrected. In a channel the residual on the wall is included (2.42). `u`: the exact velocity at
+  /// points of `surface`, one row each, not its interpolation.
   Eigen::VectorXd residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z);
 
   Vec3 force(const Net& f) const;                          ///< int f dG

@@ -16,10 +16,11 @@
 
 namespace tanktread::coupling {
 
-/// Collocation correction M^-1 int N_A u dG - R^-1 u, projected minus collocated, of the velocity u that the layers of a body induce on the body
-/// itself, for unit viscosity. A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4, and
-/// the velocity differs on the two sides of the surface. Without this correction a sphere rotated by a torque therefore rotates too slowly by a
-/// relative 0.035/n^4, and its stresslet in a strain has a similar error.
+/// Correction of the collocation error of the velocity u that the layers of a body induce on the body itself, for unit viscosity: control values of u
+/// by projection minus control values by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R: collocation matrix). A spline surface of n
+/// elements per side is farther out at its collocation sites than between them by about 1/n^4, and the velocity differs on the two sides of the
+/// surface. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4. Its stresslet
+/// in a straining flow has a similar error.
 struct OwnLacking {
   std::array<Net, 6> loads;  ///< corrections for u = A f (single layer) with the loads f = e_k and e_k x r, k = 0, 1, 2; r: position from
                              ///< the centre of volume
@@ -45,8 +46,8 @@ struct OwnLacking {
 /// Nets are stacked nets of all particles. A body's rows of a net x stand for the position of the rigid body that fits these rows best.
 class RigidParticles {
  public:
-  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid. `solved_here`: true if the bodies are
-  /// solved for by (2.23), false if by their tractions.
+  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid. `solved_here`: true if the unknown of
+  /// the bodies is the density w of (2.23), false if RigidTractions solves for their tractions.
   RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature, bool solved_here);
 
   bool empty() const { return bodies_.empty(); }
@@ -63,15 +64,18 @@ class RigidParticles {
   void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
                                              ///< body's load f
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w; adds the collocation correction of R^-1 D w; adds <w> (2.23) if
-                                              ///< force and torque are given
-  Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> (2.23) of bodies with prescribed motion; 0 in other rows
+  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w; adds the collocation correction (OwnLacking) of the double
+                                              ///< layer of w; adds <w> (2.23) if force and torque are given, otherwise the collocation correction of
+                                              ///< the load completing_load()
+  Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
+                                             ///< in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
   /// On a lattice, the system is solved with each body replaced by its image in the cell. `enter` sets the velocity differences between bodies and
   /// images: shifts[p] is the position of particle p minus the position of its image, and `gradient` is the velocity gradient of the flow. `carry`
-  /// moves particle p, if it is a body, from its image back by `along`, and adds `faster` to its velocity.
+  /// moves particle p, if it is a body, from its image back by `along`, and adds `faster` to its velocity: the velocity of the flow at the body minus
+  /// the velocity at its image.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -94,8 +98,8 @@ class RigidParticles {
   /// Returns the collocation correction (OwnLacking) of the velocity that a unit load k on the body causes on the body itself, in the axes at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns the coefficients of component k of <w> (velocity, then angular velocity) as a linear function of the body's rows of w, row after row.
-  /// Valid for the body in its position at rest.
+  /// Returns the coefficients with which component k of <w> (velocity, then angular velocity) is a linear function of the body's rows of w, three
+  /// coefficients per row. Valid for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -109,7 +113,7 @@ class RigidParticles {
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // column k: force and torque of unit motion k if it is taken as a load
+    Eigen::Matrix<double, 6, 6> inertia;  // column k: force and torque of a load that equals the velocity field of unit motion k
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;
@@ -120,11 +124,12 @@ class RigidParticles {
     Vec3 force, torque;
 
     Rigid given() const;
-    RigidMotion mean(const Net& w) const;      // rigid motion <w> nearest to w (2.23); `w`: net of all particles
+    RigidMotion mean(const Net& w) const;      // rigid motion <w> that fits w best on the body (least squares over its surface) (2.23); `w`: net of
+                                               // all particles
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this integral and moment over the surface
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
-    RigidMotion load() const;                                           // coefficients a and b of the load -df = a + b x r (2.23) on the
-                                                                        // fluid
+    RigidMotion load() const;                                           // coefficients a and b of the force density a + b x r on the fluid, which is
+                                                                        // -df in (2.23)
     Net lacking_of(const RigidMotion& load) const;                      // collocation correction (OwnLacking) of R^-1 A f for f = a + b x r
     Net lacking_of(const Net& w) const;                                 // collocation correction (OwnLacking) of R^-1 H w; `w`: net of all
                                                                         // particles

@@ -30,12 +30,14 @@ namespace tanktread::coupling {
 ///
 ///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
 ///
-/// where either the motion or the force and torque of each body is given. The operator is assembled at every position, made regular by one flux
-/// condition per body as in (2.10), and factored, so that films cost no iterations. f is a sum of the densities z_k of unit motions and the density
-/// due to the ambient flow. By the reciprocal theorem (2.11) the collocation error of a force or torque is corrected by adding int z_k.(v - (1/mu) A
-/// f) dG over all bodies. The error of a stresslet is corrected in the same way with the densities of unit strains of its body, except in a tube. The
-/// remaining errors are products of two density errors, whereas errors of (2.23) are linear in the error of one density. The matrix is dense, which
-/// limits the number of control points to a few thousand.
+/// where either the motion U_p, Omega_p or the force F_p and torque T_p of each body is given. A_pq is the single layer of body q at body p. The
+/// operator is assembled at every position, made regular by one flux condition per body as in (2.10), and factored, so that films cost no iterations.
+/// f is a sum of the densities z_k that unit motions of the bodies require, and the density that the ambient flow requires.
+///
+/// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
+/// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
+/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. In (2.23) they are linear in the error of one
+/// density. The matrix is dense, which limits the number of control points to a few thousand.
 ///
 /// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu
 /// times the response of the wall and the pressure drop is subtracted from A. These additions are smooth. Each density is therefore found by a few
@@ -67,8 +69,8 @@ class RigidTractions {
 
   const std::vector<Body>& bodies() const { return bodies_; }
 
-  /// Returns int f r dG of a body for the latest solve. Its symmetric part, except for the trace, is corrected for the collocation error, which takes
-  /// one more solve per unit strain (five). In a tube it is not corrected. Collective.
+  /// Returns int f r dG of a body for the latest solve. Its symmetric traceless part is corrected for the collocation error. The correction takes
+  /// five additional solves, one for each unit strain. In a tube no part is corrected. Collective.
   Mat3 moment(std::size_t p);
 
   const Net& density() const { return density_; }  ///< control values of f
@@ -109,7 +111,8 @@ class RigidTractions {
   Eigen::MatrixXd alone_;  // system matrix without the response of the tube; kept only in a tube
   std::optional<DenseFactors> factors_;  // LU factors of `alone_`
   Net at_;                               // positions of the sites in the latest call of `solve`
-  Eigen::VectorXd left_;                 // residual work (2.11) of the density of this call
+  Eigen::VectorXd left_;                 // int N_A (v - v_inf - (1/mu) A f) dG, the residual of (2.40) with the density f of this call, from which
+                                         // (2.11) computes corrections
   std::vector<Vec3> centres_;
   std::vector<Body> bodies_;
   Net density_;

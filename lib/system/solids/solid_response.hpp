@@ -27,13 +27,14 @@ Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlo
 /// Returns the integral (2.49) over the cell of the velocity of a flow of the solids.
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 
-/// Velocity that solids add to the ambient flow v_inf and to the layers of the particles:
+/// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
 ///
 ///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
 ///
-/// where V is their velocity. f and U are the solution of (2.46), where F makes the forces on the fluid balance the pressure gradient g of a cell of
-/// volume |C|: F = |C| g + int df dG. The layers of the particles include all images. `empty` is the part of the solution without particles, and
-/// `respond` the part that is linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
+/// V is the prescribed velocity of the solids; df and v are load and velocity of the particles. f and U are the solution of (2.46) for the force
+/// F = |C| g + int df dG, where |C| is the volume of the cell and g the mean pressure gradient. With this F the forces on the fluid of one cell
+/// balance g. The layers of the particles include all images. `empty` is the part of the solution without particles, and `respond` the part that is
+/// linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
 class SolidResponse {
  public:
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
@@ -61,9 +62,10 @@ class SolidResponse {
   /// Computes rows of the velocity u at any points in the fluid. Not collective.
   void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
 
-  /// Returns the integral over the cell of the velocity that is caused by a flow of the solids and by the load f and the velocity v of the particles.
-  /// With three periods it is the volume times U. Beside a single plate it is not defined, and zero is returned. Between two plates it is taken along
-  /// them. By the reciprocal theorem, with phi = z (D - z)/2 and the stress sigma_i of the flow phi e_i/mu that a unit pressure gradient drives,
+  /// Returns the integral over the cell of the velocity u that a flow of the solids, the load f and the velocity v of the particles cause. With three
+  /// periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates at the
+  /// distance D it has components along the plates only, and follows from the reciprocal theorem. With z the distance from one plate and
+  /// phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow phi e_i/mu, which has the stress sigma_i:
   ///
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) - int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);

@@ -39,7 +39,8 @@ struct Rod {
 /// collective.
 class Solids {
  public:
-  /// A part of the solids with its own null vector, for example one plate. `velocity`: its prescribed velocity, tangential to its surface.
+  /// A connected part of the solids, for example one plate. The density n on this part, and 0 on the other parts, is a null vector of the single
+  /// layer. `velocity`: its prescribed velocity, tangential to its surface.
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
@@ -58,7 +59,8 @@ class Solids {
     Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
   };
 
-  /// Makes velocity_at accurate at these points, which may be far from a single plate. Must be called before velocity_at and `layer`. Collective.
+  /// Extends the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that it contains the points x. Must be called
+  /// before `velocity_at` and `layer`. Collective.
   void reach(const Net& x);
 
   /// Returns whether points are outside of all cylinders.
@@ -89,7 +91,8 @@ class Solids {
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
-  const std::array<Vec3, 2>& across() const { return reached_; }  ///< lowest and highest coordinates of solids and targets, in the axes of the cell
+  const std::array<Vec3, 2>& across() const { return reached_; }  ///< range of coordinates, in the axes of the cell, that contains the solids and,
+                                                                  ///< in directions without a period, the points passed to reach()
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
@@ -113,8 +116,10 @@ class Solids {
   Net flux_;                           // int N_A n dG
   std::vector<Rod> rods_;
   std::optional<PlateFactors> plates_;  // set if all solids are plates
-  DenseFactors factors_;                // LU factors of the operator; if all solids are plates, of its block for uniform densities
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of layers replaced by reach()
+  DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
+                                        // each plate
+  stokes::Evaluations evaluations_;     // kernel evaluations so far, except those of the present layer: the assembly, and layers that reach() has
+                                        // replaced
 };
 
 }  // namespace tanktread::coupling

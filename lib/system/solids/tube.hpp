@@ -40,9 +40,9 @@ struct TubeParameters {
 ///   pressure  Q dp = int_C [f.v_inf - (1 - lambda) f_inf.v] dG                                                           (2.7)
 ///   response  u = -(1/mu) G_W f^D + dp c                                                                at the particle  (2.5)
 ///
-/// G are single layers divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is the disturbance of the traction on the wall,
-/// and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the duct with any mean velocity, even if the
-/// ambient flow of the scene is another flow. Q is the flow rate of v_inf.
+/// G_W and G_C are the single layers of the wall and of the particle divided by 8 pi, and c is 1/mu times the integral over the inlet (2.13). f^D is
+/// the disturbance of the traction on the wall, and dp is the disturbance of the pressure drop between the ends. v_inf in (2.7) is the flow of the
+/// duct with any mean velocity, even if the ambient flow of the scene is another flow. f_inf is its traction on C, and Q its flow rate.
 ///
 /// Several particles are treated as one surface C. A straight wall is centred on the particle: it is fixed in a frame in which x1 is measured from
 /// the particle's centroid. Operators that depend only on the wall are therefore assembled and factored once. Points of the particle are in the
@@ -117,24 +117,24 @@ class Tube {
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
-  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow with this amplitude. `work`:
-  /// residual work of the density f for the velocity v_inf on the surface. In a channel, the interpolation error of v_inf is included; `at_places`:
-  /// v_inf at the points of `between`.
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. Requires that the ambient flow is a duct flow; `amplitude`: its
+  /// amplitude. `work`: residual work (2.11) of the density f for the velocity v_inf on the particle. In a channel, adds the interpolation error of
+  /// v_inf at the Gauss points `between`, at which v_inf is `at_places`.
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
 
-  /// Independent checks: errors of a response in conditions (2.14) that it satisfies exactly if discretisation errors vanish.
+  /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< axial force balance: section area times dp, minus the axial forces on wall and particle; divided by area x pressure
-                              ///< gradient x radius of the empty duct
+    double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle. It is
+                              ///< divided by the same area times pressure gradient times radius of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop that would make `flux` zero; pressure drop that would make `force` zero
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 
-  /// Residual of the response to a load f: int N_A u dG of the velocity on the wall between its collocation points, and the flow rate through the
-  /// inlet. Both vanish for the exact response.
+  /// Discretisation error of the response to a load f. `velocity`: int N_A u dG over the wall, with u the velocity at Gauss points between the
+  /// collocation points. `flow`: flow rate of the disturbance through the inlet. Both vanish for the exact response.
   struct Leak {
     Net velocity;
     double flow = 0;
@@ -145,8 +145,8 @@ class Tube {
   /// `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
-  /// Returns the flow rate if the particle causes this additional pressure drop: `amplitude` times Q, or less if the pressure drop of the duct is
-  /// prescribed. `amplitude`: current factor of the duct flow.
+  /// Returns the flow rate of the duct flow, `amplitude` (its current factor) times Q. If the pressure drop of the duct flow is prescribed, returns the
+  /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
   double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - slowed(pressure_drop)); }
 
   /// Returns the smallest distance between the particle and the wall; negative if they intersect.
@@ -181,10 +181,11 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate and in the axial force; set by weigh_flow(), like the members
-                                      // below
-  Net flow_of_wall_;  // weights of a velocity u on the wall: the traction that cancels u causes the flow rate weights.u through the inlet
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // flow rate of mu c (2.5) through the inlet; flow rate per unit pressure drop, with the wall
+  Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
+                                      // set by weigh_flow(), like the members below
+  Net flow_of_wall_;  // weights for a velocity u on the wall; weights.u is the flow rate through the inlet of the traction that cancels u
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
+                                                // pressure drop of c and of the wall traction that it causes
 };
 
 }  // namespace tanktread::coupling

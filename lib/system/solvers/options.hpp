@@ -30,8 +30,8 @@ struct InterfaceOptions {
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
-  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged; if neither list nor solver
-                                                    ///< is set, the list of SolverOptions
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged. If this and `solver` are not set, the
+                                                    ///< parameter list of SolverOptions is used
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
   int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
