@@ -38,7 +38,7 @@ namespace tanktread {
 
 namespace {
 
-enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes in addition to `stopped`, 4
+enum Exit { done = 0, missed = 1, mistake = 2, failed = 3 };  // exit codes; the exit code `stopped` = 4 is in runs.hpp
 
 struct Arguments {
   std::vector<std::string> decks, settings, accuracy;
@@ -158,15 +158,15 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
   before.declare(scene);
   auto old_values = before.values();
   auto new_values = now.values();
-  new_values.insert(old_values.begin(), old_values.end());  // adds keys that are no longer set
+  new_values.insert(old_values.begin(), old_values.end());  // adds the keys that only the stored deck has
   for (const auto& [path, value] : new_values)
     if (old_values[path] != value && !may_change_on_resume(path))
       throw UserError(path + " cannot change when a run continues: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names: the copy that a resumed run has kept, or else relative to the working directory, or
-/// else relative to the directory of a deck. Returns the name if there is none.
+/// Returns the path of a file or directory that a deck names. This is the first path that exists of: the copy `kept` in the directory of a resumed
+/// run, the path relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -236,7 +236,8 @@ RunRequest run_request(const Arguments& arguments, const std::string& deck, cons
   return request;
 }
 
-/// Runs the deck on finer and finer levels until its requests are met, or with `--check` prints the prediction. Returns the exit code.
+/// Runs the deck on finer and finer levels until the errors requested by the section Accuracy are reached. With `--check`, only prints the predicted
+/// errors and levels. Returns the exit code.
 int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, const Registry& registry, bool speaks) {
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
@@ -359,7 +360,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     const int code = run(arguments, registry, speaks);
     const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.rejections ||
                         arguments.schema ||
-                        !arguments.new_deck.empty();  // a run is not listed, because a run writes its output to files
+                        !arguments.new_deck.empty();  // true if the result is text on standard output. The results of a run are files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

@@ -35,9 +35,10 @@ double expected_error(const Level& level);
 /// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns level k with the tolerances of time and quadrature adjusted to their share in the error. `time` and `quadrature`: errors due to time
-/// integration and to quadrature at level 2, divided by the whole error there; 0.25 leaves the tolerances as they are. A tolerance is loosened by up
-/// to two levels as long as its error is at most a fourth of the expected one, and otherwise tightened by up to two levels.
+/// Returns mesh level k with levels of time integration and quadrature that fit the measured errors. `time` and `quadrature`: error due to time
+/// integration and error due to quadrature at level 2, each divided by the whole error at level 2. For each of the two, chooses the loosest level, at
+/// most two levels from k, at which its error is at most a quarter of the expected error of level k. If there is none, chooses the level k + 2. If k
+/// = 2 and the value is 0.25, the level is k.
 Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:

@@ -9,7 +9,8 @@
 
 namespace tanktread {
 
-/// Text for a choice of the deck: `here` as this deck makes it, `any` in general, for the table of all rejected combinations.
+/// Two texts for one choice in a deck. `here`: the choice of the current deck, for messages. `any`: the choice in general terms, for the table of all
+/// rejected combinations.
 struct Chosen {
   Chosen(const char* always) : here(always), any(always) {}
   Chosen(std::string always) : here(std::move(always)), any(here) {}
@@ -18,14 +19,15 @@ struct Chosen {
   std::string here, any;
 };
 
-/// Collects combinations of choices that contradict each other. The classes that know the reasons add them.
+/// Collects combinations of choices that contradict each other. The functions named reject...() add combinations with their reasons.
 class Rejections {
  public:
   struct Row {
     std::string one, other, why;
   };
 
-  /// `every`: if true, collects the combinations of all decks as rows of a table; otherwise, those that this deck makes as sentences.
+  /// `every`: if true, collects all rejected combinations that any deck could contain, as rows of a table. If false, collects one sentence for each
+  /// rejected combination that the current deck contains.
   explicit Rejections(bool every = false) : every_(every) {}
 
   /// Adds a combination if both choices are made. `why`: reason, appended to the sentence.

@@ -59,7 +59,8 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Returns whether the expectation has a time `at` that is not after the end of the run. If so, it does not depend on the final time.
+  /// Returns whether the expectation is for a time `at` that is not later than Time/final time. A change of the final time does not affect such an
+  /// expectation.
   bool before_end(const Teuchos::ParameterList& expectation) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

@@ -30,7 +30,7 @@ class WallRepulsion : public Load {
   void add_tangent(const Net& dx, Net& change) const override;
   // Returns true for images that keep the axis x1. The caller checks the symmetry of the wall.
   bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no condition: free motions in a tube are along its axis
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no conditions, as a tube allows only axial free motions
   bool depends_on_labels() const override { return false; }
 
  private:

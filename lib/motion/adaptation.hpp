@@ -51,10 +51,11 @@ struct AdaptationOptions {
   AdaptationOptions coarser(double factor) const;
 };
 
-/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). L_a is the length of the element along the direction a, L_b
-/// its length along the other direction, and phi_a the variation of a quantity along a:
+/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). An element is refined along a direction a under the
+/// following condition, in which L_a is its length along a, L_b its length along the other direction, and phi_a the variation of a quantity phi along
+/// a. The minimum is over all quantities whose reference variation phi_ref is set. L_min, L_ref, kappa and D_ref are members of AdaptationOptions.
 ///
-///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa over the quantities in use}  or  L_a / L_b > D_ref )
+///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Returns the elements and directions in which an element may become twice as long: it then stays below `coarsening margin` times every limit of
@@ -69,8 +70,9 @@ void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vec
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                 std::vector<spline::Merge>& merges);
 
-/// Return the marks and merges from estimated errors (1.5). An element is refined along a if L_a > L_min and one error exceeds its tolerance. It is
-/// merged if all errors of the element of twice the length stay below `coarsening margin` times their tolerance.
+/// Return the elements and directions to refine (marks) and to coarsen (merges), from estimated errors (1.5). An element is refined along a direction
+/// if its length along it is greater than L_min and one of its errors exceeds the tolerance of this error. It is merged into an element of twice the
+/// length if all errors of that element are below `coarsening margin` times their tolerances.
 std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 

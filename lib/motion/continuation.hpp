@@ -48,9 +48,10 @@ struct BranchPoint {
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
-/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both equations are solved like (4.17); a change of p moves each
-/// iterate onto the plane. During the iteration G is linearised in p. It is evaluated again at the resulting p until p no longer changes. A fold is
-/// the vertex of the parabola p(arclength) through three points. It is solved for and replaces one of the three points until its p no longer changes.
+/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both equations are solved like (4.17), with G linearised in p. In
+/// each iteration, p is changed such that the iterate lies on the plane of the second equation. The solution is repeated, with G linearised at the p
+/// just found, until p no longer changes. A fold is the vertex of the parabola p(arclength) through three points. The point of the branch at the
+/// vertex is computed, and replaces one of the three points, until the p of the vertex no longer changes.
 ///
 /// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
 /// if the values were evenly spaced. Equation (4.20) then gives three points at, before and after the prediction, where t is the direction of the
@@ -73,8 +74,8 @@ class Branch {
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 
-  /// Returns the next point, including folds in between. With a second parameter, it returns points up to the first fold and then the fold at each
-  /// second value. Returns nothing at the end. Throws RunFailure if the point is not found. Collective.
+  /// Returns the next point of the branch, which may be a fold. If there is a second parameter, returns the points up to the first fold, and then the
+  /// fold at each value of the second parameter. Returns nothing at the end of the branch. Throws RunFailure if the point is not found. Collective.
   std::optional<BranchPoint> next();
 
  private:
@@ -122,7 +123,7 @@ class Branch {
   std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
-  double last_share_ = 1;         // distance between the two latest folds, as a fraction of the interval between two second values
+  double last_share_ = 1;         // step between the two latest folds in the second parameter, divided by the interval between its given values
   std::size_t values_ = 0;        // number of values of the second parameter that have been reached
   std::string failure_;
   double step_ = 0, missed_ = 1;  // length of the next step; distance of the latest point from its prediction, divided by the step

@@ -8,7 +8,7 @@
 namespace tanktread::motion {
 
 Net FixedPointError::operator()(const Net& x, const Net& f) {
-  // a column of dF is ignored if the part that is independent of the other columns is a smaller fraction of its length
+  // A column of dF (4.32) is ignored if its component orthogonal to the other columns is shorter than this fraction of the column.
   constexpr double independent = 1e-6;
   Eigen::MatrixXd dx(x.size(), static_cast<Eigen::Index>(before_.size())), df(x.size(), dx.cols());
   for (Eigen::Index j = 0; j < dx.cols(); ++j) {

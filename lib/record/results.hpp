@@ -42,7 +42,7 @@ struct RunRequest {
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file of positions of copies
+std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file with the positions of a particle's copies
 /// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder
 std::string kept_name(const std::string& file);
 
@@ -52,7 +52,7 @@ struct Account {
   output::Entries<long> counts;
   std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
-  bool whole = true;            ///< true if the run reached its end, so that missed expectations fail it
+  bool whole = true;            ///< true if the run reached its end; only then do missed binding expectations fail the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
@@ -74,8 +74,9 @@ void check_vacant(const RunRequest& request);
 /// Files of a run (README.md, Results). The first rank samples snapshots and writes all files. Every call is collective, and all ranks throw
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
-/// When a run has lasted a second, every snapshot and `run.h5` up to it are flushed to the disk before `run.hdf.series` names the snapshot. At the
-/// end of such a run, all its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
+/// During the first second of a run, files are not flushed to the disk. Afterwards, each snapshot and the rows of `run.h5` up to its step are flushed
+/// before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are flushed.
+/// `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
@@ -86,8 +87,9 @@ class Results {
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written at every snapshot and otherwise once a second, or less often: at intervals of
-  /// at least fifty times the duration of writing. Sets the row on every rank to the first rank's values, so that all ranks decide alike.
+  /// Adds the row of a finished step to `run.h5`. The file is written at every snapshot. Between snapshots, it is written at intervals of at least
+  /// one second and at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all ranks take
+  /// the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.

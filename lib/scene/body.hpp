@@ -36,8 +36,9 @@ struct FlowPlane {
 /// The largest component of the direction b is positive.
 FlowPlane plane_normal_to(Vec3 normal);
 
-/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane of a planar flow: the velocity has no component along
-/// its normal and does not change along it. If there is none, returns the plane normal to the vorticity, in which points of the surface rotate.
+/// Returns the plane x1 x3 for every flow type except `linear`. For `linear`, returns the plane of the flow if the flow is planar, which means that
+/// the velocity has no component along the normal of the plane and does not change along the normal. Otherwise returns the plane normal to the
+/// vorticity, because points of the surface rotate about the vorticity, or the plane x1 x3 if there is no vorticity.
 FlowPlane flow_plane(const stokes::FlowOptions& flow);
 
 struct Member;
@@ -59,10 +60,10 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh
   /// and does not change if the mesh changes.
   double volume = 0;
-  double initial_area = 0;  ///< initial int c dG of the surfactant on the first mesh; 0 until it is computed
+  double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
   double modulus = 1;  ///< G_s, or the surface tension sigma of an interface
-  surface::Symmetry symmetry;                       ///< common symmetry of the scene, the particle and its shapes in time
+  surface::Symmetry symmetry;                       ///< symmetry that the scene and the particle, at all times, have in common
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 

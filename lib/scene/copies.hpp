@@ -51,7 +51,7 @@ struct CopiesOptions {
   std::optional<double> ball;
   double least_gap = 0.05;            ///< least gap between the circumscribed spheres of two copies, divided by the larger radius
   int seed = 1;
-  bool present = false;               ///< true if the deck has this section
+  bool present = false;               ///< true if the deck has the section `copies` of this kind of particle
 
   void declare(deck::Section& section);
   bool random() const { return number || volume_fraction; }

@@ -28,9 +28,10 @@ void reject_searches(const Scene& scene, Rejections& to);
 /// membrane opposes, the iteration amplifies velocity errors by the ratio of the step to these times.
 double steady_step(const Scene& scene);
 
-/// Returns true if the centroid is moved back after every step: `Particle/drift`. The default is `held` if the particle is at the stagnation point of
-/// an affine flow with a growing direction (planar hyperbolic, four-roll, extension). There, displacements by round-off grow like e^(rate t) and
-/// would carry off a particle of steady shape.
+/// Returns true if, after every step, the particle is moved so that its centroid is at the centre given in the deck: `Particle/drift`. Without this
+/// key, returns true for a deformable particle without walls whose centre is a stagnation point of an affine flow with a growing direction (planar
+/// hyperbolic, four-roll, extension). In such a flow, a displacement by round-off grows like e^(rate t) and would carry away a particle of steady
+/// shape.
 bool holds_centre(const Scene& scene);
 
 /// Moves the state so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an affine flow with

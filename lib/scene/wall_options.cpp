@@ -92,8 +92,8 @@ void WallOptions::check_flow(const stokes::FlowOptions& flow, const stokes::Plan
 
 void WallOptions::reject(const Scene& scene, Rejections& to) const {
   if (!present && !to.every()) return;
-  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));  // general row for the table of combinations; for a given flow,
-                                                                                    // check() throws
+  // This row is only for the table of all rejected combinations. For the flow of a given deck, check() throws UserError.
+  if (to.every()) to.pair(true, "Wall", "Flow/type", std::string(along_the_wall));
   to.pair(scene.flow.type == "duct" && !scene.tube.present, "Wall", "Flow/type `duct`",
           "the wall of a duct is given in a section Tube or Channel");
   to.pair(scene.tube.present, "Wall", scene.duct_choice(), "a plane wall is represented by images, which need a fluid without other walls");

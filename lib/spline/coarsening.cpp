@@ -9,8 +9,9 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`: it is within 3 H of the point and
-/// on the lattice of spacing H, for H = h, 2 h, 4 h or a larger spacing.
+/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`. `h`: current spacing of the elements
+/// at the point. The edge belongs to the rings if, for H = h, 2 h, 4 h or a larger spacing below that of the initial mesh, it is within 3 H of the
+/// point and on the lattice of spacing H.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
@@ -36,8 +37,9 @@ struct Remover {
   const Lattice& lattice() const { return *mesh.lattice; }
   bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
 
-  /// Returns the edges from the start, a vertex with perpendicular edges on both sides, to the next vertex with a perpendicular edge. The result is
-  /// empty if one of these edges must not be removed, or if an element at one of the ends would not be a rectangle without them.
+  /// Returns the edges on a mesh line from the vertex of `start` to the next vertex with a perpendicular edge. The result is empty if one of the
+  /// edges must not be removed. It is also empty if one of the two end vertices does not have perpendicular edges on both sides of the line, because
+  /// the removal would leave an element there that is not a rectangle.
   std::vector<Ray> removable_bay(Ray start) const {
     const Lattice& l = lattice();
     auto both_sides = [&](Ray r) { return (mesh.edges[r.vertex] & (r.slot & 1 ? 5 : 10)) == (r.slot & 1 ? 5 : 10); };
@@ -192,16 +194,16 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
     }
   std::vector<std::uint8_t> removable(l.vertices(), 0);
   for (int c = 0; c < l.cells(); ++c)
-    for (int k : {1, 2}) {  // right and upper edge of each cell; edges between two macro faces are excluded below
+    for (int k : {1, 2}) {  // right and upper edge of each cell
       const bool vertical = k == 1;
       const int row = l.y_of(c), line = vertical ? l.x_of(c) + 1 : l.height(row + 1);
-      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // keeps initial mesh lines, also macro face sides
+      if (line % l.base == 0 || !mesh.edge_of_cell(c, k)) continue;  // keeps all lines of the initial mesh, including the cube's edges
       if (l.is_flat(c)) continue;
       const int before = tiling.tile_of_cell[c], after = tiling.tile_of_cell[vertical ? c + 1 : c + l.units];
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // otherwise also marks the continuation of the edge in the row of zero height at an end knot
+      if (!vertical || !l.pad) continue;  // next: also marks the continuation of a vertical edge in a row of zero height (end knot)
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

@@ -11,13 +11,13 @@
 namespace tanktread::spline {
 
 /// A T-mesh with the extensions of its T-junctions. Counts violations of the conditions for nested, linearly independent splines:
-///  - crossings: pairs of extensions of different axis that meet at a vertex (end points of extensions count; an extension that reaches an
-///    extraordinary point counts as a crossing, too). If there are none, the mesh is analysis-suitable (Scott et al. 2012).
-///  - missing: unit edges of an earlier extended mesh (T-mesh plus extensions) that the current extended mesh does not contain. If there are none,
-///    the extended meshes are nested.
-///  - overlaps: vertices that are not vertices of the T-mesh, on the face extensions of two T-junctions on one line that point at each other.
-///    There the extended mesh contains a complete line, and so one smooth function more than the mesh has anchors.
-/// If there are none of the three, the spline spaces are nested.
+///  - crossings: pairs of extensions along different axes that meet at a vertex. The end points of extensions belong to them. An extension that
+///    reaches an extraordinary point also counts as a crossing. A mesh without crossings is analysis-suitable (Scott et al. 2012).
+///  - missing: edges of the lattice that an earlier extended mesh (T-mesh plus extensions) contains and the current one does not contain. If no edge
+///    is missing, the extended meshes are nested.
+///  - overlaps: vertices that are not vertices of the T-mesh and at which the face extensions of two T-junctions overlap, which are on one line and
+///    point at each other. The extended mesh then contains a complete line, and so one smooth function more than the mesh has anchors.
+/// If all three counts are 0, the spline spaces are nested.
 ///
 /// Adding or removing a path of edges changes only the T-junctions whose extensions meet the path. So both operations are cheap
 /// and exact inverses of each other.
@@ -42,7 +42,8 @@ class ExtendedMesh {
   /// Finds the first vertex with an index above `cursor` (cyclically) at which two extensions cross, and returns their T-junctions. Sets `cursor` to
   /// this vertex.
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
-  /// Returns the T-junctions (one or two) next to the first missing edge on its line, whose extensions could be lengthened to contain it.
+  /// Returns the T-junctions, at most two, that are next to the first missing edge on the line of this edge. An extension of either of them could be
+  /// lengthened to contain the edge.
   std::vector<TJunction> around_missing() const;
   /// Returns pairs of T-junctions that point at each other and whose extensions overlap, at most `most` pairs, in the order of vertices. Each
   /// overlap is listed twice, once from each side.

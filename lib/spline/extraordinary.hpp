@@ -17,8 +17,8 @@ struct OneRing {
 };
 
 /// Returns the bicubic Bezier points of face 0 by averaging, without any constraint at the extraordinary point P (C0 across the spokes, the mesh
-/// lines from P). Shape (16, 19). Row 4 v + u, with u along spoke 0 and v along spoke 1; one column per point of the ring. For face j, rotate the
-/// columns of every group by j.
+/// lines from P). Shape (16, 19). Row 4 v + u is Bezier point (u, v), with u along spoke 0 and v along spoke 1. There is one column per point of
+/// OneRing. The matrix of face j follows by a cyclic shift, by j, of the three columns of each group E, F, A, B, C and D.
 Eigen::MatrixXd averaged_bicubic();
 
 /// Returns the bi-quartic Bezier points of face 0, row 5 v + u. Shape (25, 19). Rows sum to 1.
@@ -30,11 +30,12 @@ Eigen::MatrixXd averaged_bicubic();
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///
 /// and such that the Dirichlet energy of the change over the 5 x 5 grids of all faces is smallest. This is the full least-squares form of the
-/// extraction in reference [70] of the paper. The published data omit the inner point (2, 2) for the outer points of the ring and so violate the
-/// partition of unity.
+/// extraction in reference [70] of the paper. In the data published there, the coefficients of the inner point (2, 2) for the outer points of the
+/// ring are missing, so that the rows do not sum to 1.
 Eigen::MatrixXd constrained_biquartic();
 
-/// Bicubic piece of one face at an extraordinary point (face 0). The face is the unit square, with the extraordinary point at u = v = 0.
+/// Bicubic piece of face 0, which is the face between spokes 0 and 1 of an extraordinary point. The face is the unit square 0 <= u, v <= 1, with the
+/// extraordinary point at u = v = 0.
 struct Piece {
   double u, v, size;           ///< lower left corner, side
   Eigen::MatrixXd extraction;  ///< extraction matrix, shape (19, 16): points in the order of OneRing, column 4 j + i with i along u
@@ -46,8 +47,8 @@ struct Piece {
 ///
 /// Masks (Catmull and Clark 1978): face = mean; edge = (two ends + two face points) / 4; vertex = (Q + 2 R + (N - 3) P) / N, with Q the mean of the
 /// face points and R the mean of the edge midpoints around it. The surface is C1 at the extraordinary point, otherwise C2. The spaces of a mesh and
-/// of its refinement are nested if the averaged squares of both have the same side. If both have the same `depth` instead, they are not nested: the
-/// surface changes by 0.41^depth.
+/// of its refinement are nested if the squares with the averaged bicubic have the same size on both meshes. If `depth` is the same on both meshes
+/// instead, the spaces are not nested, and refinement changes the surface by an amount proportional to 0.41^depth.
 std::vector<Piece> catmull_clark_pieces(int depth);
 
 /// Returns the matrix of one subdivision of the 19 points of the ring, to the ring of half the spacing. Shape (19, 19).

@@ -167,7 +167,8 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
     return "element " + std::to_string(twice) + " runs along one of its sides the same way as element " + std::to_string(once) +
            ", so one of them is inverted.";
 
-  // Integrals of cos(k_i . x) dx and sin(k_i . x) dx, with fixed wave vectors k_i, over all sides without a matching side.
+  // Line integrals (vectors) of cos(k_i . x) dx and sin(k_i . x) dx, with fixed wave vectors k_i, along all sides without a matching side. They are 0
+  // if these sides cancel as curves.
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
   double length = 0;
   const double size = extent(net);

@@ -278,9 +278,9 @@ std::vector<double> Channel::kinks() const {
   return u;
 }
 
-/// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements there, shorter where the wall
-/// bends; a quarter of this value where the curvature jumps, and 2.5 times this value in the straight ends. Away from shorter elements, the length
-/// grows by at most 0.3 per unit distance.
+/// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements at u, and less where the wall
+/// bends. In the straight ends, this length is multiplied by 2.5. Where the curvature jumps, it is multiplied by 0.25. The length changes by at most
+/// 0.3 per unit distance, so that elements grow gradually away from short ones.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;

@@ -247,7 +247,7 @@ ClosestPoints nearest_points(const Patch& first, const Patch& second, const Clos
 
 namespace {
 
-/// n x n points of an element with normals, and a bounding box of its Bezier points.
+/// A grid of n x n sample points of an element with their normals, and the bounding box of the Bezier points of the element.
 struct Sampled {
   std::vector<Vec3> place, normal;
   Eigen::AlignedBox3d box;
@@ -273,8 +273,9 @@ double distance(const Vec3& x, const Sampled& element) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
-  // The foot of the perpendicular on the tangent plane may be far beyond the element's edges. The tangent plane of another element is nearer in
-  // this case, so the distance to the sampled point is returned.
+  // `across` is the distance from the tangent plane at the nearest sample point. If the foot of this perpendicular is far from the sample point, it
+  // may be beyond the element's edges. In this case the tangent plane of another element is nearer, so the distance from the sample point is
+  // returned.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
 }

@@ -39,8 +39,8 @@ struct Transport {
 };
 void transport(int degree, const Lanes& x, const Lanes& v, Transport& result);
 
-/// Contributions of each element to int h_i h_j dG (i <= j, row after row), int h_i v.n dG and int h_i n dG, where h_i are the solid harmonics of
-/// degree three at most, 1, x1, x2, x3 first. Three Gauss points per direction.
+/// Contributions of each element to int h_i h_j dG (upper triangle i <= j, row by row), int h_i v.n dG and int h_i n dG. h_i are the 16 solid
+/// harmonics of degree 0 to 3; the first four are 1, x1, x2, x3. Three Gauss points per direction.
 constexpr int n_harmonics = 16;
 struct ShapeMotion {
   double products[n_harmonics * (n_harmonics + 1) / 2][most_lanes], motion[n_harmonics][most_lanes], normals[n_harmonics][3][most_lanes];

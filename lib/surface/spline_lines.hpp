@@ -21,7 +21,8 @@ struct Line {
   std::vector<Piece> pieces;
   std::vector<std::vector<std::pair<int, double>>> sites;
 
-  /// Adds a collocation point at u, given the knots of the pieces from index `first` on.
+  /// Adds a collocation point at the parameter u. `knots`: knots that bound the pieces with the indices `first`, `first` + 1, ...; u is in this
+  /// range. If `closed`, the last knot is the same point as the first one.
   void add_site(double u, const std::vector<double>& knots, int first, bool closed);
 };
 
@@ -37,9 +38,9 @@ struct RepeatingLine {
   std::vector<double> middles;  ///< middle of each periodic element, as a parameter of the piece with the same index
 };
 
-/// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all inside. The seam, where the period
-/// begins and ends, cuts the element between the last knot and the first knot of the next period in two; piece 0 of `open` is the second part of this
-/// element.
+/// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all between the ends. The two ends are
+/// the same point, the seam. It divides the periodic element between the last knot and the first knot of the next period: the first part of this
+/// element is the last piece of `open`, and the second part is piece 0.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
 /// Returns the collocation points of a product of two lines; the index on the second line runs fastest.

@@ -78,8 +78,8 @@ class Symmetry {
   std::string description_ = "none";
 };
 
-/// Returns the largest group of images of the space and the nets that `keeps` accepts, for example because they are symmetries of the flow or of a
-/// wall. `keeps` is called before the elements are compared; it receives the images of the points.
+/// Returns the largest group of images that map the space and the nets onto themselves and that `keeps` accepts. `keeps` tests, for example, whether
+/// the flow or a wall has the symmetry. Its argument has the images of the control points, but not yet those of the elements.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
 /// One element of each orbit of elements, in ascending order: the element with most fundamental points. The weight of an element is 1 divided by the

@@ -112,8 +112,8 @@ Net Capsule::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// Returns B J delta = P (grad v_inf delta - (1/mu) R^{-1} A M0^{-1} H delta), and 0 in the rows of rigid bodies (4.3). `work`, if given, is added to
-/// H delta.
+/// Returns B J delta = P (grad v_inf delta - (1/mu) R^{-1} A M0^{-1} H delta) (4.3), and 0 in the rows of rigid bodies. P is the volume projection
+/// (2.8), R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the membrane tangent. `work`, if given, is added to H delta.
 Net Capsule::energy_part(const Net& delta, const Net& work) {
   Net h(delta.rows(), 3);
   tangent_.apply(delta, h);
@@ -158,8 +158,8 @@ Net Capsule::frozen_viscous(const Net& v) {
   return v - without_flux(collocation_.solve(hv));
 }
 
-/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity. This system, with B, is solved to a smaller tolerance than the system of the
-/// implicit step that contains it.
+/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity due to the displacement delta. The linear system with B is solved to a
+/// smaller tolerance than the system of an implicit step, because products with the latter can contain it.
 Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   const Net rhs = energy_part(delta, work);
   if (!double_layer_ && !viscous_) return rhs;
@@ -171,16 +171,17 @@ Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Solves the system of an implicit step. If all control points move with the fluid, the system is (B - shift (B J + E)) delta = B r (4.3), which
-/// does not require the inverse of B. Otherwise it is (1 - shift (N B^-1 B J + T W + E)) delta = r, where N dv + T W delta is the change of the mesh
-/// velocity (4.6) due to a change dv of the fluid velocity and the displacement delta. E is the secant correction (4.13).
+/// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13). If all control points move with the fluid,
+/// the system is (B - shift (B J + E)) delta = B r (4.3), which does not require the inverse of B. If control points slide along an interface, it is
+/// (1 - shift (N B^-1 B J + T W + E)) delta = r. Here N dv + T W delta is the change of the mesh velocity (4.6) if the fluid velocity changes by dv
+/// and the shape by delta.
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   return stiff_system(shift, left(r), tolerance, secants);
 }
 
-/// Returns whether all points move with the fluid and the velocity is the solution of a linear system. The Jacobian then always includes the volume
-/// projection P (2.8), because by the extrapolation (4.30) the result depends on the Jacobian.
+/// Returns whether all points move with the fluid and the velocity is the solution of a linear system. The Jacobian then includes the volume
+/// projection P (2.8). The projection is needed because a step of TR-BDF2 adds a correction, e2 of (4.30), that is computed with the Jacobian.
 bool Capsule::flows_by_system() const { return (viscous_ || double_layer_) && !interface_ && rigid_.empty(); }
 
 /// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
@@ -197,8 +198,8 @@ Net Capsule::defect(const Net& x, const Net& u) {
   return defect_here(in_cell, slower);
 }
 
-/// Returns the defect P (w - B P u) - (1 - P) u of the velocity u (3.14), where B v = w is the system of the velocity v at x (solve_velocity). The
-/// viscous load due to u is added to the elastic load, so that only one sum over the surface is needed.
+/// Returns the defect P (w - B P u) - (1 - P) u of the velocity u (3.14). P is the volume projection (2.8), and B v = w is the linear system for the
+/// velocity v at x (see solve_velocity). The viscous load due to u is added to the elastic load, so that only one sum over the surface is needed.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());

@@ -43,7 +43,7 @@ Eigen::SparseMatrix<double> CoupledMotion::basis(std::size_t k, const surface::S
   int n = 0;
   for (int i = 0; i < static_cast<int>(field.size()); ++i) {
     if (met[static_cast<std::size_t>(i)]) continue;
-    std::map<int, double> sum{{i, 1}};  // factor of each coefficient in the sum of coefficient i and its images under the symmetries
+    std::map<int, double> sum{{i, 1}};  // unit vector of coefficient i plus its images under the symmetries: entries by index
     for (const auto& map : maps) sum[map[static_cast<std::size_t>(i)].first] += map[static_cast<std::size_t>(i)].second;
     for (const auto& [to, value] : sum) {
       met[static_cast<std::size_t>(to)] = true;
@@ -132,8 +132,8 @@ void CoupledMotion::linearise(const Net& y) {
 /// Multiplies the shape part of delta by B (4.2) and leaves the field part unchanged.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
 
-/// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, its shape part is
-/// multiplied by B (4.2), which saves solving a system with B.
+/// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the shape part of
+/// the result is multiplied by B (4.2). No linear system with B needs to be solved in this case.
 Net CoupledMotion::right(const Net& delta, bool solved) {
   Net load = Net::Zero(n_, 3);
   std::vector<Eigen::VectorXd> values;

@@ -16,8 +16,9 @@ namespace tanktread::coupling {
 ///
 ///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
-/// The Jacobian of the fields is exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field
-/// and, if the field follows the shape, also the lower triangular block. Calls are collective; every rank stores all fields.
+/// Here u is the velocity of the control points, v is the velocity of the fluids at them, and `rate` is Field::rate. The Jacobian of the fields is
+/// exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field and, if the field follows the
+/// shape, also the lower triangular block. Calls are collective; every rank stores all fields.
 class CoupledMotion : public Dynamics {
  public:
   struct On {
@@ -41,7 +42,8 @@ class CoupledMotion : public Dynamics {
   Eigen::SparseMatrix<double> basis(std::size_t k, const surface::Symmetry& symmetry, const Vec3& parity) const;
   bool knows_images(const surface::Symmetry& symmetry) const;  ///< true if all fields can map their coefficients to mirror images
 
-  /// Returns the gradient of the sum that field k conserves, as a state; no rows if the field conserves none.
+  /// Returns the gradient, with respect to the state y, of the sum that field k conserves, for example the mass of a surfactant. The result has no
+  /// rows if the field conserves no sum.
   Net conserved(std::size_t k) const;
 
   /// Returns the change of the state y if control points move along the surfaces by this small displacement and the surfaces do not move.
@@ -49,7 +51,8 @@ class CoupledMotion : public Dynamics {
 
   /// Sets the state of the fields only.
   void set_fields(const Net& y);
-  /// Sets the state of the fields and adds their load to the capsule's. The shape is passed with each call to the capsule.
+  /// Sets the state of the fields and adds their load to the loads of the capsule. Does not set the capsule's shape, which is an argument of its
+  /// functions.
   void set_state(const Net& y);
 
   Net velocity(const Net& y) override;

@@ -42,20 +42,22 @@ class Dynamics {
   /// Used by Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
-  /// Returns the defect of a velocity u at x: the error v - u multiplied by an operator B. B may depend on x, and `correction` and `missed_of` take
-  /// it into account. If v is the solution of a system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve.
+  /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
+  /// If v is the solution of a linear system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve. `correction`
+  /// and `missed_of` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
   /// Returns whether evaluating the velocity takes a linear solve that evaluating the defect of a given velocity does not take.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns the result of `solve` for r = shift (v - u), given the defect of the velocity u instead of v.
+  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape. Only the `defect` of u is given, so that v
+  /// need not be known.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the result of `missed` if the change of a defect is known instead of dv. `change`: change, due to delta, of the defect of the velocity
-  /// (x - c)/shift for any constant net c; without an operator B, it is dv - delta/shift.
+  /// Returns the result of `missed` for the displacement delta of x if the velocity change dv is not known. `change` is given instead: the change of
+  /// the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
@@ -66,7 +68,7 @@ class Dynamics {
   /// relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
-  /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. Not finite if the iteration fails.
+  /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. If the iteration fails, x is not finite afterwards.
   virtual void restore_volume(Net& x) = 0;
 
   /// Improves the initial guess y of a stage with this shift so that a membrane that nearly conserves area has the tensions that it had in the shape

@@ -21,7 +21,8 @@ class Capsule;
 class Evaluation {
  public:
   /// `velocity`: velocity of the control points if it is already known, for example from the equations of an implicit step; no rows if unknown.
-  /// `near`: evaluation at nearly the same shape, which provides rigid motions and the velocity of fluids that slide along interfaces; may be null.
+  /// `near`: evaluation at nearly the same shape, or null. Until the linear system is solved at x, the motions of rigid bodies and, if control points
+  /// slide along interfaces, the fluid velocity are taken from `near`.
   Evaluation(Capsule& system, Net x, Net velocity = {}, std::shared_ptr<Evaluation> near = nullptr);
 
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
@@ -37,15 +38,15 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// Flow of the solids, and the integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), which is zero
-  /// beside a single plate. `caused`: the parts that particles cause.
+  /// `flow`: flow of the solids. `carried`: integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), 0 next
+  /// to a single plate. `caused` and `caused_carried`: their contributions from the particles, without the flow in the cell without particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
   };
-  SolidFlow solid_flow();  ///< returns the flow of the solids, which are then set to this shape
+  SolidFlow solid_flow();  ///< returns the flow of the solids, after setting the particles' shape in SolidResponse to x
 
-  Tube::Checks checks();                                 ///< returns the checks of the tube's response
+  Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();

@@ -45,7 +45,7 @@ struct Particle {
 /// Sets the block of each particle: its rows in nets that stack all particles in this order.
 void place(std::span<Particle> particles);
 
-/// Returns the materials of all elements, each distinct material once.
+/// Returns the distinct materials of the particles and, if there are several, the index of the material of each element.
 membrane::Materials materials(std::span<const Particle> particles);
 
 /// Returns the area (unstressed or current) to which the loads of all particles refer; by_element if the particles differ.
@@ -79,7 +79,8 @@ class Loads {
   bool empty() const { return all_.empty(); }
   std::size_t n_sums() const { return n_sums_; }
 
-  /// Adds the local part of dE/dx. Returns this rank's part of the surface integrals that the loads need, which the caller must sum over all ranks.
+  /// Adds the contributions of this rank's elements to dE/dx in `work`. Returns the contributions of these elements to the surface integrals that
+  /// add_global_work() needs; the caller must sum them over all ranks.
   std::vector<Net> add_work(const Net& x, Net& work) const;
   void add_global_work(const Net& x, const std::vector<Net>& sums, Net& work) const;
 

@@ -30,8 +30,9 @@ class Session {
 };
 
 /// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
-/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only far sums by clusters are divided by their terms and summed over
-/// ranks (`share` of the layers); they therefore depend on the number of ranks by round-off.
+/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only far sums by clusters are divided in another way: every rank
+/// computes some terms of each row, and the results are summed over the ranks (see Layer::share). These sums therefore depend on the number of ranks
+/// by round-off.
 class Ranks {
  public:
   Ranks();

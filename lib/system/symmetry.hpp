@@ -43,13 +43,14 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const surface::TubeWall& wall, const LoadList& loads = {});
 
-/// Returns the control values, on the points `block` of the net x, of the rates at which material points move relative to the membrane's shape when
-/// the unstressed surface rotates onto itself about the axis x_{axis+1} through its centre:
+/// Returns the velocity D x of the material points along the surface x when the unstressed surface X rotates onto itself at unit angular velocity
+/// about the axis e_k = x_{axis+1} through its centre X_c. The result has control values on the points `block`, and 0 in all other rows:
 ///
 ///   D x = F (e_k x (X - X_c)),   F the deformation gradient                                                        (4.22)
 ///
-/// This motion does not change tensions, so that a membrane that tank-treads around a steady shape moves by v = omega D x. Returns nothing if the
-/// unstressed surface is not a surface of revolution about the axis, or if it has a pole, where F is undefined.
+/// This motion changes neither the shape nor the tensions. A membrane that tank-treads at the angular velocity omega around a steady shape therefore
+/// has the velocity v = omega D x. Returns nothing if the unstressed surface is not a surface of revolution about the axis, or if it has a pole,
+/// where F is undefined.
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation);
 

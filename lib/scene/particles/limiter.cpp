@@ -82,16 +82,16 @@ Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   return found == held_.end() ? nullptr : &*found;
 }
 
-/// Returns the gap that a contact must restore, which is the limit. If the pair already has another contact and the gap is slightly below the limit,
-/// returns a value between the gap and the limit, so that the gap opens gradually.
+/// Returns the gap that a contact must restore. By default, this is the smallest allowed gap `limit_`. If the pair already has another contact and
+/// the gap is below limit_, returns a value between (1 - slack) limit_ and limit_, so that the gap opens gradually.
 double Limiter::target(const Approach& found) const {
   const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });
   if (first || found.gap > limit_) return limit_;
   return std::max((1 - slack) * limit_, found.gap + std::min(1., rate_ * step_) * (limit_ - found.gap));
 }
 
-/// Returns the largest deviation of a gap from its required value, divided by the limit. At a contact without force, only a smaller gap counts as a
-/// deviation.
+/// Returns the largest deviation of a gap from the value that its contact must restore (see `target`), divided by the smallest allowed gap `limit_`.
+/// At a contact without force, only a smaller gap counts as a deviation.
 double Limiter::error() const {
   double most = 0;
   for (const Held& one : held_) most = std::max(most, (one.force > 0 ? std::abs(one.gap - one.target) : one.target - one.gap) / limit_);

@@ -44,8 +44,8 @@ class ParticleSystem {
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
-  /// Discards the data of earlier solves that preconditioners `recycled` keep. Checkpoints do not hold these data; so a run discards them after each
-  /// checkpoint.
+  /// Discards the data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
+  /// therefore discards them after each checkpoint.
   virtual void forget_recycled() {}
   /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that
   /// fails.
@@ -58,7 +58,7 @@ class ParticleSystem {
   virtual coupling::Work work() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results; it sets time and work in `progress`
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, with time and work added to `progress`
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };

@@ -43,7 +43,8 @@ std::size_t rank(const std::string& name) {
   return at == ranks.end() ? ranks.size() : at->second;
 }
 
-/// Adds the columns of the registered series of one kind with their values at the arguments `of`; without `of`, adds the columns without values.
+/// Adds the columns of all registered series of the type Series. If arguments `of` are given, the values of the columns are computed by calling each
+/// series with these arguments. Otherwise the columns have no values.
 template <class Series, class... Of>
 void add_series_of(const Scene& scene, Columns& to, const Of&... of) {
   for (const SeriesParts::Chosen& part : scene.series) {

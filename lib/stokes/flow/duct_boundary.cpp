@@ -149,8 +149,9 @@ surface::PlaneJet OutlineSpace::at(int side, double t) const {
 
 namespace {
 
-constexpr int points = 8, points_far = 10,
-              points_log = 16;  // Gauss points per element: for (2.17); for (2.15) if the target is off the element; for its logarithmic singularity
+// Gauss points per interval. points: nodes of (2.17), per element. points_far: integrals of (2.15) over elements that do not contain the target.
+// points_log: integrals of (2.15), with their logarithmic singularity, from a target on the element to an end of the element.
+constexpr int points = 8, points_far = 10, points_log = 16;
 constexpr int sweeps = 2;
 using std::numbers::pi;
 using surface::PlaneJet;
@@ -209,7 +210,7 @@ class Row {
     }
   }
 
-  /// Integrates over a <= t <= b. Bisects the interval until its distance from the target is at least its length.
+  /// Integrates over a <= t <= b. Bisects the interval until the distance of each part from the target is at least the length of the part.
   void panel(double a, double b, int depth) {
     const double middle = (a + b) / 2;
     const Vec2 xa = space_.at(e_->side, a).x, xm = space_.at(e_->side, middle).x, xb = space_.at(e_->side, b).x;
@@ -261,7 +262,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
   return matrix.partialPivLu().solve(right).head(n);
 }
 
-/// Adds the nodes of (2.17), and returns the flux q times the length dl of each node.
+/// Adds the quadrature nodes of (2.17). Returns, for each node, the flux q times the weight dl of the node, a length along the outline.
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
@@ -289,8 +290,9 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
   return flux;
 }
 
-/// Improves psi of (2.17) between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0, evaluated by the sum over the
-/// nodes, with v_c unchanged:
+/// Improves psi of (2.17) between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0 for F = v_c + i psi. The
+/// integral is the sum over the nodes j; its term at j = i is the increment dF_i = dv_c + i q dl of F along the node's length. Only psi is changed,
+/// not v_c:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
 /// The coefficients of psi in this sum are smooth, so that the error of the spline, which alternates in sign from knot to knot, averages out.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {

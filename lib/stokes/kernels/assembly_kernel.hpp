@@ -8,8 +8,9 @@ namespace tanktread::stokes {
 constexpr int assembly_block = 16;  ///< number of targets that are processed together in one pass
 constexpr int assembly_tile = 4;    ///< the number of basis functions is padded to a multiple of this number
 
-/// One panel with its far nodes: positions, weights (area included) or normals times area, basis values basis[n_nodes A + k] for
-/// A = 0 .. functions - 1, and the row of `sums` to which each function adds.
+/// One panel with its far nodes. `x`, `y`, `z`: positions. `weight`: weights including the area, for the single layer; if null, `normal` has the
+/// normals times these weights, for the double layer. basis[n_nodes A + k]: value of basis function A = 0 .. functions - 1 at node k. `rows`: row of
+/// `sums` to which each function adds.
 template <class Real>
 struct PanelNodes {
   int n_nodes = 0, functions = 0;
@@ -30,7 +31,8 @@ void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::u
   far_moments(panel, target, skip, scratch, sums);
 }
 
-/// Returns sums for the target x0 with normal n0 and the nodes x, y, z with normals times weights N:
+/// Returns two sums over the nodes (x, y, z) for a target x0 with the normal n0. N is the normal of a node times its quadrature weight, and r is the
+/// vector from the target to the node:
 ///   pressure_i = sum G_ij N_j;   shear_ij = sum G_ij (n0.N) + (G n0)_i N_j - (n0.r) T_ijk N_k, row by row.
 struct IdentitySums {
   double pressure[3], shear[9];

@@ -29,14 +29,14 @@ class OneBodyInverses {
 
   bool empty() const { return factors_.empty(); }
 
-  /// Returns whether particle p has an inverse.
+  /// Returns whether the inverse of the system (2.23) of particle p is stored.
   bool serves(std::size_t p) const { return of_particle(p) != nullptr; }
 
   /// Replaces control values by values at the collocation sites, in the rows of rigid bodies.
   void take_to_sites(Net& y) const;
 
-  /// Replaces right-hand sides at the collocation sites by the control values of the solution for each isolated body, in the rows of rigid bodies.
-  /// `placed`: current positions of the bodies.
+  /// Solves the system (2.23) of every isolated body whose inverse is stored. In the rows of the body, y has the right-hand sides at the collocation
+  /// sites on entry, and the control values of the solution on return. `placed`: current positions of the bodies.
   void solve(const RigidParticles& placed, Net& y) const;
 
   /// Returns the columns of the inverse of the system (2.23) of particle p that belong to right-hand sides at `sites`; shape (3 points, 3 sites).
@@ -60,11 +60,11 @@ class OneBodyInverses {
   std::vector<Use> factors_;
 };
 
-/// Inverses for the films between pairs of bodies. Modes of the density w (2.23) with wave number k that are equal on both sides of a film of width h
-/// have eigenvalues of the order of k h, even after preconditioning by the isolated bodies. With the operator M_p of the isolated body p, and C_pq =
-/// -H_pq M_q^-1, the effect of body q on body p, both restricted to the sites of a film,
+/// Inverses for the films between pairs of bodies. A mode of the density w (2.23) with wave number k that is equal on both sides of a film of width h
+/// has an eigenvalue of the order of k h, even after preconditioning by the isolated bodies. Let M_q be the operator of the isolated body q, and H_pq
+/// the double layer of body q at the sites of body p. The effect of body q on body p is C_pq = -H_pq M_q^-1. The matrix
 ///
-///   1 + C on those sites
+///   1 + C,   C restricted to the sites of a film,
 ///
 /// is factored for each pair of bodies. Its inverse minus 1 is added to the preconditioner of the isolated bodies (additive Schwarz; Smith, Bjørstad
 /// & Gropp 1996, chapter 1). Two films of one body are assumed to have no sites in common; if they do, the solver needs more iterations, but its
@@ -83,7 +83,7 @@ class FilmInverses {
 
  private:
   struct Film {
-    std::vector<int> sites;         // sites of one body, then of the other
+    std::vector<int> sites;         // sites of one body of the pair next to the film, followed by those of the other body
     DenseFactors one_and_coupling;  // LU factors of 1 + C
   };
   std::vector<Film> films_;

@@ -25,8 +25,8 @@ struct RigidModes {
   RigidModes(Resistance& body, const Vec3& centre, bool quadratic);
 
   std::vector<Net> density;                     ///< force densities on the fluid: translations, rotations, strains, quadratic fields
-  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque of each mode
-  std::vector<Mat3> stresslet;                  ///< stresslet of each mode
+  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid for each solution
+  std::vector<Mat3> stresslet;                  ///< stresslet of each solution
 };
 
 /// Returns the state of a rigid body in its initial orientation. A state is a net of three rows: the centre, and the vector part and the scalar part
@@ -67,7 +67,7 @@ class LoneRigidBody : public Dynamics {
   };
   virtual Start start() const { return {}; }
   virtual void start_from(const Start&) {}
-  virtual void forget_recycled() const {}  ///< discards the products that the preconditioner `recycled` keeps from earlier solves
+  virtual void forget_recycled() const {}  ///< discards the products that a preconditioner of the type `recycled` keeps from earlier solves
 
   Net surface(const Net& place) const;            ///< control net of the surface in the laboratory frame
   const Vec3& centre() const { return centre_; }  ///< centre at the initial position

@@ -12,10 +12,10 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of see_images_only for which the surface itself contributes to all targets:
-                                                             // no row number is as large
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // factor on the tolerance of wall integrals in leak(), where pressures are large; upper
-                                                           // limit of the result
+constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number, so that the
+                                                             // surface itself contributes to all targets
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor on the tolerance of integrals over the wall in leak(), where
+                                                           // pressures are large. sharpest: upper limit of the resulting tolerance
 
 /// Adds points on the straight lines from the centroid of a section to points of its outline, except points that are not inside the outline. `place`:
 /// maps points of the section into space.
@@ -62,8 +62,8 @@ void Tube::weigh_flow() {
   flow_of_pressure_ = (own_flow_ - dot(flow_weights_, wall_->pumped())) / viscosity();
 }
 
-/// Returns the checks. By reciprocity the flow rate through the inlet due to a force f at y is f.c(y)/mu, so that no quadrature over the inlet is
-/// needed.
+/// Returns the errors of the response in the conditions (2.14). By reciprocity, a force f at y causes the flow rate f.c(y)/mu through the inlet, with
+/// c of (2.13). So no quadrature over the inlet is needed.
 Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) {
   Particle& particle = *particle_;
   const double mu = viscosity(), dp = response.pressure_drop;

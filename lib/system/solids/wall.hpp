@@ -30,7 +30,7 @@ class WallPatches {
   /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.
   WallPatches(const surface::TubeWall& wall, stokes::Layer& layer, const std::vector<int>& points);
 
-  /// Applies the preconditioner: computes the rows of f at these points from the right-hand side `rhs`.
+  /// Applies the preconditioner: computes the rows of f at the control points given to the constructor from the right-hand side `rhs`.
   void apply(const Net& rhs, Net& f) const;
 
  private:
@@ -80,12 +80,13 @@ class Wall {
   const Net& targets() const { return targets_; }
   const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
 
-  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Rows of u that no rank needs are not
-  /// read. Collective.
+  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Reads only the rows of u that some
+  /// rank has in `own_targets`. Collective.
   Net collocated(const Net& u) const;
 
-  /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes rows of the
-  /// operator at the targets; they are combined with the weights by which `collocated` combines velocities.
+  /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes the rows of
+  /// the operator at given targets. In a channel, each result is the weighted mean (2.39) of the rows at a collocation point and at the adjacent
+  /// midpoints of elements, as in `collocated`.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;
@@ -104,7 +105,7 @@ class Wall {
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< transforms an operator on the layer's space to one on control values of f
+  void from_space(stokes::Rows<float>& rows) const;  ///< multiplies each row of a matrix of the layer by this transpose
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
   /// a periodic wall, A includes the condition int f.n dG = 0.
@@ -119,19 +120,20 @@ class Wall {
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
   const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
 
-  /// Returns int N_A c dG, with c of the inlet (2.13), and int N_A e1 dG, for every control point A. The inner products of a traction with them are
-  /// mu times the flow rate that the traction causes through the inlet, and the axial force of the traction.
+  /// Return weights, one row per control point A, for inner products with tractions on the wall. flow_weights: int N_A c dG, with c =
+  /// flow_of_forces(x); the inner product is mu times the flow rate that the traction causes. force_weights: int N_A e1 dG; the inner product is the
+  /// axial force of the traction.
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Returns mu times the flow rate along the duct that a unit force at each of these points causes, one column per axis of the force. In an open
-  /// wall this is c of the inlet (2.13). In a periodic wall, the sum of the forces must vanish, and the result is -rho^2/(4 L) e1, where rho is the
-  /// distance from the axis x1 (2.44).
+  /// Returns mu times the flow rate along the duct that a unit force at each point of `at` causes, one column per component of the force. If the wall
+  /// is open, this is the integral c (2.13) over the inlet. If it is periodic with the period L, this is -rho^2/(4 L) e1, where rho is the distance
+  /// from the axis x1 (2.44); the sum of all forces must then be 0.
   Net flow_of_forces(const Net& at) const;
 
-  /// Returns the flow rate that a double layer of unit strength at a point with normal n causes, one component per axis of the strength. In an open
-  /// wall this is the flow rate through the inlet. In a periodic wall, the total flux of the strengths through their surface must vanish, and the
-  /// result is (x1 n - ((n.rho) e1 + n1 rho)/2)/L (2.45).
+  /// Returns the flow rate that a double layer of unit strength at the point `at` with normal n causes, one entry per component of the strength. If
+  /// the wall is open, this is the flow rate through the inlet. If it is periodic with the period L, this is (x1 n - ((n.rho) e1 + n1 rho)/2)/L,
+  /// where rho is the vector from the axis x1 to the point (2.45); the total flux of the strengths through their surface must then be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Returns the bounding boxes of the elements of a channel wall, to compute distances.

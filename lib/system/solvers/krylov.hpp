@@ -58,7 +58,7 @@ class Krylov {
   /// solver stops early or breaks down (x is NaN after a breakdown); check the report.
   SolveReport solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const;
 
-  /// Discards the products that the preconditioner `recycled` keeps from earlier solves. Checkpoints do not contain them.
+  /// Discards the products that a preconditioner of the type `recycled` has stored in earlier solves. Checkpoints do not contain these products.
   void forget() const;
 
  private:

@@ -50,7 +50,7 @@ class NodalOperator {
   /// all rows.
   void apply(const Net& f, Net& u);
 
-  /// Returns whether A f is the sum of u over all ranks.
+  /// Returns whether each rank computes only a part of every sum. A f is then the sum, over all ranks, of the results u of `apply`.
   bool shared() const { return tree_ && parts_ > 1; }
 
   bool empty() const { return targets_.empty(); }
