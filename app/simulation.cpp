@@ -218,7 +218,7 @@ class Run {
     }
   }
 
-  /// Collects the totals of a finished step for a checkpoint.
+  /// Collects the totals of the run after a finished step, for a checkpoint: counts of operations, phase angle, contacts and warnings.
   void settle() {
     totals_.work = particle_->work();
     totals_.phase_angle = particle_->phase_angle();
@@ -283,7 +283,8 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // because the snapshot has added to the totals; the next solve also starts from its solution
+    if (pictured_) settle();  // Evaluating the snapshot has increased the counts in totals_. Its solution is also the initial guess of the
+                              // next solve.
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);

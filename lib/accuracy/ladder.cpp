@@ -47,7 +47,8 @@ class Ladder {
   }
 
  private:
-  static constexpr int balanced_from = 3;  // first level with balanced tolerances; on coarser levels, the shares of the error are unknown
+  // First level whose tolerances are adjusted to shares_, see `balanced`. The shares are measured at level 2, so they are unknown on coarser levels.
+  static constexpr int balanced_from = 3;
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
 
@@ -88,7 +89,7 @@ class Ladder {
 
   double seconds_here() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  /// Runs level k, unless it is finished. Returns `stopped`, or 0 if it has ended or failed.
+  /// Runs level k, unless it is finished already. Returns `stopped` if the run was interrupted and can be resumed, or 0 if the run ended or failed.
   int run(int k) {
     std::optional<Outcome> outcome;
     const int code = run(level_at(k), std::to_string(k), outcome);
@@ -100,7 +101,7 @@ class Ladder {
 
   Level level_at(int k) const { return k < balanced_from ? Level{k, k, k} : balanced(k, shares_[0], shares_[1]); }
 
-  /// Returns whether level k is expected to meet all requests. The runs that balance its parts would then cost more than they save.
+  /// Returns whether level k is expected to meet all requests. If so, the additional runs of balance() would cost more than they save.
   bool within_reach(int k) const {
     return coupling::decided([&] {
       const double gain = levels_.empty() ? 1 : expected_error(level_at(k)) / expected_error(levels_.back().level);
@@ -110,8 +111,9 @@ class Ladder {
     })[0] != 0;
   }
 
-  /// Runs level 2 twice more, with a looser tolerance of time and with one of quadrature. Sets shares_ to the shares of these parts in the error,
-  /// each the largest among all requests that are not met. Returns `stopped`, or 0.
+  /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. Runs level 2 again with a looser
+  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met. Returns `stopped`
+  /// if a run was interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -132,7 +134,8 @@ class Ladder {
     return 0;
   }
 
-  /// Runs one level in its directory, unless it is finished. Returns `stopped`, or 0 if it has ended or failed. Sets `outcome` on the first rank.
+  /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
+  /// and can be resumed, or 0 if the run ended or failed.
   int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) {
     failure_of_last_.clear();
     const std::string deck = program_.deck(settings(task_.values, level));
@@ -189,7 +192,7 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether the two finest levels have an obstacle (see `obstacle`). It is then expected on finer levels too.
+  /// Returns whether `obstacle` finds, on both of the two finest levels, that no error can be estimated. Finer levels are then not expected to help.
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};

@@ -58,8 +58,9 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, see `estimated`. By default they combine mesh and tolerances. If `looser` shows that a
-/// share of the error at level 2 is due to time integration, this share decreases with the time tolerance only.
+/// Returns the expected sizes of the errors of the levels, for `estimated`. By default, each is the expected_error() of the level. If `looser` shows
+/// that a share of the error at level 2 is due to time integration, this share is assumed to decrease with the time tolerance, and only the remaining
+/// error with expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;
@@ -75,7 +76,8 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   return sizes;
 }
 
-/// Returns the largest magnitude of all series with the same unit, relative to which differences are round-off: a component may vanish by symmetry.
+/// Returns the largest magnitude of all series with this unit. Differences that are tiny compared with it are round-off. The magnitude of a single
+/// series is not suitable, because a component may vanish by symmetry.
 double magnitude_of_unit(const output::RunRecord& record, const std::string& unit) {
   double most = 0;
   for (const output::Series& series : record.series())
@@ -173,7 +175,8 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
-      if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())  // a row has the error of the next fold or of the end
+      // On a branch of steady shapes, the error of a row is the error at the next fold, or at the end of the branch after the last fold.
+      if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())
         for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;
       one.values = envelope(pairs.back(), at);
       const double factor = estimate.error / std::max(largest(pairs.back().values), std::numeric_limits<double>::min());

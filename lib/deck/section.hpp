@@ -88,8 +88,9 @@ class Section {
   /// Marks a name as allowed in this section although it is not declared. Messages about unknown keys list it.
   void mention(std::string_view list);
 
-  /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, a section takes
-  /// keys that it does not set from the section that its key `like` names, or otherwise from the section `defaults`, for which `use` is not called.
+  /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, these sections may
+  /// share keys: keys that a section does not set are taken from the section named by its key `like`. A section without the key `like` takes them
+  /// from the section `defaults`. `use` is not called for `defaults`.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike = false);
 
   /// Returns whether the user gave this key. Used to detect keys that contradict each other.

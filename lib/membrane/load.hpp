@@ -44,7 +44,7 @@ class Load {
  public:
   virtual ~Load() = default;
 
-  virtual std::size_t n_sums() const { return 0; }  ///< number of nets in `sums`, which the caller sums in addition to `work`
+  virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller sums over ranks, in addition to `work`
 
   /// Adds contributions of these elements: to dE/dx in `work`, and to the nets that the global phase needs in `sums`. Shape of each net: (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
@@ -53,7 +53,7 @@ class Load {
 
   /// Returns whether the membrane stores the energy. An external force stores none.
   virtual bool stores() const { return false; }
-  /// Returns the energy that the membrane stores at x; `sums` are complete. Force x length.
+  /// Returns the energy that the membrane stores at x, force x length. `sums`: the nets of add_work(), summed over all elements.
   virtual double energy(const Net& /*x*/, std::span<const Net> /*sums*/) const { return 0; }
 
   /// Stores at x the data that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
@@ -80,7 +80,8 @@ class Load {
 
 using LoadParts = deck::Parts<std::unique_ptr<Load>(const ParticleSurface&)>;
 
-/// Returns the rigid conditions W x f = 0 of a force with the fixed direction f. If f = 0, there are no conditions.
+/// Returns the conditions W x f = 0 on the angular velocity W of a rigid motion, for a force with the fixed direction f. If f = 0, there are no
+/// conditions.
 inline RigidConditions fixed_direction(const Vec3& f) {
   if (f.norm() == 0) return RigidConditions(0, 6);
   const Vec3 d = f.normalized();

@@ -30,8 +30,12 @@ class MassMatrix {
  private:
   const spline::Space* space_;
   std::vector<Group> groups_;
-  std::vector<std::vector<Pack>> values_;  // per group: N_A at the Gauss points, entry [A n_gauss + q] for each extraction matrix
-  std::vector<std::vector<int>> slots_;  // matrix positions of entries (A, B <= A) and (B, A), per group; [(batch pairs + pair) pack_lanes() + lane]
+  // For each group: values N_A of the basis functions A at the Gauss points q of a batch, entry [A n_gauss + q]. Batches with equal extraction
+  // matrices share the values.
+  std::vector<std::vector<Pack>> values_;
+  // For each group: positions in matrix_ of the entries (A, B) and (B, A), for each pair B <= A of functions of a batch. Pair k of the group, counted
+  // through all of its batches, has the positions [2 k pack_lanes() + lane] and [(2 k + 1) pack_lanes() + lane].
+  std::vector<std::vector<int>> slots_;
   Eigen::SparseMatrix<double> matrix_;
   Net updated_;  // x of the latest update
 };

@@ -46,7 +46,8 @@ std::vector<Group> pack(const spline::Space& space, std::span<const int> element
 /// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.
 void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 
-/// Applies the transpose of `tangents`: adds sum_q (N_A,s p_q,1 + N_A,t p_q,2) to the rows A of `sum`, lane after lane.
+/// Applies the transpose of `tangents`: adds sum_q (N_A,s p_s + N_A,t p_t) to the row of each control point A of `sum`. At the Gauss point q, p_s is
+/// p[6 q .. 6 q + 2], and p_t is p[6 q + 3 .. 6 q + 5]. The elements are added one after another, in the order of their lanes.
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 
 /// Evaluates first and second derivatives of a net at the Gauss points of a batch: j[15 q + 3 k + c] is component c of x_,s x_,t x_,ss x_,st x_,tt

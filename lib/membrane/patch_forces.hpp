@@ -35,8 +35,9 @@ struct PatchForces {
   /// Throws UserError, with a one-sentence message, if a patch has no direction or two patches coincide.
   void check() const;
 
-  /// Returns the virtual work of all forces for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3).
-  /// int w dGamma_0 = 1 holds in the quadrature, so the rows add up to the total force to rounding. Throws UserError if a patch contains no membrane.
+  /// Returns the virtual work of all forces for a unit displacement of each control point, F_A = sum int N_A w dGamma_0 force (3.9), shape (N, 3). w
+  /// is the density of a force per unstressed area, divided by the force. The quadrature satisfies int w dGamma_0 = 1, so the rows add up to the
+  /// total force to rounding. Throws UserError if a patch contains no membrane.
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
 };
 

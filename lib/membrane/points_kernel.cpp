@@ -135,7 +135,7 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // part of the moduli that is due to the dependence of K on the metric
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // part of the moduli from dK, because K = J_s^2 (g^11, g^12, g^22) depends on the metric
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);
@@ -146,8 +146,8 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
   });
 }
 
-// Viscous stress, with k = (g^11, g^12, g^22) and the rate of strain e = (d11, 2 d12, d22): S = J (2 eta_s g^ac g^bd d_cd + (kappa_s - eta_s) g^ab
-// k.e).
+// Viscous stress S = J (2 eta_s g^ac g^bd d_cd + (kappa_s - eta_s) g^ab k.e), with the shear viscosity eta_s, the dilatational viscosity kappa_s, the
+// rate of strain d_ab, k = (g^11, g^12, g^22) and e = (d11, 2 d12, d22). J is the current area that the Gauss point represents.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* points, const Pack* tangents, TangentPoint* moduli) {
   const auto* const reference = reinterpret_cast<const Reference*>(points);
   const Register* const a = registers(tangents);

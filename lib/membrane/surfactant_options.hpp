@@ -11,7 +11,7 @@ namespace tanktread::membrane {
 struct SurfactantOptions {
   std::string equation_of_state = "linear";  ///< linear, Langmuir
   double elasticity = 0.2;                   ///< elasticity number E in the equation of state (3.16)
-  std::optional<double> coverage;            ///< coverage x: initial concentration divided by the largest one; only for Langmuir
+  std::optional<double> coverage;            ///< coverage x: initial concentration divided by the maximum packing concentration; only for Langmuir
   std::optional<double> diffusivity;         ///< surface diffusivity D_s, length^2/time; 0 if neither D_s nor the Peclet number is given
   std::optional<double> peclet_number;       ///< rate R_C^2/D_s
 

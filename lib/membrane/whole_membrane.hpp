@@ -23,12 +23,15 @@ struct WholeStiffness {
   bool any() const { return area > 0 || leaves > 0; }
 };
 
-/// Load and tangent of the energies of two global measures Q of the membrane:
+/// Load and tangent of two energies E of the whole membrane, each a function of one surface integral Q:
 ///
 ///   E = k/2 (Q - Q0)^2,   dE/dx = k (Q - Q0) q,   q = dQ/dx,   Q = x.q/m
 ///
-/// For the area A: k = K/A0, m = 2 (3.26). For the area difference per distance of the leaflets, N = int 2 chi dGamma: k = pi kbar/A0, m = 1 (3.27).
-/// A0 is the area of the unstressed surface. Q is homogeneous of degree m in x, so Q follows from its gradient q. Only q is summed over ranks.
+/// - Total area (3.26): Q = A, k = K/A0, m = 2.
+/// - Area difference of the leaflets divided by their distance (3.27): Q = N = int 2 chi dGamma, k = pi kbar/A0, m = 1.
+///
+/// K and kbar are the moduli in WholeStiffness, chi is the mean curvature, and A0 is the area of the unstressed surface. Q is homogeneous of degree m
+/// in x, so Q follows from its gradient q. Only q is summed over ranks.
 class WholeMembrane : public Load {
  public:
   /// `space` must outlive this object. `radius`: particle radius R_C.
@@ -49,7 +52,7 @@ class WholeMembrane : public Load {
  private:
   struct Measure {
     int degree;                                      // m, degree of homogeneity in x of Q, the total area or the area difference
-    std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane; Q is the sum of factor times energy of the membrane
+    std::vector<std::pair<double, Membrane>> parts;  // factors and membranes whose energies, times the factors, add up to Q
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
     double tension = 0;                              // k (Q - Q0) of (3.26), (3.27) at the shape of linearise(); a tension if Q is the area

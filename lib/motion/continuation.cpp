@@ -245,7 +245,8 @@ void Branch::begin() {
 void Branch::advance() {
   ++count_;
   if (last_.size() < 2) return begin();
-  // The number of iterations depends on the tolerance too. If the prediction was close, the branch bends little, and the step may grow.
+  // The step grows if the last solve took few iterations, or if the last prediction was close to the solution, so that the branch bends little. The
+  // second condition is needed because a small tolerance requires many iterations in any case.
   const int iterations = last_.back().iterations;
   const double change = iterations < 25 || missed_ < 0.05 ? 1.5 : iterations < 45 || missed_ < 0.2 ? 1 : 0.7;
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);

@@ -19,8 +19,8 @@ class FixedPointError {
   /// `most`: largest number m of earlier iterates.
   explicit FixedPointError(int most) : most_(most) {}
 
-  /// Stores x_k and f_k, which must be finite, and returns the estimate of x_k - x*. Cost: a least-squares problem with m columns, no evaluation of
-  /// g.
+  /// Stores the iterate x_k and its correction f_k, which must be finite, and returns the estimate of the error x_k - x*. The cost is a least-squares
+  /// problem with m columns; g is not evaluated.
   Net operator()(const Net& x, const Net& f);
 
   bool known() const { return before_.size() > 1; }  ///< returns true if the latest estimate uses earlier iterates, not only the correction

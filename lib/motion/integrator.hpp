@@ -34,7 +34,8 @@ struct State {
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if there are none
 };
 
-/// Keeps only what every scheme uses: position, slope, step and frozen operator. Used if the state was computed by another scheme.
+/// Keeps only the data that every scheme uses: position, slope, step, and the control net `frozen` of the assembled layer operators. Used if the
+/// state was computed by another scheme.
 void forget(State& state);
 
 /// Computes the first slope of a state that has none.

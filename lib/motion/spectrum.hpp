@@ -56,10 +56,10 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
 ///
-/// The relabellings (Dynamics::relabellings) that make up the velocity of a steady shape are subtracted from v, because modes are changes of the
-/// shape, not of the control points along it. Displacements and results are projected so that they do not change the conserved quantities, the volume
-/// and the masses of surfactants. Otherwise two modes of rate 0 would have the same shape at a fold, and errors of J would change their rates by the
-/// square root of the errors.
+/// Modes are changes of the shape, not motions of the control points along it. In a steady shape the velocity v is a sum of relabellings
+/// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
+/// quantities: the volume and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a fold, and an
+/// error of J would change their rates by the square root of the error.
 class Linearised {
  public:
   /// Linearises the motion about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
@@ -77,7 +77,7 @@ class Linearised {
   const Net& x_;
   double difference_;            // length of the largest displacement
   Eigen::VectorXd relabelling_;  // coefficients of v(x) with respect to the fields Dynamics::relabellings, which move points along the surface
-  Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to y, one per column
+  Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to the coordinates y, one per column
 };
 
 /// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved

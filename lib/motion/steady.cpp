@@ -43,8 +43,9 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  // Least part of a field that must be independent of the fields before it, as a fraction of its norm: above round-off for rigid motions; for
-  // relabellings, above the mesh error of an axisymmetric drop on a rotated mesh.
+  // A field is added only if its part orthogonal to the fields before it is larger than this fraction of its norm. `rounding`, for rigid motions, is
+  // above round-off. `between_meshes`, for relabellings, is above the mesh error by which a relabelling of an axisymmetric drop differs from a rigid
+  // rotation.
   constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);
@@ -75,7 +76,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Makes implicit steps, at first shorter than the step of the equations, until a step of full length changes x by little.
+/// Makes implicit time steps until a step of the full length equations.step() changes x by little. The first steps are shorter.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;

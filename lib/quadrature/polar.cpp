@@ -45,8 +45,9 @@ double rho_along_ray(const Vec3& a, const Vec3& b) {
   return ellipse(-2 * a.dot(b) / square - 1, 2 * a.cross(b).norm() / square);
 }
 
-/// Side from A to B of a triangle with its apex at the target, in the plane of the metric: the distance h of the side from the apex, the positions
-/// tau_a and tau_b of its ends relative to the foot of the perpendicular, the angular coordinate mu (see polar) at A, and the length of its interval.
+/// Side from A to B of a triangle with its apex at the target. Lengths are in the plane of the metric, the parameter plane under the linear map that
+/// gives the tangents x_,s and x_,t their angle and their ratio of lengths. h: distance of the side from the apex. tau_a, tau_b: positions of A and B
+/// along the side, from the foot of the perpendicular. mu_a: angular coordinate mu of A, see polar(). range: length of the interval of mu.
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 
@@ -106,7 +107,9 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
     const FarSide side(shear, a, b);
     orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
   });
-  for (int k = 0; k < 4; ++k)  // the position x = r affine + r^2 (corner - affine) on the ray to a corner has complex zeros other than r = 0
+  // On the ray to a corner, the position relative to the target is x(r) = r affine + r^2 (corner - affine). The integrand, of the order of 1/|x|, has
+  // poles at the complex r /= 0 with x.x = 0.
+  for (int k = 0; k < 4; ++k)
     orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
   orders.radial = rounded_up(orders.radial);
   for (int& order : orders.angular) order = rounded_up(order);

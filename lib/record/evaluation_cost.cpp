@@ -78,7 +78,7 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
     try {
       cost = measured(coarse);
     } catch (const UserError&) {
-      continue;  // the scene needs its finer mesh
+      continue;  // the scene is not valid on this coarse mesh: tries the next finer one
     }
     const double ratio = elements(scene) / cost.elements, seconds = cost.seconds * ratio * ratio;
     if (seconds > longest)

@@ -24,7 +24,7 @@ double least_distance(const PackedSphere& a, const PackedSphere& b, double gap) 
 namespace {
 
 constexpr int most_sweeps = 20000, thermal_sweeps = 200;
-constexpr double clear = 1.01;  // overlapping spheres are pushed apart to this multiple of their least distance
+constexpr double clear = 1.01;  // overlapping spheres are pushed apart to this multiple of least_distance()
 
 class Packing {
  public:
@@ -101,8 +101,8 @@ class Packing {
     return false;
   }
 
-  /// Makes a random step of sphere i of at most `longest`. Undoes the step and returns false if the sphere then overlaps another one or has moved by
-  /// more than the skin since the last search.
+  /// Makes a random step of sphere i of at most `longest`. Undoes the step and returns false if the sphere then overlaps another one, or if it has
+  /// moved by more than the skin (see find_neighbours) since the neighbour lists were built.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;
@@ -290,7 +290,8 @@ void CopiesOptions::check(const std::string& list, bool cell) const {
 
 namespace {
 
-/// Returns the copies of all kinds. Copies at random in the cell are packed together.
+/// Returns the copies of all kinds. The copies at random positions in the cell, of all kinds, are moved by one call of pack() until they do not
+/// overlap.
 std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<std::vector<Copy>> all;
   std::vector<PackedSphere> taken;

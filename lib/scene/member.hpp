@@ -25,7 +25,7 @@ struct Member {
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
   std::shared_ptr<const membrane::Membrane> membrane;
-  spline::Place place;    ///< material point whose phase is recorded, as a parametric point of the nested space
+  spline::Place place;    ///< material point whose phase angle is recorded, as a parametric point of Body::nested()
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 

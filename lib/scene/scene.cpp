@@ -86,8 +86,8 @@ double wall_points(const Scene& scene) {
   return scene.tube.azimuthal_elements * (along + 3.0);
 }
 
-/// Returns the bytes per pair of control points of the assembled layers of the particle: rows of doubles, and frozen operators of six entries of 16
-/// bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
+/// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
+/// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
 double bytes_a_pair(const Scene& scene) {
   if (scene.particle.rigid()) return doubles;
   const bool viscous = scene.particle.viscosity_ratio != 1;
@@ -190,7 +190,8 @@ void check_first_kind(const Scene& scene) {
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
-/// Checks each of several particles as a scene of its own. Throws UserError with the names of the particles, or if they cannot be combined.
+/// Checks a scene of several particles: each particle as a scene of its own, and whether the particles can be combined in one scene. Throws
+/// UserError, with the name of the particle in the message.
 void check_several(const Scene& scene) {
   const std::vector<Scene> alone = scene.alone();
   const bool strong = alone.front().load_is_strong();

@@ -135,7 +135,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
     row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
   } else {
     const Vec3& n = of.planes.front().normal();
-    Vec3 across = particle_force;  // force of particles and posts on the fluid; its component along the normal is needed
+    Vec3 across = particle_force;  // force of particles and posts on the fluid; only its component along n is used
     for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {
@@ -153,8 +153,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
       row.mean_velocity += carried / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // without the flow inside the post, which exists only in the integral equation and is
-                                                          // driven by the pressure gradient
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside
+                                                          // the post. Its force and its flow rate are removed here.
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];

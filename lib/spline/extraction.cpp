@@ -43,8 +43,9 @@ std::array<int, OneRing::size> ring_of(const Lattice& l, const TileFunctions& f,
   return out;
 }
 
-/// Converts a table of Bernstein coefficients for a face with the extraordinary point at corner 0, with row (p + 1) v + u, to an extraction matrix
-/// for a face with the point at corner k. The result has shape (functions, Bernstein coefficients).
+/// Converts a table of Bernstein coefficients to an extraction matrix. In the table the extraordinary point is at corner 0 of the face, and
+/// coefficient (u, v) of all functions is in row (p + 1) v + u. In the matrix the point is at corner k, and the shape is (functions, Bernstein
+/// coefficients).
 Eigen::MatrixXd at_corner(const Eigen::MatrixXd& table, int p, int k) {
   Eigen::MatrixXd out(table.cols(), table.rows());
   for (int v = 0; v <= p; ++v)
@@ -98,9 +99,9 @@ TileElements laid_out(const TMesh& mesh, const TileFunctions& b, ExtraordinaryRu
   const Lattice& l = *mesh.lattice;
   const std::vector<int> point = control_points(mesh);
   const int tiles = int(b.tiling.tiles.size());
-  // The innermost square at an extraordinary point is represented by an averaged bicubic in catmull_clark_pieces(). The side of this square is
-  // 2^-max(levels, 4) of an element of the initial mesh. It does not depend on the refinement, so that spaces before and after a refinement are
-  // nested.
+  // At an extraordinary point, catmull_clark_pieces() represents a small square by one bicubic that only approximates the limit surface. The side of
+  // this square is 2^-max(levels, 4) times the element size of the initial mesh. The side does not change if the mesh is refined, so the spaces
+  // before and after a refinement are nested.
   const int levels = log2_of(l.base), below_unit = std::max(levels, 4) - levels;
   // Bezier elements by corner and width of the mesh element; control points are OneRing indices
   std::map<std::pair<int, int>, std::vector<Element>> patterns;

@@ -8,7 +8,7 @@ namespace tanktread::spline {
 
 /// Representation of the surface on the faces around an extraordinary point.
 enum class ExtraordinaryRule {
-  g1,             ///< one bi-quartic element per face, with continuous tangent planes (G1), as in the paper; not nested under refinement
+  g1,             ///< one bi-quartic element per face, with continuous tangent planes (G1; Maestre et al. 2017); not nested under refinement
   catmull_clark,  ///< limit surface of Catmull-Clark subdivision in bicubic pieces, smaller towards the extraordinary point; nested
 };
 

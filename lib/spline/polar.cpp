@@ -108,7 +108,8 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns, with `c1`, the anchor at whose generalised Greville point function k of a pole is collocated, or -1 for the pole itself.
+  /// Returns, for PoleRule::c1, where function k of a pole is collocated: the anchor whose generalised Greville point is used, or -1 for the pole.
+  /// `ahead`: the pole at the end of the meridian, otherwise the pole at its start.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:
@@ -143,8 +144,9 @@ class Shares {
 /// Returns knot i of the open uniform knots 0, 0, 0, 0, 1, .. r - 1, r, r, r, r.
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
 
-/// Returns the permutation of the Bezier points of an element at a pole after which the pole is at u = 1, as the transform of degenerate elements
-/// requires: Q_(v u) = element[order[4 v + u]]. `ahead`: pole at the end of the meridian.
+/// Returns the permutation of Bezier points that turns an element with a side at a pole so that the pole is at u = 1, as PolePiece requires. Bezier
+/// point 4 v + u of the turned element is point order[4 v + u] of the element. `ahead`: the pole at the end of the meridian, otherwise the pole at
+/// its start.
 std::array<int, 16> seen_from_base(bool ahead) {
   std::array<int, 16> order;
   for (int v = 0; v < 4; ++v)
@@ -185,7 +187,8 @@ class Transform {
   std::vector<PolePiece> pieces_;
 };
 
-/// Returns the pole as one site (element and local coordinates) on every element that has a side collapsed to the pole.
+/// Returns the pole as one site (element and local coordinates) on every element that has a side collapsed to the pole. `ahead`: the pole at the end
+/// of the meridian, otherwise the pole at its start.
 std::vector<Site> tiles_at_pole(const Lattice& l, const Tiling& tiling, bool ahead) {
   std::vector<Site> out;
   for (int k = 0; k < int(tiling.tiles.size()); ++k) {

@@ -33,8 +33,8 @@ TileImage image(const Lattice& lattice, const LatticeMap& map, const Tiling& til
 /// Returns the unique map, mirrored or not, that maps one ray to another; nothing if the lattice does not have this symmetry.
 std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, bool mirrored);
 
-/// Returns the map that, for every Bezier element e, maps the T-mesh element that contains e to the T-mesh element that contains element[e]; nothing
-/// if there is no such map.
+/// Returns the map of the lattice that agrees with a map of Bezier elements; nothing if there is no such map. `element`: for every Bezier element e,
+/// its image. The result maps the T-mesh element that contains e to the T-mesh element that contains element[e].
 std::optional<LatticeMap> lattice_map(const TMesh& mesh, const Space& space, std::span<const int> element, bool mirrored);
 
 /// Requests to bisect an element of elements(mesh): across s (by a line of constant s), across t, or both.
@@ -55,15 +55,16 @@ struct RepairRules {
 struct Refinement {
   TMesh mesh;
   int refused = 0;   ///< number of bisections not done because the lattice is too coarse
-  int repairs = 0;   ///< number of line segments between perpendicular edges added to satisfy the rules
+  int repairs = 0;   ///< number of line segments between perpendicular edges that were added to satisfy RepairRules
   int halvings = 0;  ///< number of times that the spacing around an extraordinary point was halved
 };
 
-/// Bisects the marked elements and repairs the mesh. The repair adds one bay after the other, where a bay is the part of a line between two
-/// successive perpendicular edges, until no extensions cross, none of the earlier extensions is missing, and none overlap. Each bay extends one of
-/// the T-junctions involved: the T-junction for which the fewest violations remain. If a bisection enters the three uniform rings of elements around
-/// an extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of marks but not on
-/// their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
+/// Bisects the marked elements and repairs the mesh. The repair adds bays, parts of a line between two successive perpendicular edges, one after
+/// another until three rules hold: no extensions of T-junctions cross, no extension that existed before is missing, and no extensions overlap. Each
+/// bay extends one of the T-junctions that violate a rule: the T-junction for which the fewest violations remain or, at an overlap, the T-junction
+/// with the shorter bay. If a bisection enters the three uniform rings of elements around an extraordinary point, all elements of the two inner rings
+/// are bisected. Edges are only added. The result depends on the set of marks but not on their order. If the mesh has the symmetries of
+/// `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
 /// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and in addition the rule on overlaps and
 /// extraordinary points.
@@ -88,12 +89,12 @@ struct Merge {
   int s = 1, t = 1;
 };
 
-/// Removes the mesh lines that the elements on both sides permit to remove: lines whose coordinate is not a multiple of the smaller one of the two
-/// permitted element widths. Lines of the base mesh stay. The uniform rings of elements around an extraordinary point are coarsened only as a
-/// whole.
+/// Removes mesh lines between elements that may grow. A line is removed if its coordinate is not a multiple of the width to which the elements on
+/// both sides may grow; if the two widths differ, the smaller one counts. Lines of the initial mesh stay. The uniform rings of elements around an
+/// extraordinary point are coarsened only as a whole.
 ///
-/// All these lines are removed together, and the mesh is repaired afterwards: removed one by one, many lines would have to stay because of
-/// T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With
+/// All these lines are removed together, and the mesh is repaired afterwards. If they were removed one by one, many lines would have to stay because
+/// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With
 /// `rules.images`, an element may grow as far as all of its images may, and a line is removed with all of its images or not at all.
 Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 

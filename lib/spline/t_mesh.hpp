@@ -43,7 +43,8 @@ std::vector<int> control_points(const TMesh& mesh);
 struct Rectangle {
   int face, x, y, width, height;
 };
-/// Returns the sides of a rectangle as rays from corner (x, y), (x+w, y), (x+w, y+h) and (x, y+h) to the next corner, outward orientation.
+/// Returns the sides of a rectangle as rays from the corners (x, y), (x+w, y), (x+w, y+h) and (x, y+h), each towards the next corner,
+/// counter-clockwise seen from outside.
 std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 
 /// Returns whether a side of the rectangle is collapsed to a pole.

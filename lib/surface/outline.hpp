@@ -101,8 +101,9 @@ class Outline {
   /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.
   std::vector<double> knots(int k, int m) const;
 
-  /// Returns the outline as cubic splines on shares(elements, 2) even elements. The splines interpolate the points at the knots and, on open sides,
-  /// the tangents at the ends. All sides of the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
+  /// Returns the outline as cubic splines. `elements` are divided among the sides by shares(), with at least two per side, or three on a smooth
+  /// outline; the knots are knots(). The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of the
+  /// result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
   Outline spline(int elements) const;
 
  private:
@@ -136,7 +137,8 @@ Outline outline(const TubeOptions& options);
 /// Returns the cross-section of a tube as cubic splines on `elements` elements.
 inline Outline outline(const TubeOptions& options, int elements) { return outline(options).spline(elements); }
 
-/// Returns the outline through the points of a file, as described at `Tube/outline`. Throws UserError with file, line and numbers in one sentence.
+/// Returns the outline through the points of a file, as described at `Tube/outline`. Throws UserError with a one-sentence message that names the file
+/// and, for a wrong line, its number.
 Outline read_outline(const std::string& path);
 
 }  // namespace tanktread::surface

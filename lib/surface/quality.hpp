@@ -22,7 +22,8 @@ struct Quality {
   int stretched_element = 0;
 };
 
-/// Computes the quality. Throws RunFailure, naming the control point, if a control point is not finite.
+/// Computes the quality of all elements of a surface, or of the given elements. Throws RunFailure, naming the control point, if a control point is
+/// not finite.
 Quality quality(const BezierMap& map, const Net& net);
 Quality quality(const BezierMap& map, const Net& net, std::span<const int> elements);
 

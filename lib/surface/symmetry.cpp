@@ -294,7 +294,7 @@ Parity::Parity(const Symmetry& symmetry, const Vec3& of_planes)
     : source_(symmetry.source()), signs_(Net::Zero(static_cast<Eigen::Index>(source_.size()), 3)),
       scalar_signs_(Eigen::VectorXd::Zero(signs_.rows())) {
   for (const int a : symmetry.fundamental()) signs_.row(a).setOnes(), scalar_signs_[a] = 1;
-  for (const Image& g : symmetry.images()) {  // sums the factors of all images (group elements) that map the source to the point
+  for (const Image& g : symmetry.images()) {  // adds, for each b, the factors by which the group elements g that map a to b multiply the field
     const double turned = (g.signs.array() < 0).select(of_planes, Vec3::Ones()).prod();
     for (const int a : symmetry.fundamental()) {
       const int b = g.point[static_cast<std::size_t>(a)];

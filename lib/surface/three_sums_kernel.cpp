@@ -20,7 +20,7 @@ void add_columns(int first, int n, int n_rows, const double* rows, const double*
     for (int k = 0; k < registers; ++k) store(sum[c][k], out + n * c + first + lanes * k);
 }
 
-/// Computes a single column of the three sums, for the columns that do not fill a SIMD register.
+/// Computes column k of the result of three_sums(). Used for the columns that do not fill a SIMD register.
 void add_column(int k, int n, int n_rows, const double* rows, const double* factors, double* out) {
   for (int c = 0; c < 3; ++c) {
     double sum = 0;

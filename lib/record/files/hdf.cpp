@@ -47,7 +47,7 @@ void write_attribute(hid_t file, const std::string& name, const std::string& key
 
 Id dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name}; }
 
-/// Returns a text that `read` makes HDF5 write into a buffer, without the null characters that pad it.
+/// Reads a text of this type: calls read(buffer), which lets HDF5 fill the buffer, and removes the null characters with which HDF5 pads the text.
 template <class Read>
 std::string text_of(const Id& type, const std::string& name, const Read& read) {
   std::string text(H5Tget_size(type), '\0');

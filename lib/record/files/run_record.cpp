@@ -33,7 +33,8 @@ RunRecord RunRecord::load(const std::filesystem::path& path) try {
 void RunRecord::declare(std::string name, std::string unit, std::string description, std::string si) {
   const auto old = std::ranges::find(series_, name, &Series::name);
   std::vector<double> values(rows(), std::numeric_limits<double>::quiet_NaN());
-  if (old != series_.end()) {  // rows are appended in the order of declaration, so a loaded series moves behind those declared so far
+  if (old != series_.end()) {  // The series was loaded from a file. It moves to the end, because append() needs the series in the order in which the
+                               // program declares them.
     values = std::move(old->values);
     series_.erase(old);
   }

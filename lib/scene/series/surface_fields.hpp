@@ -45,8 +45,9 @@ class SurfaceFields {
   /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
-  /// Returns the state `old` on the current meshes, with the shapes of `own`. Fields are transferred from the previous meshes, on which `before`
-  /// holds them. If there are fields, the result has no slopes and secants. `bodies`: previous body of each particle; null if its mesh is unchanged.
+  /// Transfers the state `old` to the current meshes. `own`: the shapes of this state, already on the current meshes. `before`: the fields on the
+  /// previous meshes. `bodies`: previous body of each particle; null if its mesh is unchanged. If there are fields, the result has no slopes and no
+  /// secants.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
   /// Passes the state y to the capsule and the fields. If the capsule was last evaluated at a state within `distance` of y, passes the state only to
@@ -57,7 +58,8 @@ class SurfaceFields {
   /// fields.
   surface::FieldsAt values_at(std::size_t p) const;
 
-  /// Adds the contributions of the fields of particle p to its row, and the columns of its fields and loads. `y` is the state set last.
+  /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
+  /// must be the state that was set last by set_state().
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
   /// Returns the power of the loads of all fields if the material moves by v.
   double power(const Net& v) const;

@@ -38,7 +38,8 @@ class AmbientFlow {
   bool at(double time, double start);
   double next_kink(double time) const;  ///< returns the first time after `time` at which the flow is not smooth in time, or infinity
 
-  /// Returns this flow or, if its direction changes in time, enough rotated flows that a symmetry common to them is a symmetry for all directions.
+  /// Returns this flow. If its direction changes in time, returns copies of it in several directions instead. A symmetry of all these copies is a
+  /// symmetry of the flow in every direction.
   std::vector<AmbientFlow> directions() const;
 
   /// Returns the velocity at a point, units length/time. In a duct, evaluating many points at once is much faster.
@@ -55,7 +56,8 @@ class AmbientFlow {
   /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.
   Mat3 cell_gradient() const { return affine() ? gradient(Vec3::Zero()) : Mat3(Mat3::Zero()); }
 
-  /// Returns the matrix by which lattice vectors of time 0 are multiplied at `time`: dF/dt = L F with L of `cell_gradient` (2.51).
+  /// Returns the matrix F by which the lattice vectors at time 0 are multiplied to get the lattice vectors at `time`: dF/dt = L F, F(0) = I, with L
+  /// the gradient `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
   /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.
@@ -82,7 +84,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // set for a registered flow; replaces the field
+  std::shared_ptr<const UserFlow> user_;  // registered flow, which is evaluated instead of field_; null for the other types
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // field at amplitude 1; field at the current time
   FlowHistory::Moment moment_;

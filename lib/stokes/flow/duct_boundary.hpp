@@ -34,7 +34,7 @@ struct OutlineSite {
 /// element.
 class OutlineSpace {
  public:
-  /// Grading exponents p and r of a side.
+  /// Exponents p and r of the grading function w(t) of a side, at its first and last corner.
   struct Crowding {
     double first, last;
   };
@@ -89,7 +89,7 @@ class BoundaryProfile : public DuctProfile {
   surface::Vec2 centroid_;
   double radius_, flow_rate_;
   int n_elements_;
-  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // nodes of (2.17), relative to the centroid
+  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // nodes of (2.17): position relative to the centroid, line element, v_c, psi
 };
 
 }  // namespace tanktread::stokes

@@ -12,7 +12,9 @@ using std::numbers::pi;
 
 Ellipsoid::Ellipsoid(const Vec3& axes) : semi_axes(axes) {
   const Vec3 s = axes.cwiseAbs2();
-  chi = 2 * boost::math::ellint_rf(s[0], s[1], s[2]);  // Carlson's elliptic integrals: R_F = 1/2 int dl/Delta, R_D = 3/2 int dl/((z + l) Delta)
+  // Carlson's elliptic integrals from 0 to infinity, with Delta = sqrt((x + l)(y + l)(z + l)):
+  // R_F(x, y, z) = 1/2 int dl/Delta, R_D(x, y, z) = 3/2 int dl/((z + l) Delta)
+  chi = 2 * boost::math::ellint_rf(s[0], s[1], s[2]);
   for (int i = 0; i < 3; ++i) alpha[i] = 2. / 3 * boost::math::ellint_rd(s[(i + 1) % 3], s[(i + 2) % 3], s[i]);
 }
 

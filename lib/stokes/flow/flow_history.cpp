@@ -24,7 +24,8 @@ constexpr double degree = std::numbers::pi / 180;
 /// Returns F(1) of dF/ds = (A + s B) F, F(0) = I. A = `first`, B = `change`. The interval is divided into parts so short that the Taylor series of F
 /// converges fast on each.
 Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
-  constexpr int terms = 20;  // number of Taylor terms; the next term is below 1e-16, because the norm of the gradients on a part is at most 1/2
+  // Number of Taylor terms. The next term is below 1e-16, because the parts are so short that h (|A| + |B|) is at most 1/2.
+  constexpr int terms = 20;
   const int parts = 1 + static_cast<int>(2 * (first.norm() + change.norm()));
   const double h = 1. / parts;
   Mat3 whole = Mat3::Identity();
@@ -144,8 +145,9 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
   return now;
 }
 
-/// Without rotation the gradients at all times commute, so that F is one exponential. With rotation, Q rotates at a constant rate W between two times
-/// of the table. There Q^T F satisfies an equation with the gradient a L - W, which is linear in time.
+/// If the flow does not rotate, the gradients at all times commute, and the deformation F is one matrix exponential. If it rotates, the rotation Q
+/// has a constant angular velocity tensor W between two times of the table. Then Q^T F satisfies an equation with the gradient a L - W, where the
+/// amplitude a is linear in time and L is the gradient at amplitude 1.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
     const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;

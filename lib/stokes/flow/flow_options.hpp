@@ -47,10 +47,12 @@ struct FlowOptions {
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
-  /// Returns the rate in Ca: the shear rate, the largest singular value of the gradient for `linear`, or the maximum velocity over the half width for
-  /// `parabolic`. If the type is `quiescent`, two plates set it: the difference of their velocities divided by their distance or, if that is 0, half
-  /// of the shear rate on them due to the pressure gradient. Otherwise it is 0 for a flow without gradient, and for a duct, for which the speed is
-  /// used instead. For a flow that changes in time it refers to amplitude 1. Units 1/time.
+  /// Returns the rate in Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. It depends on the type:
+  /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
+  /// - `quiescent` between two plates: difference of the plates' velocities divided by the plates' distance; if the velocities do not differ, half
+  ///   of the shear rate on the plates due to the pressure gradient;
+  /// - `uniform`, `quiescent` without two plates, and `duct`, for which the speed is used instead: 0;
+  /// - a user-defined type: its own rate; any other type: the shear rate.
   double rate() const;
 
   /// Returns the velocity in Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.

@@ -72,8 +72,8 @@ struct Charges {
   }
 };
 
-/// Kernels for TreeSum: sums at far_block targets of sources with several components. Targets have the layout of far_sum(); results are
-/// value[far_block c + l].
+/// Kernels for TreeSum: each computes a sum over sources with several components, at far_block targets. Targets have the layout of far_sum().
+/// Component c of the result at target l is value[far_block c + l].
 void stokeslet_sum(const Charges& points, const double* target, double* value);
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);

@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns, for each lattice vector, the number of steps up to which images count as near, and the distance of the nearest image that does not count
-/// as near. For any two points in the box this distance is about `far` box lengths.
+/// Returns how many images count as near: for each lattice vector, the largest number of steps along it. Also returns the distance of the nearest
+/// image that is not near. For any two points in the box this distance is about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -69,7 +69,8 @@ Eigen::MatrixXd interpolation(const std::vector<double>& places, const std::vect
   return result;
 }
 
-/// Returns the distinct differences between two nodes. `number`: for each pair of nodes a, b, the index of its difference b - a.
+/// Returns the distinct values of (b - a)/2 for all pairs of node coordinates a, b in [-1, 1]. `number`: for each pair, the index of its value, with
+/// b running fastest.
 std::vector<double> differences(const std::vector<double>& nodes, std::vector<int>& number) {
   std::vector<double> all;
   for (const double a : nodes)

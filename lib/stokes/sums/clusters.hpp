@@ -27,16 +27,17 @@ struct Cluster : ChebyshevBox {
   bool serves(const ChebyshevBox& other, const Vec3& beyond) const;
 };
 
-/// A binary tree over points that come in groups (the far nodes of a panel, or single points). A group is never split. The boxes of flat clusters are
-/// aligned with the cluster, so that a patch of a surface needs only two or three nodes across its thickness.
+/// A binary tree over points. The points come in groups: the far nodes of one panel, or single points. A group is never split. The box of a flat
+/// cluster has an axis along the cluster's normal, so that a patch of a surface needs only two or three nodes across its thickness.
 ///
-/// Interpolation of G (2.1) along the half-width a of a box with n nodes has an error of rho^(-n) at the distance z a from its centre, where
-/// rho = z + sqrt(z^2 - 1), cf. (2.9). The number n along the longest axis follows from the tolerance, reach = z a from n, and the numbers of nodes
-/// along the other axes from reach.
+/// Consider a box with half-width a and n Chebyshev nodes along one axis. At the distance z a from its centre, interpolation of G (2.1) along this
+/// axis has an error of rho^(-n), where rho = z + sqrt(z^2 - 1), cf. (2.9). Along the longest axis, n is chosen from the tolerance, and `reach` is
+/// the distance z a at which the error equals the tolerance. Along the other axes, n is the smallest number that gives the tolerance at the distance
+/// `reach`.
 class Clusters {
  public:
-  /// `leaf`: largest number of points in a leaf; a leaf may have more points if it is a single group. `quantum`: both halves of a cluster start at a
-  /// multiple of `quantum` groups, and n points or nodes are assumed to cost as much as n rounded up to a multiple of `quantum`.
+  /// `leaf`: largest number of points in a leaf; a leaf has more points only if it cannot be split. `quantum`: a cluster is split after a multiple of
+  /// `quantum` groups, and the cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
   /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only.
@@ -53,7 +54,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
-    double along;  // coordinate of the centre along the axis in which its cluster is split
+    double along;  // coordinate of `centre` along the axis by which the cluster that contains the group is split
     int number;
   };
   int split(int first, int last, Mat3 axes, std::span<const int> starts);

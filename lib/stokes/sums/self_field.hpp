@@ -21,7 +21,7 @@ using Sites = std::vector<std::vector<spline::Site>>;
 /// A site on one of the panels that contain it.
 struct SelfPair {
   int panel = 0;
-  quadrature::Shear shear;         ///< rounded metric of the panel at the site, for which the rule was constructed
+  quadrature::Shear shear;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
   quadrature::PolarOrders orders;  ///< raised orders if the panel is distorted, otherwise 0; if only the radial order is not 0, the rule is tensor
                                    ///< Gauss of this order
   const PointTable* table = nullptr;
@@ -36,7 +36,7 @@ class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);
 
-  /// Returns the pairs of site i.
+  /// Returns the pairs of site i and a panel that contains it, one pair per panel.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
   /// Returns the singular rule on the pair's panel for the current metric at the site. If the rule changes, stored weights are discarded.

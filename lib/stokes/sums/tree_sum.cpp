@@ -101,8 +101,8 @@ void TreeSum::want(std::span<const int> rows) {
   ask();
 }
 
-/// Keeps the pairs of clusters that belong to this part (share()). Each part has an equal share of the work and contains adjacent source clusters, so
-/// that only few parts compute the strengths of a given cluster.
+/// Keeps only the pairs of clusters that belong to the part of the sum set by share(). Each part has an equal share of the work. It contains adjacent
+/// source clusters, so that only few parts compute the strengths of a given cluster.
 void TreeSum::take_part() {
   std::ranges::stable_sort(pairs_, {}, &Pair::source);
   long long before = 0, all = 0;

@@ -53,8 +53,9 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   return wall_;
 }
 
-/// Returns the velocity that drives the flow, without the response of the wall: in an open channel the contributions P of both ends (2.29), in a
-/// periodic channel Poiseuille flow in a circular tube with a unit pressure gradient, whatever the shape of the section.
+/// Returns the velocity that drives the flow, without the velocity due to the wall traction. In an open channel it is P_I + P_O of (2.30), the
+/// contributions of both ends. In a periodic channel it is Poiseuille flow in a circular tube with a unit pressure gradient, for any shape of the
+/// section.
 Net ChannelFlow::ends(const Net& x) const {
   if (!channel_->repeats()) return ends_[0].velocities(x) + ends_[1].velocities(x);
   Net v = Net::Zero(x.rows(), 3);

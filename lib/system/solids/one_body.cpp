@@ -22,8 +22,9 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
   }
 }
 
-/// Returns the inverse of the operator w -> R <w> - H w of (2.23) for one body: R is the collocation matrix, <w> the rigid motion nearest to w, and H
-/// the double layer. If the motion is prescribed, the single layer (1/mu) A of the load (mu/R_C) <w> replaces R <w>.
+/// Returns the inverse of the operator w -> R <w> - H w of (2.23) for one body. R is the collocation matrix, <w> the rigid motion nearest to w, and H
+/// the double layer. If the motion of the body is prescribed, R <w> is replaced by (1/mu) A f with the load f = (mu/R_C) <w>, the single layer A and
+/// the particle radius R_C.
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();
@@ -81,8 +82,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest thickness of a film, divided by the smaller radius of the two bodies, for which a film inverse is set up. Thicker films need none: modes
-/// whose wavelength equals the thickness decay across the film by a third or more.
+/// Largest thickness h of a film for which a film inverse is set up, divided by the smaller radius R of the two bodies. Thicker films need none: the
+/// wave numbers k are at least about 1/R, so the eigenvalues, of the order of k h (see FilmInverses), are not small.
 constexpr double widest = 0.5;
 
 /// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.
@@ -107,8 +108,8 @@ struct Side {
   }
 };
 
-/// Returns C = -H M^-1 (FilmInverses), the effect of the body `by` on the sites of another body. `rows`: rows of the double layer H for the sites of
-/// the other body. `sites`: sites of `by`, for which the columns of M^-1 are used.
+/// Returns C = -H M^-1 (see FilmInverses): the effect of the body `by` on the sites of another body. M is the operator of the isolated body `by`.
+/// `rows`: rows of the double layer H for the sites of the other body. `sites`: sites of `by`, for which the columns of M^-1 are used.
 Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
                          const RigidParticles& placed) {
   return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);

@@ -44,7 +44,8 @@ class FunctionOperator : public Thyra::LinearOpBase<double> {
   Teuchos::RCP<const Space> space_;
 };
 
-/// A factory of Belos solvers, set up as Krylov sets them up. Flexible GMRES always needs a preconditioner, at least the identity.
+/// A factory of Belos solvers with the same parameters as in the class Krylov. `flexible`: the solver is flexible GMRES, which always needs a
+/// preconditioner, at least the identity.
 struct BelosFactory {
   Teuchos::RCP<Thyra::LinearOpWithSolveFactoryBase<double>> factory;
   bool flexible = false;

@@ -47,7 +47,7 @@ class ChosenPreconditioner {
   LinearSystem join(const LinearSystem& system);
 
   void refresh() { recycled_.refresh(); }  ///< ends a solve
-  void forget() { recycled_ = {}; }        ///< discards the products recorded from earlier solves
+  void forget() { recycled_ = {}; }        ///< discards the products y = A z recorded in earlier solves
 
  private:
   std::string kind_;

@@ -28,9 +28,9 @@ class FixedPoint {
   /// four iterates do not converge, and on fine meshes twenty do not; on coarse meshes forty are linearly dependent.
   static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
-  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`, with products with dg/dx by finite differences of g, with
-  /// the Belos solver and preconditioner of `linear` (preconditioner "own": none). `list` is passed to NOX unchanged and overrides the defaults set
-  /// here. `depth`: number of iterates that `anderson` combines, if the list does not set it.
+  /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`. `linear`: Belos solver and preconditioner of the linear
+  /// systems of `newton-krylov`, in which products with dg/dx are finite differences of g; the preconditioner "own" means none. `list` is passed to
+  /// NOX unchanged and overrides the defaults set here. `depth`: number of iterates that `anderson` combines, if the list does not set it.
   FixedPoint(std::string method, const std::shared_ptr<Teuchos::ParameterList>& list, const IterativeOptions& linear = {"GMRES"}, int depth = 4);
   ~FixedPoint();
 
