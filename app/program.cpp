@@ -157,9 +157,7 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
   deck::Document before = deck::read_text(stored, "The stored deck");
   before.declare(scene);
   auto old_values = before.values();
-  auto new_values = now.values();
-  new_values.insert(old_values.begin(), old_values.end());  // adds the keys that only the stored deck has
-  for (const auto& [path, value] : new_values)
+  for (const auto& [path, value] : now.values())
     if (old_values[path] != value && !may_change_on_resume(path))
       throw UserError(path + " cannot change when a run continues: it was " + (old_values[path].empty() ? "not set" : old_values[path]) +
                       ", and now is " + value + ".");
@@ -375,10 +373,6 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     return report(error.what(), failed);
   }
 }
-
-}  // namespace
-
-namespace {
 
 /// Keeps freed memory for the next step and snapshot instead of returning it to the system, which clears every page that it hands out again.
 void keep_freed_memory() {

@@ -86,8 +86,8 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
                                        cost.seconds, cost.elements)}};
   }
   const Cost cost = measured(scene);
-  return {{"evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations, cost.seconds,
-                                   cost.setup)},
+  return {{"evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations,
+                                   cost.seconds, cost.setup)},
           {"memory", formatted("%.0f MB of all ranks, without the Jacobian of implicit steps", 1e-6 * static_cast<double>(cost.memory))}};
 }
 

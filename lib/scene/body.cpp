@@ -149,7 +149,8 @@ Body body(const Scene& scene, const Member* alike) {
 }
 
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x) {
-  const bool channel = body.wall && body.wall->channel, unused = scene.domain.present && (channel || scene.adaptation.enabled || !scene.posts.empty());
+  const bool channel = body.wall && body.wall->channel;
+  const bool unused = scene.domain.present && (channel || scene.adaptation.enabled || !scene.posts.empty());
   if (scene.particle.rigid() || (body.wall && !channel) || unused) return surface::Symmetry(body.space.n_points);
   const Net* nets[] = {&body.unstressed, &body.rest, &x};
   if (channel) return coupling::symmetry(scene.symmetry, body.space, nets, *body.wall, loads(scene, body, body.wall.get()));

@@ -186,7 +186,8 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
   const Vec3 half = how.box ? Vec3(*how.box / 2) : Vec3::Constant(*how.ball);
   if ((half.array() < radius).any())
-    throw UserError(formatted("%s: a particle of radius %g does not fit into the box or ball of the copies; give a larger one.", list.c_str(), radius));
+    throw UserError(formatted("%s: a particle of radius %g does not fit into the box or ball of the copies; give a larger one.", list.c_str(),
+                              radius));
   std::vector<Copy> copies;
   const long most = 20000L * number;
   for (long trial = 0; static_cast<int>(copies.size()) < number; ++trial) {

@@ -26,13 +26,6 @@ void Capsule::at(double time, double start) {
   if (other_flow || other_cell) latest_.reset();
 }
 
-/// Returns the control values of an affine v_inf. They are exact because the basis functions sum to one.
-Net Capsule::ambient(const Net& x) const {
-  Net v(x.rows(), 3);
-  for (Eigen::Index i = 0; i < x.rows(); ++i) v.row(i) = flow_.velocity(x.row(i).transpose()).transpose();
-  return v;
-}
-
 void Capsule::replicate(Net& net) { ranks_.replicate(net); }
 
 /// Sums the contributions of all elements over all ranks. If only one element of each symmetry orbit contributes, first adds the sums at image points
@@ -302,7 +295,7 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
     const auto clock = phases_.time("projection");
     return control_values(std::move(u));
   }
-  Net v = ambient(x);
+  Net v = flow_.velocities(x);  // control values of an affine flow, which are exact because the basis functions sum to one
   const auto clock = phases_.time("projection");
   v -= control_values(std::move(u)) / parameters_.viscosity;
   return v;
@@ -382,17 +375,15 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
-  constexpr double most_bytes = 1e9;
-  // Thin films between rigid bodies take many iterations, for which it is faster to assemble the matrix (72 n^2 bytes).
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < most_bytes;
+  // Thin films between rigid bodies take many iterations, for which it is faster to assemble the matrix (72 n^2 bytes), if it takes less than 1 GB.
+  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < 1e9;
   const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
   if (double_layer_) double_layer_->place(x);
   if (assembled) double_layer_->assemble(own_targets(), double_rows_);
   const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
   if (viscous_) layer_.place(x, measure());
   if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of v and assembled rows, at all targets; each rank multiplies
-                                                                           // its rows
+  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of v and assembled rows at all targets, divided among the ranks
     Net at_targets = zero_at_targets();
     const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
     for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();

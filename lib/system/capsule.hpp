@@ -234,7 +234,6 @@ class Capsule : public Dynamics {
   void put_among_solids();
   Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
   void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
-  Net ambient(const Net& x) const;
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net in_cell(Evaluation& e, const Net& guess);
   Net solve(Evaluation& e, Net x, const Net& guess);

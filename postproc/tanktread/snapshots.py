@@ -99,9 +99,12 @@ class Snapshot:
         chosen = self.cells if cells is None else [self.cells[i] for i in cells]
         result = numpy.empty((len(chosen), k + 1, k + 1) + values.shape[1:], values.dtype)
         for p, which, nodes in lagrange.by_degree(chosen):
-            table = lagrange.grid_table(p, numpy.arange(k + 1) / k).astype(values.dtype)
-            sampled = table @ values[nodes].reshape(len(which), nodes.shape[1], -1)
-            result[which] = sampled.reshape((len(which), k + 1, k + 1) + values.shape[1:])
+            i, j = numpy.array(lagrange.node_order(p)).T
+            lattice = numpy.empty((len(which), p + 1, p + 1) + values.shape[1:], values.dtype)
+            lattice[:, j, i] = values[nodes]
+            table = lagrange.polynomials(p, numpy.arange(k + 1) / k).astype(values.dtype)
+            along_t = numpy.einsum("tj,cji...->cti...", table, lattice, optimize=True)
+            result[which] = numpy.einsum("si,cti...->cts...", table, along_t, optimize=True)
         return result
 
     def volume(self, k=16):

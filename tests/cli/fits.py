@@ -8,7 +8,7 @@ import sys
 import numpy
 import yaml
 
-from harness import PROGRAM, check, close, deck, main, package
+from harness import PROGRAM, SOURCE, check, close, deck, main, package
 
 os.environ["TANKTREAD"] = str(PROGRAM)
 sys.path.append(str(SOURCE / "postproc"))

@@ -21,7 +21,7 @@ struct Series {
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
 /// `unit`, `description` and, if the deck sets its units, `SI`, for example `1e-06 m/s`;
-/// `/error/<name>`, the estimated error of `/series/<name>` if the run is the finest of an accuracy ladder (lib/accuracy): equal shape and attributes;
+/// `/error/<name>`, the estimated error of `/series/<name>` if the run is the finest of an accuracy ladder (lib/accuracy): same shape and attributes;
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///
