@@ -391,7 +391,8 @@ bool may_change_on_resume(const std::string& path) {
     return (of_particle.starts_with("Interface/") && !of_fields) || of_particle.starts_with("Adaptation/");
   }
   for (const char* fixed :
-       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant", "Output/series"})
+       {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant",
+        "Output/series"})
     if (path.rfind(std::string(fixed) + "/", 0) == 0) return false;
   return true;
 }

@@ -370,8 +370,7 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
 
 /// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. P is the projection (2.8) that removes changes of the volumes, given by the vectors b and c;
 /// if b and c are empty, the volumes are free and P = 1. In a tube, B either includes the response of the wall to v (option `schur`), or
-/// solve_blocks() solves for v and the wall tractions together. The iteration starts from `guess`; from rhs if `guess` is empty or there are rigid
-/// bodies.
+/// solve_blocks() solves for v and the wall tractions together. The iteration starts from `guess`, or without one or with rigid bodies from rhs.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();

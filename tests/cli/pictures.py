@@ -14,10 +14,10 @@ sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import figures
 from tanktread.figures import draw, render
-
-render.OVERSAMPLING = 1  # a quarter of the time
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
+
+render.OVERSAMPLING = 1  # a quarter of the time
 
 DECK = """
 Tanktread:

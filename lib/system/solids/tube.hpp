@@ -145,7 +145,7 @@ class Tube {
   /// `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
-  /// Returns the flow rate of the duct flow, `amplitude` (its current factor) times Q. If the pressure drop of the duct flow is prescribed, returns the
+  /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
   /// flow rate that remains when the particle causes the additional pressure drop dp = `pressure_drop` (2.7): Q (amplitude - dp/dp_0).
   double flow_rate(double pressure_drop, double amplitude) const { return flow_->flow_rate() * (amplitude - slowed(pressure_drop)); }
 
