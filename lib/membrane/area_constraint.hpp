@@ -29,14 +29,14 @@ class AreaConstraint {
   /// Evaluates the area conditions t and their scaled gradient D at the shape x.
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Factors the matrix 1 + time D m D' that the operator P (4.25) contains.
+  /// Factors the matrix 1 + time D m D' of the operator P (4.25), with the gradient D at the shape of the latest place().
   void factor(double time);
 
   /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves x by two steps so that the area conditions t(x) are close to t(`like`). The remaining difference is of second order in the initial
-  /// difference. P is formed with `time`. Afterwards D and t refer to the new x.
+  /// Moves x in two steps so that its area conditions t are close to the conditions of the shape `like`. The remaining difference is of second order
+  /// in the initial difference. The steps use the operator P (4.25) with this `time`. Afterwards this object is evaluated at the new x.
   void bring(Net& x, const Net& like, double time);
 
  private:
@@ -44,7 +44,7 @@ class AreaConstraint {
     int element;
     spline::Basis basis;
     AreaElasticity law;
-    double inverse_det, area;  // 1/|G| of the unstressed surface, and its quadrature weight (an area)
+    double inverse_det, area;  // inverse determinant 1/|G| of the unstressed metric; Gauss weight times sqrt|G|
   };
   struct Rows {
     Eigen::SparseMatrix<double, Eigen::RowMajor> d;

@@ -52,7 +52,8 @@ class Field {
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift J) dq = r so that the sums conserved by J agree with the sums of r to round-off.
+  /// Corrects the approximate solution dq of (1 - shift J) dq = r, J = d(rate)/dq. The weighted sums of coefficients that the motion conserves then
+  /// have the same values for dq as for r, to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns the rate of change of q if the control points slide along the surface with this velocity while the material is at rest, at the state set
@@ -72,8 +73,8 @@ class Field {
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
-  /// Returns a function that evaluates the field, scaled to order 1, at a parametric point in the state set last. Refinement reduces the
-  /// interpolation error (1.5) of these values. If the function is empty, refinement ignores the field.
+  /// Returns a function that evaluates the field, scaled to order 1, at a parametric point in the state set last. Mesh refinement reduces the
+  /// estimated error e(q) of these values (1.5). If the function is empty, refinement ignores the field.
   virtual surface::FieldsAt values_at() const { return {}; }
 
   /// Returns, for each coefficient, the index of its image under the symmetry and the sign by which it is multiplied. An empty result means that the

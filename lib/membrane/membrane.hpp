@@ -118,8 +118,8 @@ class ViscousLoad {
   /// Sets the shape x and the elements that apply() uses.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Computes Cv = C v, shape (N, 3), set to zero first, from the elements of the last update. A row is complete if the whole support of its function
-  /// is in these elements.
+  /// Computes the viscous load C v for the velocity v from the elements of the last update. `cv`, shape (N, 3), is set to zero first. A row is
+  /// complete if the whole support of its function is in these elements.
   void apply(const Net& v, Net& cv) const;
 
  private:

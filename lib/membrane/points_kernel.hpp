@@ -26,7 +26,7 @@ inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers
 template <class Number>
 struct TangentPointOf {
   Number a1[3], a2[3];                  ///< tangents at the linearisation
-  Number s11, s12, s22;                 ///< stress S^ab, weights included: p_a = S^ab a_b
+  Number s11, s12, s22;                 ///< stress S^ab, weights included; the derivative of the energy by the tangent a_a is S^ab a_b
   Number c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
 };
 using TangentPoint = TangentPointOf<Pack>;
@@ -51,13 +51,15 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
 /// a_b from the velocity gradients.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
-/// Computes p = d^2E/da^2 u for displacement gradients u in the layout of a.
+/// Computes p = (d^2E/da^2) u, where a are the tangents x_,s and x_,t of the shape. u: derivatives u_,s and u_,t of a displacement. u and p have the
+/// layout of tangents (packed.hpp).
 void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
 
 /// Computes 2 chi = div n at every Gauss point: twice the mean curvature, 2/R on a sphere.
 void curvatures(int n, const Pack* jets, Pack* curvature);
 
-/// Computes Eb/2 int (2 chi - c0)^2 dGamma over the elements of a batch, lane by lane, with c0 given at every point.
+/// Computes the bending energy Eb/2 int (2 chi - c0)^2 dGamma over the elements of a batch, lane by lane. chi is the mean curvature; the spontaneous
+/// curvature c0 is given at every point.
 void bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* energy);
 
 /// Computes p, the gradient of the bending energy with respect to the jets.

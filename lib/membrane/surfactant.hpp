@@ -43,7 +43,8 @@ class Surfactant : public Field {
 
   Eigen::VectorXd rate(const Net& slip) const override;
 
-  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }  ///< total mass int c dG, in units of area because c is relative
+  /// Returns the total mass int c dG over the surface. It is an area, because c is divided by the initial concentration.
+  double mass(const Eigen::VectorXd& q) const { return share_.dot(q); }
   /// Returns int (f(c) - sigma(0)) dG, the surface free energy in addition to the energy of the clean interface. f: free energy density.  (3.21)
   double energy() const override;
   surface::Range extremes() const;  ///< smallest and largest c on the surface, to round-off
@@ -106,7 +107,7 @@ class Surfactant : public Field {
   std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
   mutable MassMatrix known_mass_;                         // mass matrix at the linearisation
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
-  // factors of M + shift D K, mass M and stiffness K of the frozen shape
+  // factors of M + shift D_s K, with the mass matrix M and the stiffness matrix K of the frozen shape and the diffusivity D_s
   mutable std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>> factors_;
   mutable double factored_shift_ = 0;
 };

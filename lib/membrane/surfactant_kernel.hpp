@@ -10,8 +10,8 @@ void sample(int k, int n, int functions, const double* table, const double* cont
 /// Computes the sums over Gauss points q, rows[function k + field] = sum_q (N_A,s along_s + N_A,t along_t) for k = 1 or 3 fields.
 void test(int k, int n, int functions, const double* by_s, const double* by_t, const double* along_s, const double* along_t, double* rows);
 
-/// Computes the contravariant metric g^11, g^12, g^22 of a surface and the Gauss weights times J, one array after the other. The tangents are arrays
-/// of three fields.
+/// Computes the contravariant metric g^11, g^12, g^22 of a surface and the Gauss weights times J, one array after the other. Each tangent is an array
+/// of three fields, its components.
 void metric(int n, const double* tangents_s, const double* tangents_t, const double* weight, double* metric_and_area);
 
 }  // namespace tanktread::membrane

@@ -15,7 +15,8 @@ WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, 
   const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);
   area.stiffness = stiffness.area / area0, area.relaxed = area0;
   if (stiffness.leaves > 0) {
-    for (const double sign : {-1.0, 1.0})  // N is a difference of two bending energies: (2 chi + c)^2/2 - (2 chi - c)^2/2 = 4 chi c, with c = 1/R
+    // N = int 2 chi dGamma is a difference of two bending energies: (2 chi + c)^2/2 - (2 chi - c)^2/2 = 4 chi c, with c = 1/R
+    for (const double sign : {-1.0, 1.0})
       difference.parts.emplace_back(-sign, Membrane(space, unstressed, SurfaceTension{0}, 4, {radius / 2, false, sign / radius}));
     difference.stiffness = std::numbers::pi * stiffness.leaves / area0;
     difference.relaxed = stiffness.leaf_difference ? *stiffness.leaf_difference * of_sphere

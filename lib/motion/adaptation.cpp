@@ -125,7 +125,8 @@ double excess(const surface::Errors& errors, const AdaptationOptions& options) {
 /// Returns the largest allowed length of an element next to a film of this width.
 double longest(double width, const AdaptationOptions& options) { return options.film_resolution.value() * std::sqrt(width * options.radius); }
 
-/// Returns the marks or merges of n elements: an element is included if wanted(element, direction) holds along s or t.
+/// Returns the entries (marks for refinement, or merges) of all elements 0 .. n - 1 for which wanted(element, direction) is true along s (direction
+/// 0) or along t (1).
 template <class Entry, class Wanted>
 std::vector<Entry> collected(std::size_t n, const Wanted& wanted) {
   std::vector<Entry> found;

@@ -37,11 +37,12 @@ struct PeriodicOptions {
 ///
 ///   P(x) = R^-1 phi_T(x),   n.(P(x) - c) = 0,   n along v(c)                                                        (4.27)
 ///
-/// T lies between 0.5 and 1.5 expected periods. DenseOutput locates the crossing of the plane within the last step. If the flow itself is periodic, T
-/// is its period, and there is no plane.
+/// c is a shape, and the normal n of the plane is parallel to its velocity v(c). T lies between 0.5 and 1.5 expected periods. DenseOutput locates the
+/// crossing of the plane within the last step. If the flow itself is periodic, T is its period, and there is no plane.
 class ReturnMap {
  public:
-  /// Defines the plane of (4.27) through the shape c. Motion and options must outlive this object. Collective, like all other functions.
+  /// Defines the plane of the returns, which passes through the shape c (4.27). Motion and options must outlive this object. Collective, like all
+  /// other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 
@@ -83,9 +84,9 @@ struct Multiplier {
   Net real, imaginary;
 };
 
-/// Returns the largest eigenvalues of the derivative of P at its fixed point x, by central differences and Arnoldi's method started from the
-/// displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted` removes from a displacement the parts that the
-/// symmetry of `start` does not allow. Values smaller than the noise of a run divided by `difference` are not significant. Collective.
+/// Returns the largest eigenvalues of the derivative of the return map P (`map`) at its fixed point x, by central differences and Arnoldi's method
+/// started from the displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted` removes from a displacement the
+/// parts that the symmetry of `start` does not allow. Values smaller than the noise of a run divided by `difference` are not significant. Collective.
 std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number);
 
 }  // namespace tanktread::motion

@@ -9,7 +9,7 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double worth_assembling = 0.3;  // least change of shape since the last assembly for which a new assembly pays off
+constexpr double worth_assembling = 0.3;  // least deformation since the last assembly, divided by R_C, for which a new assembly pays off
 }  // namespace
 
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage) {

@@ -179,7 +179,7 @@ namespace {
 
 using Pairs = std::vector<coupling::Eigenpair>;
 
-/// Computes all eigenpairs of J, which is assembled column by column.
+/// Computes all eigenpairs of the Jacobian J of the velocity in shape coordinates, which is assembled column by column.
 Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
             const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
@@ -190,8 +190,8 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
   return coupling::eigenpairs(Eigen::Map<const Eigen::MatrixXd>(first.data(), n, n));
 }
 
-/// Computes the eigenpairs with the largest |1/(1 - rate/shift)| by shift-and-invert: applies (I - J/shift)^-1 by GMRES, preconditioned as an
-/// implicit step.
+/// Computes the eigenpairs of the Jacobian J with the largest |1/(1 - rate/shift)| by shift-and-invert. Applies (I - J/shift)^-1 by GMRES with the
+/// preconditioner of an implicit step.
 Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
               const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;

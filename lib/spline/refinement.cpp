@@ -10,7 +10,8 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Extends a path that arrives at an end of the polar lattice through the row of zero height there, to the border of the lattice.
+/// If a path arrives at a pole of a lattice with poles, extends it through the cells of zero height there (repeated end knots), to the border of the
+/// lattice.
 void run_out(const Lattice& l, Ray ray, std::vector<Ray>& path) {
   while (!l.ends(ray.vertex, ray.slot) && l.length(ray.vertex, ray.slot, 1) == 0) {
     path.push_back(ray);
@@ -42,8 +43,9 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   return path;
 }
 
-/// Returns the number of rule violations after a trial insertion of the edges: crossings + missing / 2, as counted by ExtendedMesh. Adds a penalty if
-/// the edges enter the uniform rings of elements around an extraordinary point.
+/// Returns a score for the violations after a trial insertion of the edges: the number of crossings of extensions plus half the number of missing
+/// edges, both counted by ExtendedMesh. Adds a penalty if the edges enter the `rings` rings of elements around an extraordinary point, which must
+/// remain uniform.
 double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
   extended.insert(bay);
@@ -52,8 +54,8 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   return score;
 }
 
-/// Compares the first parts (bays) of the candidates' face extensions, and returns the part whose insertion leaves the fewest rule violations. Among
-/// equal parts, returns the shortest, then the part with the lowest vertex.
+/// Compares the first parts (bays) of the face extensions of the T-junctions `candidates`, and returns the part whose insertion leaves the mesh with
+/// the fewest violations, as counted by harm(). Among equal parts, returns the shortest, then the part with the lowest vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;

@@ -29,15 +29,15 @@ void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
 
 int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
 
-/// Looks in the direction `turn` from `cell`, and returns the number of lattice cells behind `cell` in its mesh element.
+/// Returns the number of lattice cells between `cell` and the side of its mesh element that lies opposite to the direction `turn`.
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   const int x = l.x_of(cell) - r.x, y = l.y_of(cell) - r.y;
   const int cells[4] = {x, y, r.width - 1 - x, r.height - 1 - y};
   return cells[turn & 3];
 }
 
-/// Returns the outer product of the coefficients in the directions forward and left of a walker, reordered to the local coordinates s, t of the
-/// element. `turn` is the direction of the walker.
+/// Returns the products of the coefficients in the forward direction `turn` (Walker) with the coefficients in the direction to the left of it, in the
+/// order of the local coordinates s, t of the element.
 std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::array<double, 4>& aside, int turn) {
   std::array<double, 16> row;
   for (int b = 0; b < 4; ++b)
@@ -131,8 +131,8 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
     const auto [x, y] = turned(0, 0, 3, l.corner[v][0]);
     return {l.cell[v][0], x, y};
   }
-  // Distance of the Greville point from the anchor along directions 0 and 1, in thirds of a lattice unit: the sum of the outer two of the three
-  // inner knots relative to the anchor.
+  // Distance of the Greville point from the anchor along directions 0 and 1, in thirds of a lattice unit. The Greville point is the mean of the three
+  // inner knots. The middle one is at the anchor, so that the distance is the sum of the positions of the other two relative to the anchor.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
   const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
   if (l.pad > 0) {  // one face without turns

@@ -70,8 +70,8 @@ class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
 
-  /// `sites`: targets on the surfaces, for example the space's `collocation`; if empty, all targets are off the surfaces. `factor`: k of each
-  /// element; if empty, k = 1.
+  /// `sites`: targets on the surfaces, for example the space's `collocation`; if empty, all targets are off the surfaces. `factor`: factor k_p of
+  /// (2.1) and (2.2) for each element; if empty, it is 1.
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
   /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
@@ -86,16 +86,17 @@ class Layer {
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
-  /// deforms. With three periods, a double layer includes an additional pressure linear in x. It then does not change the mean velocity over the
-  /// cell, including the volume inside the surfaces:
+  /// deforms. With three periods, a double layer includes an additional pressure linear in x. The double layer then does not change the mean velocity
+  /// over the cell, including the volume inside the surfaces:
   ///
   ///   T_ijk = T^P_ijk - (8 pi/V) delta_jk (x - x_p)_i,   x_p a point of surface p.                                              (2.28)
   ///
-  /// int T n then has the values of (2.3). Assembled rows do not include images unless `how` requests them.
+  /// The integral of T n over a closed surface then has the same values as without a lattice (2.3). Assembled rows do not include images unless `how`
+  /// requests them.
   void repeat(const PeriodicCell& cell, const Repetition& how = {});
 
-  /// Lets only the images of the surfaces on the lattice, but not the surfaces themselves, contribute at later targets off the surfaces whose row is
-  /// `first` or higher.
+  /// In later evaluations at targets off the surfaces, restricts the sums in rows `first` and higher to the images of the surfaces on the lattice. In
+  /// these rows the surfaces themselves do not contribute.
   void see_images_only(int first) { lattice_.images_only = first; }
 
   /// Sets a plane wall; all later shapes must be in front of it. G and T become the kernels that vanish on the wall, (2.35) and (2.36). Not available
@@ -120,7 +121,7 @@ class Layer {
   /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
   /// panel, 6 per Bernstein polynomial of the panel.
   struct Near {
-    std::vector<std::size_t> first;  ///< for each target, index in `panels` of its first panel
+    std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of its close panels begins
     std::vector<int> panels;
     std::vector<double> moments;
   };
@@ -159,8 +160,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG for every A, where `g` holds h
-  /// times the area at each far node.
+  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG of a function h for every spline
+  /// function N_A. `g`: h times area and quadrature weight at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
@@ -190,7 +191,7 @@ class Layer {
     std::optional<PeriodicSum> sum;
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
-    std::vector<Vec3> rest_at;                  // targets of rest_stress, moved into the cell
+    std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed, moved into the cell
     std::vector<Mat3> rest_stress;              // double layer of constant unit densities at the targets rest_at, due to the images that are not near
   };
 
@@ -258,16 +259,16 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
-  std::vector<double> density_[3], normal_[3];                     // at far nodes: density f (in a single layer times weight_); normal times area and
-                                                                   // factor k
+  std::vector<double> density_[3], normal_[3];                     // at the far nodes: density f (in a single layer times weight_); normal times
+                                                                   // quadrature weight, area and factor k of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
-  std::vector<Mat3> image_stress_;                                 // sums over the wall's images at the targets, for constant unit
+  std::vector<Mat3> image_stress_;                                 // double layer of the images in the wall at the targets, for constant unit
                                                                    // densities
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
   std::vector<Vec3> tree_at_;                                      // targets of the tree
-  std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if its positions must be set anew
+  std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each
   std::vector<double> moment_[6];                                  // symmetric part of density times normal at the far nodes
   std::vector<Pack> point_weights_, scratch_;

@@ -111,7 +111,8 @@ void Layer::place_rest(const std::vector<Vec3>& at) {
   }
 }
 
-/// Returns -(8 pi/V) sum_p k int_p (f.n) (x - x_p) dG for the current moment_ of f (2.28). x_p is the mean of the nodes of surface p.
+/// Returns the contribution of the additional pressure of (2.28) to the double layer, -(8 pi/V) sum_p k_p int_p (f.n) (x - x_p) dG, for the density f
+/// whose moments are stored in moment_. x_p is the mean of the nodes of surface p, and k_p the factor of (2.2).
 Vec3 Layer::pressure_along() const {
   const auto number = [&](int e) { return static_cast<std::size_t>(surface_.near_field.surface(e)); };
   const auto place = [&](int k) { return Vec3(surface_.node[0][k], surface_.node[1][k], surface_.node[2][k]); };

@@ -30,14 +30,14 @@ class Channel {
   Section section(double s) const;
 
   const Outline& outline() const { return outline_; }
-  Outline outline(double s) const;      ///< outline of the section at s
+  Outline outline(double s) const;      ///< outline of the cross-section at the arc length s of the centre line
   TubeOptions tube(double s) const;     ///< options of the straight tube with the cross-section at s
   double start() const { return start_; }
   double end() const { return end_; }
   bool repeats() const { return options_.period > 0; }
   double smallest_radius() const { return smallest_; }  ///< half the smallest width
 
-  /// Returns the coordinates s, y2, y3 of a position.
+  /// Returns the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section at a position.
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 
@@ -71,9 +71,9 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  // half widths of the outline along x2 and x3; half width that is multiplied by the relative depth of a `step`
+  // half widths of the outline along x2 and x3; length (one of these half widths, or the radius) to which the relative depth of a `step` refers
   double half_[2] = {1, 1}, height_ = 1;
-  double first_ = 0, last_ = 0;           // smallest and largest s at which the cross-section or the direction of the channel changes
+  double first_ = 0, last_ = 0;           // smallest and largest arc length s at which the cross-section or the direction of the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;
 };
 

@@ -48,7 +48,7 @@ struct ElementPart {
   std::array<Eigen::MatrixXd, 3> points;  // one matrix per coordinate
   Disc disc{Vec2::Zero(), 0};
   double bound = -std::numeric_limits<double>::infinity();  // lower bound of the distance of the piece to the outline
-  Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the disc's centre
+  Vec3 corner = Vec3::Zero();                               // corner of the piece farthest from the centre of `disc`
   // true if the piece is more curved along the column index of its points than along their row index
   bool bends_across = false;
 
@@ -93,7 +93,8 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// Collects the elements that may contain the nearest point, according to lower bounds from a disc about the outline's centroid.
+  /// Collects the elements that may contain the point nearest to the outline. The lower bound of their distance follows from the largest disc inside
+  /// the outline about its centroid.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {
@@ -136,8 +137,8 @@ class OutlineSearch {
     return part;
   }
 
-  /// Compares the best point found with a corner of the piece. If the corner is farther from the outline than the bound of the disc, fits a new
-  /// disc to the piece, because this bound can be improved.
+  /// Compares the best point found with a corner of the piece. If the corner is farther from the outline than the lower bound that the disc of the
+  /// piece gives for it, this bound can be improved, and a new disc is fitted to the piece.
   void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
@@ -149,8 +150,8 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Sets the lower bound of the distance, the farthest corner and the direction of largest curvature of a piece from the Bezier coefficients of
-  /// the squared distance to the centre of the disc.
+  /// Sets the lower bound of the distance, the farthest corner and the direction of largest curvature of a piece from the Bezier coefficients of the
+  /// squared distance to the centre of the disc that belongs to the piece.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

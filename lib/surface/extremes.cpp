@@ -251,7 +251,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // one range for minima and maxima, because samples of a nearly circular section do not distinguish them
+  Range range;  // range of the distances of all candidates: samples of a nearly circular section do not separate minima from maxima
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

@@ -22,8 +22,8 @@ struct LinePiece {
   spline::Site first, last;
 };
 
-/// Returns the parts into which the borders of Bezier elements divide a mid-line, which is straight in the plane of its macro face (face of the
-/// cube). `direction` 0: along x.
+/// Returns the parts into which the borders of Bezier elements divide the mid-line of a mesh element. The line begins at `start` and is straight in
+/// the plane of its macro face (face of the cube). `direction`: 0 if the line is parallel to x of this face, 1 if parallel to y.
 std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
   std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;
@@ -114,7 +114,8 @@ bool on_pole(const Lattice& lattice, int vertex) {
   return height == 0 || height == lattice.height(lattice.rows);
 }
 
-/// Returns whether a mesh line cannot be continued along a ray, because it arrives at the border of the polar lattice or at a pole.
+/// Returns whether a mesh line cannot be continued along a ray, because it arrives at a pole, where edges have zero length, or at the border of the
+/// lattice, which exists only on meshes with poles (polar_lattice).
 bool ends(const Lattice& lattice, Ray ray) { return lattice.ends(ray.vertex, ray.slot) || lattice.length(ray.vertex, ray.slot, 1) == 0; }
 
 /// Evaluates the unstressed and the current surface, the load and the fields at lattice vertices, each vertex only once.
@@ -221,7 +222,7 @@ Eigen::MatrixX3d slopes(Samples& samples, const std::array<Ray, 4>& side) {
   return differences(&Sample::fields) * (x.transpose() * x).inverse() * x.transpose();
 }
 
-/// Deformation gradient F and gradient G of the fields (1.5) at the centre of a mesh element.
+/// Deformation gradient F of the surface, and gradient G of the fields along the surface, at the centre of a mesh element, for the errors (1.5).
 struct Gradients {
   Mat3 f;
   Eigen::MatrixX3d fields;

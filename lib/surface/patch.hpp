@@ -35,7 +35,7 @@ Vec3 place(const Patch& patch, double s, double t);
 /// Returns the mean curvature chi = 1/2 div n, positive on a sphere.
 double mean_curvature(const Jet& jet);
 
-constexpr int cells = 6;  ///< number of grid intervals per direction
+constexpr int cells = 6;  ///< number of intervals per direction of the grid on which sample() evaluates an element
 
 /// Positions at the parameters (s, t) = (i, j)/cells of an element, indexed [j][i].
 using Grid = std::array<std::array<Vec3, cells + 1>, cells + 1>;

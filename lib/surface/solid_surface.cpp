@@ -19,7 +19,7 @@ struct Unit {
   std::vector<double> coordinate;
 };
 
-/// Returns a period of unit length around 0. The seam, where it begins and ends, lies at a quarter of a periodic element.
+/// Returns the splines over a period of unit length around 0. The seam, where the period begins and ends, lies at a quarter of a periodic element.
 Unit unit_period(int elements) {
   std::vector<double> knots;
   for (int k = 0; k < elements; ++k) knots.push_back((k + 0.5) / elements - 0.5);

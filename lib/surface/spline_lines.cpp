@@ -29,7 +29,8 @@ void Line::add_site(double u, const std::vector<double>& knots, int first, bool 
 
 namespace {
 
-/// Adds the intervals between the knots as pieces. The B-spline that begins at knot j of `extended` is function number(j) of the line.
+/// Adds the m intervals between knots to the line as pieces, each with four B-splines. `extended`: the knots, continued by three at each end. The
+/// B-spline that begins at its entry j is function number(j) of the line.
 template <class Number>
 void add_pieces(Line& line, const std::vector<double>& extended, int m, const Number& number) {
   for (int e = 0; e < m; ++e) {
@@ -83,7 +84,7 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
     open.add_site(u < ends[0] ? u + period : u >= ends[1] ? u - period : u, all, 0, false);
   }
   const int last = static_cast<int>(closed.pieces.size()) - 1;
-  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the last element that lies before the seam
+  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the last periodic element that lies before ends[1]
   line.open_from_periodic = Eigen::MatrixXd::Zero(open.n, closed.n);
   for (int piece = 0; piece <= last + 1; ++piece) {
     const bool first_part = piece == last + 1;  // of the last element

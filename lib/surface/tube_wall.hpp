@@ -28,10 +28,10 @@ struct TubeWall {
   int n_around = 0, n_along = 0;
   double widest = 0;                       ///< approximate largest side length of the elements at x1 = 0, or at the narrowest section of a channel
   std::shared_ptr<const Channel> channel;  ///< channel of this wall; null for a straight tube
-  /// collocation points of densities on the wall; if it is not periodic, these are the collocation points of the space
+  /// collocation points of densities on the wall; on a wall that is not periodic, they are the collocation points of `space`
   std::vector<std::vector<spline::Site>> sites;
   std::vector<spline::Site> middles;  ///< midpoints of the elements on which densities are defined
-  /// for each element of `space`, the index in `middles` of the midpoint of the density's element that contains it
+  /// for each element of `space`, the index in `middles` of the density element that contains this element
   std::vector<int> middle_of;
   double period = 0;  ///< period L along x1; 0 for an open wall with two ends
   /// E, maps control values of a periodic density to control values on the space; empty if the wall is not periodic

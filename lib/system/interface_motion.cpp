@@ -91,8 +91,8 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. |b| is used as the area weight of a site.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // regularisation: if the shape deviates from a sphere by less than 3 %, the mesh rotates with the fluid, because
-                                 // noise would dominate Omega_s on a sphere
+  constexpr double hold = 1e-3;  // regularisation, relative to the sum of area y.y: if the shape deviates from a sphere by less than 3 %, the
+                                 // result tends to 0 and the mesh rotates with the fluid, because noise would dominate the result on a sphere
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;

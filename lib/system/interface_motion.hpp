@@ -47,11 +47,12 @@ class InterfaceMotion {
   /// These fields rotate the mesh on an interface that does not move. Collective.
   std::vector<Net> rotations(const Net& x, std::span<const int> axes) const;
 
-  /// Stores x, b = dV/dx, the normals and the tangent of E1 at x for `derivative`. Collective.
+  /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change du of u for a displacement delta that changes the fluid velocity by dv. Neglects the change of b and of the map from v to W.
-  /// Includes the change of the normals only if `velocity` was called last at x. Collective.
+  /// Returns the change of the control points' velocity u (4.6) for a displacement delta that changes the fluid velocity v by dv. Neglects the
+  /// changes of b = dV/dx and of the linear map from v to the rigid motion W. Includes the change of the normals only if `velocity` was called last
+  /// at x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
   /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).

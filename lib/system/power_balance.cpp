@@ -130,7 +130,7 @@ double PowerBalance::left_over(const Net& load, const Net& left, const Net& x, c
   return sum;
 }
 
-/// Returns the density of the double layers: the velocity, or w of (2.23) for rigid bodies.
+/// Returns the density of the double layers: the velocity v, or for rigid bodies the unknown density w of (2.23).
 Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   Net all = v;
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p)
@@ -138,7 +138,7 @@ Net PowerBalance::density(const Net& v, const RigidParticles& rigid) const {
   return all;
 }
 
-/// Returns the residual of (2.22), v minus the right-hand side, at the Gauss points `places_`.
+/// Returns the residual of the boundary integral equation (2.22), the velocity v minus the right-hand side, at the Gauss points `places_`.
 Net PowerBalance::missed(Evaluation& e, Net v, Net density, const Net& load) {
   Net x = e.x();
   const stokes::AmbientFlow& flow = capsule_.flow();

@@ -23,9 +23,9 @@ namespace tanktread::coupling {
 ///
 ///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
 ///
-/// A translation of a drop is represented exactly: the part of y that belongs to a translation moves the mesh tangentially as well. If velocities are
-/// projected (VelocityProjection), y contains the control values of a scalar field instead, the best fit to n.d. Otherwise y would be affected by
-/// tangential mesh motion, to fourth order in the element size.
+/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: the part of y that
+/// belongs to a translation moves the mesh tangentially as well. If velocities are projected (VelocityProjection), y contains the control values of a
+/// scalar field instead, the best fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
 ///
 /// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
 /// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
@@ -68,7 +68,7 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // control values of the translation; the part of them that across() omits
+    Net field, rest;              // control values of the translation; `field` minus across(coordinates)
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;
@@ -83,7 +83,7 @@ class ShapeCoordinates {
   std::vector<Coordinate> all_;
   std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; their coordinates come last
   std::vector<Coordinate> along_;  // tangential coordinates t of drops
-  Eigen::MatrixXd following_;      // maps y to the tangential coordinates t of meshes that follow (4.26); empty if no mesh follows
+  Eigen::MatrixXd following_;      // maps coordinates y to tangential coordinates t of meshes that relax by themselves (4.26); empty if none does
   std::vector<Translation> translations_;  // translations of drops
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;

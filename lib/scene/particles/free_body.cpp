@@ -104,7 +104,8 @@ class Free : public ParticleSystem {
     return std::make_unique<coupling::FreeBody>(resistance, centre, body.radius, body.flow, rigid(scene, body));
   }
 
-  /// Sets tank-treading and phase of a rigid body. The frequency (6.6) is its angular velocity about the normal of the plane.
+  /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the
+  /// angular velocity about the normal of this plane.
   void turn_to(const Net& place, double step, RigidRow& now) {
     const FlowPlane& plane = body_.plane;
     const Net x = free_->surface(place), v = coupling::rigid_velocity(x, {now.velocity, now.angular_velocity}, now.centre);

@@ -1,9 +1,10 @@
 #pragma once
-// The line integrals of a cap (2.13) at one point, on plain arrays.
+// Line integrals over the outline of a plane cap across a tube (2.13), for one target, on plain arrays.
 
 namespace tanktread::stokes {
 
-/// Sums of rho.nu/r and nu/r over n nodes at (y, z) with normals times weights; rho is relative to (y0, z0), r^2 = rho^2 + h^2, and h is not 0.
+/// Sums of rho.nu/r and nu/r over n nodes (y, z) of an outline, where nu is the normal times the quadrature weight of a node, rho = (y - y0, z - z0)
+/// and r^2 = rho^2 + h^2. h is not 0.
 struct CapSums {
   double flux, normal_y, normal_z;
 };

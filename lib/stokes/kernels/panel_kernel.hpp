@@ -12,7 +12,7 @@ void combine(int n_b, int n, const double* table, const double* coefficient, dou
 /// Computes n = gauss[k] a1 x a2, where tangents[n c + k] is component c of a1 and tangents[n (3 + c) + k] of a2.
 void weigh_normals(int n, const double* tangents, const double* gauss, double* nx, double* ny, double* nz);
 
-/// Sets within[k] to 1 if |c_k - target|^2 < reach[k], and to 0 otherwise, k = 0 .. n - 1.
+/// Sets within[k] to 1 if the squared distance of the point (x[k], y[k], z[k]) from the target is below reach[k], and to 0 otherwise, k = 0 .. n - 1.
 void mark_within(int n, const double* x, const double* y, const double* z, const double* reach, const double* target, char* within);
 
 }  // namespace tanktread::stokes

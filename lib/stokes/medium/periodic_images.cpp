@@ -37,10 +37,10 @@ void reduce(Mat3& vectors, int n) {
   }
 }
 
-/// Coefficients of the smooth parts of the kernels in Ewald's sum, with A and g of (2.25). Stokeslet: a multiplies I and b multiplies r r in G - A.
-/// Stresslet: g and `slope`.
+/// Coefficients of the smooth parts of the kernels in Ewald's sum at the distance r, with A, g and xi of (2.25). Stokeslet: G - A = a I + b r r.
+/// Stresslet: the smooth part of T_ijk is -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k.
 struct Smooth {
-  double a, b, g, slope;  // G - A = a I + b r r;   smooth part of T = -2 xi^2 g (r_k I_ij + r_j I_ik) + 2 slope r_i r_j r_k
+  double a, b, g, slope;
 
   Smooth(double xi, double r) {
     const double x = xi * r, square = x * x;
@@ -50,7 +50,7 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // term m + 1 of the series of the slope, where (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // term m + 1 of the power series of `second`, where (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);
@@ -222,7 +222,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   add(end + 1, 1 / 48.), add(end - 1, -1 / 48.);
 }
 
-/// Adds the constant of (2.43), minus (I + e e)/|n h| for each near image n.
+/// Adds the constant term of (2.43) and subtracts (I + e e)/|n h| for each near image. h e is the period, and n h e the position of the image.
 void PeriodicKernel::add_constant(double* values) const {
   if (kind_ == Kind::stresslet || cell_.reference() == 0) return;
   const double h = cell_.vectors().col(0).norm();

@@ -27,7 +27,8 @@ class PeriodicCell {
   /// Returns the lattice vector that must be subtracted from x to move it into the cell around the origin.
   Vec3 shift(const Vec3& x) const;
 
-  /// Returns the distance between neighbouring lattice planes that are parallel to all lattice vectors except vector d, d < n.
+  /// Returns the distance between neighbouring lattice planes that are parallel to all lattice vectors except vector d. d: index of one of the n
+  /// lattice vectors.
   double spacing(int d) const { return 1 / inverse_.row(d).norm(); }
 
   /// Returns the lattice vectors with up to `most[d]` steps along vector d in both directions.
@@ -51,13 +52,15 @@ class PeriodicCell {
 ///   A = I (erfc(xi r)/r - g) + r r (erfc(xi r)/r^3 + g/r^2),   g = (2 xi/sqrt(pi)) e^{-xi^2 r^2}
 ///   T_ijk = -delta_jk p_i + dG_ij/dx_k + dG_ik/dx_j,   p the pressure of G                                                      (2.26)
 ///
-/// xi is just large enough that A is negligible for all images that are not near. Two periods are computed as three with a third period so long that
-/// only the mode k = 0 reaches across it. This mode is subtracted. With z across, area S and third period L3,
+/// The columns of H are the lattice vectors, and n has integer components. xi is just large enough that A is negligible for all images that are not
+/// near. Two periods are computed as three with a third period so long that only the mode k = 0 reaches across it. This mode is subtracted. With the
+/// coordinate z along the unit vector e across the two periods, the area S of the cell and the third period L3,
 ///
 ///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
 ///
-/// The sum for one period h e is completed by the Euler-Maclaurin formula. For one and two periods G is defined up to a constant. For one period the
-/// reference distance l of the cell fixes it, so that far from the row the axial velocity depends on the distance rho from the row like -ln(rho/l):
+/// The sum for one period of length h along the unit vector e is completed by the Euler-Maclaurin formula. For one and two periods G is defined up to
+/// a constant. For one period the reference distance l of the cell fixes it, so that far from the row the axial velocity depends on the distance rho
+/// from the row like -ln(rho/l):
 ///
 ///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
 ///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.43)
@@ -73,12 +76,13 @@ class PeriodicKernel {
   /// components with j != k are doubled.
   int components() const { return kind_ == Kind::stokeslet ? 6 : 18; }
 
-  /// Returns values[(n_0 n_1 n_2) c + (n_1 n_2) k_0 + n_2 k_1 + k_2] at the positions s = (s[0][k_0], s[1][k_1], s[2][k_2]).
+  /// Returns the sum on a grid of positions s = (s[0][k_0], s[1][k_1], s[2][k_2]): component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2, with
+  /// n_d the size of s[d].
   std::vector<double> values(const std::array<std::vector<double>, 3>& s) const;
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25) of the near images to `values`
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25) of the near images, or the same for T, to `values`
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

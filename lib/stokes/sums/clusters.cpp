@@ -13,7 +13,7 @@ namespace {
 constexpr double flat = 0.1;
 
 /// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each one
-/// costs more. Measured on deformed spheres at tolerances of 1e-3 to 1e-8.
+/// costs more. The formula was chosen from measurements on deformed spheres at tolerances of 1e-3 to 1e-8.
 int longest_order(double tolerance) {
   return std::clamp(static_cast<int>(std::lround(2.8 - 0.72 * std::log10(tolerance))), 3, most_chebyshev);
 }
@@ -62,7 +62,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   }
   clusters_.clear(), order_.clear();
   const auto lower = [](const Group& one, const Group& other) { return std::ranges::lexicographical_compare(one.centre, other.centre); };
-  std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order in which the groups are given
+  std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order of the groups of points in the input
   split(0, n_groups, Mat3::Identity(), starts);
   for (int c = 0; c < 3; ++c) {
     point_[c].resize(order_.size());

@@ -19,8 +19,8 @@ class Vicinity {
 
  private:
   struct Box {
-    double low[3], high[3], square;  ///< bounds of the centres of its balls; largest squared radius of its balls
-    int first, last, after;          ///< range of its balls; index of the box to test next if no ball in this box can contain the point
+    double low[3], high[3], square;  ///< bounds of the centres of the balls in this box; largest squared radius of these balls
+    int first, last, after;          ///< range of the balls in this box; index of the box to test next if none of them can contain the point
     bool leaf;
   };
   void split(int first, int last);

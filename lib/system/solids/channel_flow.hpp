@@ -20,9 +20,9 @@ namespace tanktread::coupling {
 ///
 ///   v = -(1/mu) G_W f + dp c + P_I + P_O,   (1/mu) G_W f = dp c + P_I + P_O on the wall,   int v.n dS = Q through a section      (2.30)
 ///
-/// f is the traction on the wall, dp the pressure drop between the ends, c (1/mu) times the inlet integral (2.13), and P the terms of (2.29). The
-/// wall operator is constructed by all ranks when a velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities
-/// refer to the inlet.
+/// f is the traction on the wall, dp the pressure drop between the ends, c the velocity due to a unit pressure at the inlet, (1/mu) times (2.13), and
+/// P_I, P_O the velocities (2.29) due to the duct flow through the inlet and the outlet. The wall operator is constructed by all ranks when a
+/// velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities refer to the inlet.
 ///
 /// In a periodic channel of period L, Poiseuille flow in a circular tube with the pressure gradient dp/L replaces c dp and P. Then f is the traction
 /// of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
@@ -45,7 +45,7 @@ class ChannelFlow : public stokes::DuctFlow {
                                        ///< line
   const Net& wall_traction() const;    ///< control values of f
 
-  /// Returns the flow rates through the sections at s, from velocities that are evaluated together.
+  /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line, from velocities that are evaluated together.
   std::vector<double> flow_rates_at(const std::vector<double>& s) const;
 
   const surface::Channel& channel() const { return *channel_; }

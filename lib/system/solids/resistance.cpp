@@ -107,7 +107,8 @@ const BetweenSites& Resistance::between() {
   return *between_;
 }
 
-/// Returns R^-1 A f + s c (b.f)/(b.c) (2.10).
+/// Returns the product of f with the regularised first-kind operator (2.10), R^-1 A f + s c (b.f)/(b.c). A is the single layer, R the collocation
+/// matrix, b_A = int N_A n dG, c = M^-1 b, and s a scale.
 Net Resistance::apply(const Net& f) const {
   const Eigen::Map<const Eigen::VectorXd> flat(f.data(), f.size());
   Net u(f.rows(), 3);

@@ -71,8 +71,9 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
-/// Sets the two factors b and s (R c)/(b.c) of the regularising term of (2.10) for each body. Any field c with nonzero flux b.c makes the system
-/// regular; the radial field about the mean of the sites is used.
+/// Sets, for each body, the two vectors of the regularising term of (2.10): the flux vector b = dV/dx, and s (R c)/(b.c), with R c the values of a
+/// velocity field c at the sites and s a scale. Any field c with nonzero flux b.c makes the system regular; the radial field about the mean of the
+/// sites is used.
 void RigidTractions::make_regular(const Net& x, const Net& at) {
   flux_ = outward_ = Net::Zero(x.rows(), 3);
   for (const Particle& body : particles_) {
@@ -172,7 +173,8 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// Returns int N_A (v - v_inf - (1/mu) A f) dG for control values v, with v_inf given at the points between the sites.
+/// Returns int N_A (v - v_inf - (1/mu) A f) dG, the collocation error weighted by the spline functions N_A. v: control values. `flow`: v_inf at the
+/// Gauss points `between_`.
 Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
   between_layer_.place(x);
   const Net at = between_.values * x;

@@ -13,7 +13,7 @@ namespace {
 
 double distance(const SolidScene& scene) { return scene.planes.front().height(scene.planes.back().point()); }
 
-/// Returns phi of (2.49) at a height above the first plate.
+/// Returns phi = z (D - z)/2 of (2.49) at the height z above the first of two plates at the distance D.
 double profile(const SolidScene& scene, double height) { return height * (distance(scene) - height) / 2; }
 
 Vec3 along(const stokes::PlaneWall& wall, const Vec3& v) { return v - wall.normal().dot(v) * wall.normal(); }
@@ -107,7 +107,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   std::vector<double> weighted = single_.weights();
   for (std::size_t k = 0; k < weighted.size(); ++k) weighted[k] *= profile(scene_, height(single_.nodes(), k)) / scene_.solids->viscosity();
   if (f.size() > 0) sum -= f.transpose() * single_.moments(weighted);
-  if (v.size() > 0 && double_) {  // sigma_i n of (2.49) is x_i n + phi' (e_i (n.m) + m (e_i.n)); n: normal of the particle, m: of the plates
+  if (v.size() > 0 && double_) {  // stress in (2.49): sigma_i n = x_i n + phi' (e_i (n.m) + m (e_i.n)), m the normal of the plates
     const Net strength = contrasts_.asDiagonal() * v;
     for (int i = 0; i < 3; ++i)
       for (int c = 0; c < 3; ++c) {

@@ -62,7 +62,7 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
   reached_ = range(cell_, surface_.net);
-  if (solids.size() == 1 && cell_.n() == 2) {  // extends the range across the plate, because a plate has no thickness
+  if (solids.size() == 1 && cell_.n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
     const double period = cell_.vectors().col(0).norm();
     reached_[0][2] -= period, reached_[1][2] += period;
   }
@@ -129,8 +129,8 @@ Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> site
   return found;
 }
 
-/// Factors the matrix of (2.46) for unit viscosity, on every rank. If all solids are plates, factors only the block for densities that are uniform on
-/// each plate.
+/// Factors the matrix of the equations (2.46) for the force density and the uniform velocity, for unit viscosity, on every rank. If all solids are
+/// plates, factors only the block for densities that are uniform on each plate.
 void Solids::factor(stokes::Layer& on_itself) {
   constexpr std::size_t at_a_time = 240;
   const auto m = static_cast<Eigen::Index>(free_.size()), solids = static_cast<Eigen::Index>(first_.size()) - 1;

@@ -32,9 +32,9 @@ struct Tube::Particle {
   /// Sets the shape. `origin`: position along x1 of the origin of the wall's frame. `pressure_drop`: pressure drop of the empty duct.
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
-  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights of a velocity on the wall in the pressure drop
-  /// dp, or empty. If given, the weights of the particle's velocity v in dp are computed from them before rows are rounded to low precision, which
-  /// would be too inaccurate for these weights.
+  /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights with which a velocity on the wall contributes to
+  /// the pressure drop dp, or empty. If they are given, the weights with which the particle's velocity v contributes to dp are computed from them and
+  /// the double layer. This is done before the rows of the double layer are rounded, because low precision would be too inaccurate.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }
@@ -76,14 +76,14 @@ struct Tube::Particle {
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
   Net shape;                                   ///< net of the particle in the frame of the wall
-  double centroid = 0;                         ///< position along x1 of the origin of the wall's frame
+  double centroid = 0;                         ///< position along x1 of the wall's origin; the particle's centroid in a straight open tube
   Net sites;                                   ///< collocation points, in the wall's frame
   Net inlet;                                   ///< (1/mu) c at the sites
   Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites; its control values (in a channel only)
-  Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in (2.7); the second is empty if lambda = 1
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of load f and velocity v in the pressure drop (2.7); the second is empty if lambda = 1
   std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections of `dual` and of the wall's layer, cached for the
-                                                                   ///< iterations if lambda != 1
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections of the double layer at the wall, and of the wall's
+                                                                   ///< layer at the sites; cached for the iterations if lambda != 1
 
   struct Frozen {
     FrozenOperator single, dual, wall;

@@ -87,7 +87,8 @@ void NodalOperator::find_near(const Surface& surface, double reach) {
   }
 }
 
-/// Computes the corrections K (4.11) from the assembled blocks of A by subtracting the terms of the trapezoidal rule.
+/// Computes the blocks K_iC of (4.11) for near control points: subtracts the terms of the trapezoidal rule from the assembled blocks of the single
+/// layer A.
 void NodalOperator::subtract_rule(const Surface& surface) {
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
@@ -99,7 +100,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
   }
 }
 
-/// Computes the point forces w_B (R f)_B of (4.11) at all nodes.
+/// Computes the point forces w_B (R f)_B of the trapezoidal rule (4.11), the weight times the density f, at all nodes.
 void NodalOperator::spread(const Net& f) {
   const Net values = values_ * f;
   for (std::size_t b = 0; b < row_.size(); ++b)
@@ -109,7 +110,8 @@ void NodalOperator::spread(const Net& f) {
     }
 }
 
-/// Computes the sum of the trapezoidal rule in (4.11): rows of the rank-owned targets, or rows of all points if ranks share the sums.
+/// Computes the sum of the trapezoidal rule in (4.11) at the rank-owned targets. If ranks share the sums, computes this rank's part of them at all
+/// points.
 void NodalOperator::sum(Net& u) {
   if (tree_) {
     std::vector<double> rows(3 * node_[0].size());

@@ -13,11 +13,11 @@ namespace tanktread::coupling {
 ///
 ///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
 ///
-/// The part of the Jacobian that (4.3) omits is bounded and changes only as the shape changes, so that pairs remain useful for a few steps. This is a
-/// multisecant update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
+/// w is a displacement, and B the operator of the velocity system (2.8). The part of the Jacobian that (4.3) omits is bounded and changes only as the
+/// shape changes, so that pairs remain useful for a few steps. This is a multisecant update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
 class Secants {
  public:
-  /// `pairs`: corrections and errors (4.13) in the order d_1, e_1, d_2, e_2, ..., oldest first.
+  /// `pairs`: each correction d_i, followed by its error e_i, in the order d_1, e_1, d_2, e_2, ..., oldest first.
   explicit Secants(std::vector<Net> pairs);
   Secants() = default;
 

@@ -42,8 +42,9 @@ void product(const BlockSystem& s, const In& x, Out r) {
   r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
 }
 
-/// Solves for the velocity and the multiplier with B = 1, then for the pressure drop and the wall traction. If `triangular`, the right-hand sides of
-/// the pressure drop and the traction include the contributions of the unknowns solved for before.
+/// Applies the preconditioner, in which 1 replaces the operator B of (2.5). Solves for the velocity and the multiplier, then for the pressure drop
+/// and the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions of the unknowns
+/// solved for before.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   x.multiplier = r.multiplier;

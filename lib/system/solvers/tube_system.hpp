@@ -17,21 +17,23 @@ namespace tanktread::coupling {
 ///   dp + (1/Q) (1 - lambda) int f_inf.v dG = r_p                                                                         (2.7)
 ///   b.v / (b.n) = 0                                                                                                      (2.8)
 ///
-/// b = dV/dx, n = M0^-1 b. In the blocks of the system f^D, dp and the row of dp are multiplied by `unit`, so that all unknowns are velocities.
+/// G_W, f^D and c are defined at Tube, H is the double layer of the particle, b = dV/dx, and n = M0^-1 b. In the blocks of the system f^D, dp and the
+/// row of dp are multiplied by `unit`, so that all unknowns are velocities.
 struct BlockSystem {
   Tube& tube;
   std::function<Net(const Net&)> viscous;          ///< B v
   std::function<Net(const Net&)> control_values;   ///< applies R^-1
-  const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, which sets pi = 0
+  const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, so that the multiplier pi is 0
   const Net& normal;                               ///< n = M0^-1 b
   double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
 
-  /// Returns the system with one of the preconditioners. All use B = 1 and the factored wall. `block triangular` solves for v and pi, then dp, then
-  /// f^D, each with the contributions of the unknowns solved for before. `block diagonal` omits these contributions. `block` uses no preconditioner.
-  /// The result refers to this object.
+  /// Returns the system with one of three preconditioners. `block triangular` replaces B by 1 and uses the LU factors of the wall. It solves for the
+  /// velocity v and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D, each with the contributions of the unknowns
+  /// solved for before. `block diagonal` omits these contributions. `block` does not precondition. The result refers to this object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
 
-  /// Returns the right-hand side for the load f. `velocity`: r_v; r_W and r_p are computed from f.
+  /// Returns the right-hand side for the load f. `velocity`: right-hand side r_v of (2.5), in a periodic duct without the images of the particle. The
+  /// right-hand sides r_W of (2.6) and r_p of (2.7) are computed from f.
   Eigen::VectorXd right_hand_side(const Net& velocity, const Net& f) const;
 };
 
