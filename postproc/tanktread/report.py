@@ -9,6 +9,7 @@ import argparse
 import base64
 import gzip
 import json
+import math
 import pathlib
 
 import h5py
@@ -86,7 +87,7 @@ def curves(run):
     return {"x": _list(run.time[rows]), "label": run.time_label,
             "y": {name: _list(run.series[name][rows]) for name in kept},
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
-            "units": {name: run.units[name] for name in kept},
+            "labels": {name: run.axis(name) for name in kept},
             "meanings": {name: run.descriptions[name] for name in kept}}
 
 
@@ -99,9 +100,13 @@ def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
 
 
-def _or_dash(value):
-    """Returns a number of the summary, or a dash if it is NaN, which JSON does not have."""
-    return "–" if value != value else value
+def _finite(content):
+    """Returns the content of a page with dashes in the place of NaN and infinities, which JSON does not have."""
+    if isinstance(content, dict):
+        return {key: _finite(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_finite(value) for value in content]
+    return "–" if isinstance(content, float) and not math.isfinite(content) else content
 
 
 def accuracy_rows(found):
@@ -109,8 +114,7 @@ def accuracy_rows(found):
     if not found:
         return []
     return [["", "request", "value", "allowed", "estimated error", "remark"]] + [
-        ["✓" if one["met"] else "✗", one["request"], *(_or_dash(one[key]) for key in ("value", "allowed",
-                                                                                 "estimated error")),
+        ["✓" if one["met"] else "✗", one["request"], one["value"], one["allowed"], one["estimated error"],
          one.get("untrusted", "")] for one in found["requests"]]
 
 
@@ -121,7 +125,7 @@ def of_run(directory, field):
     facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
     sections = [("Expectations", "table", [["", "name", "value", "expected", "error", "estimated error"]] + [
         ["✓" if one.get("passed") else "✗", one.get("name"),
-         *(_or_dash(one.get(key, "–")) for key in ("value", "expected", "error", "estimated error"))]
+         *(one.get(key, "–") for key in ("value", "expected", "error", "estimated error"))]
         for one in summary.get("expect") or []])]
     sections.append(("Accuracy", "table", accuracy_rows(summary.get("accuracy"))))
     sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
@@ -135,16 +139,16 @@ def of_run(directory, field):
 
 
 def of_sweep(directory):
-    columns, keys = table(directory)
+    columns, keys, labels = table(directory)
     single = {name: values for name, values in columns.items() if values.ndim == 1}
     with h5py.File(directory / "table.h5", "r") as file:
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
-    rows = [[*single, "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
+    rows = [[*(labels[name] for name in single), "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
                                     end in zip(zip(*single.values()), status)]
     scatter = {"keys": [key for key in keys if key in numbers],
                "columns": [name for name in numbers if name not in keys],
-               "values": {name: _list(single[name]) for name in numbers}}
+               "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
     facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
     return {"title": f"sweep {directory.resolve().name}", "facts": facts, "scatter": scatter,
             "sections": [("Runs", "table", rows)]}
@@ -177,7 +181,7 @@ def write(directory, output=None, field=None):
     expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
     colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
     content = kinds[kind]() | {"cite": CITE, "colours": packed(numpy.round(255 * colours).astype("u1"))}
-    data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False, default=str).encode())).decode()
+    data = base64.b64encode(gzip.compress(json.dumps(_finite(content), allow_nan=False, default=str).encode())).decode()
     page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = pathlib.Path(output or directory / "report.html")
     title = content["title"].replace("&", "&amp;").replace("<", "&lt;")

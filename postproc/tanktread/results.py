@@ -91,13 +91,22 @@ class Run:
 
     def in_units(self, dimension):
         """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
+        return self.unit(dimension) if self.deck.get("Units") else ""
+
+    def unit(self, dimension):
+        """Returns ", µm/s" for length/time, or without the section Units ", length/time"; "" of a number."""
         units = self.deck.get("Units") or {}
         named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
-        dimension = dimension.replace("viscosity x length", "force x time/length").replace("stress", "force/length^2")
-        if not named or not dimension:
+        if dimension in ("", "1", "of the key"):
             return ""
-        words = re.sub("length|time|force", lambda word: named[word[0]], dimension.replace(" x ", " "))
-        return ", " + words.replace("^2", "²")
+        dimension = dimension.replace("viscosity x length", "force x time/length")
+        dimension = re.sub("stress|pressure", "force/length^2", dimension).replace(" x ", " ")
+        words = re.sub("length|time|force", lambda word: named.get(word[0], word[0]), dimension)
+        return ", " + re.sub(r"\^(\d)", lambda power: "⁰¹²³⁴"[int(power[1])], words)
+
+    def axis(self, name):
+        """Returns the label of an axis of a series: its name and, unless it is a number, its unit."""
+        return name + self.unit(self.units[name])
 
     @property
     def rate(self):
@@ -119,14 +128,16 @@ class Run:
 
     @property
     def time(self):
-        """Times of the series (rows,), multiplied by `rate`: `time_label` names them."""
-        return self.series["time"] * self.rate[0]
+        """Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`."""
+        return self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0])
 
     @property
     def time_label(self):
         """The label of an axis of `time`."""
+        if "Continuation" in self.deck:
+            return "number of the point"
         name = self.rate[1]
-        return f"time · {name}" if name else "time, in the deck's unit"
+        return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
     @property
     def radius(self):

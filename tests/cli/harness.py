@@ -20,6 +20,7 @@ import itertools
 import multiprocessing
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -97,6 +98,18 @@ def start(*arguments, ranks=1):
     """Starts the program in the background: a subprocess.Popen, for tests that kill it."""
     return subprocess.Popen(command(*arguments, ranks=ranks), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                             stderr=subprocess.PIPE, text=True)
+
+
+def shown(page):
+    """Returns the document that headless Chromium makes of a page, and the lines of its console. Returns (None, []) without Chromium, and says so."""
+    browser = shutil.which("chromium")
+    if not browser:
+        print("skipped a part: chromium is not installed")
+        return None, []
+    words = [browser, "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--virtual-time-budget=20000",
+             "--dump-dom", f"--user-data-dir={pathlib.Path('profile').resolve()}", "--enable-logging=stderr", page]
+    result = subprocess.run(words, capture_output=True, text=True, timeout=300)
+    return result.stdout, [line for line in result.stderr.splitlines() if "CONSOLE" in line and "GL Driver Message" not in line]
 
 
 def series(results, name):

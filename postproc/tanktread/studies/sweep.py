@@ -177,17 +177,32 @@ class Sweep:
                                  constant_values=numpy.nan) for values in found]
                 every = name in whole or name == "time"
                 file[f"columns/{name}"] = numpy.array(one) if every else numpy.array(one)[:, 0]
+            self._write_units(file)
         for name in "table.csv", "table.h5":
             log.info(directory / name)
 
 
+    def _write_units(self, file):
+        """Writes the attribute `unit` of keys and columns, such as ", µm", as the first run that ended has it."""
+        run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
+        if run is None:
+            return
+        for key in self.keys:
+            file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
+        for name in file["columns"]:
+            series = self.columns[name.removesuffix(" error")][0] if name != "time" else name
+            file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
+
+
 def table(directory):
-    """Returns {column or key: values} of a sweep's table.h5, and the keys that vary."""
+    """Returns of a sweep's table.h5 {column or key: values}, the keys that vary, and labels of axes by both names."""
     with h5py.File(directory / "table.h5", "r") as file:
         keys = list(file.attrs["keys"])
         found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
                                                               for name in file.attrs["columns"]}
-        return {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}, keys
+        labels = {name: name + data.attrs.get("unit", "") for name, data in found.items()}
+        values = {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}
+        return values, keys, labels
 
 
 def plot(directory, column, key, axes=None):
@@ -195,32 +210,32 @@ def plot(directory, column, key, axes=None):
     combination of the other keys."""
     from ..figures import style
 
-    columns, keys = table(directory)
+    columns, keys, labels = table(directory)
     for name in column, key:
         expect(name in columns, f"the table has no {name}; there are: {', '.join(columns)}")
     expect(columns[column].ndim == columns[key].ndim,
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
     others = [name for name in keys if name != key]
-    labels = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
-              for k in range(len(columns[column]))]
+    lines = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
+             for k in range(len(columns[column]))]
     numbers = columns[key].dtype.kind in "fi"
-    for k, label in enumerate(dict.fromkeys(labels)):
-        chosen = [i for i, one in enumerate(labels) if one == label]
+    for k, label in enumerate(dict.fromkeys(lines)):
+        chosen = [i for i, one in enumerate(lines) if one == label]
         x, y = columns[key][chosen], columns[column][chosen]
         if y.ndim > 1:
             for i, (along, values) in enumerate(zip(x, y)):
                 axis.plot(along, values, color=style.RUNS[k % len(style.RUNS)], label=label if i == 0 else None)
             continue
         order = numpy.argsort(x)
-        few = len(set(labels)) <= 12
+        few = len(set(lines)) <= 12
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
         axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5,
                   color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
     if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
         axis.set_xscale("log")
-    axis.set_xlabel(key)
-    axis.set_ylabel(column)
+    axis.set_xlabel(labels[key])
+    axis.set_ylabel(labels[column])
     if axis.get_legend_handles_labels()[1] and others:
         axis.legend(fontsize=7.5)
     return figure
