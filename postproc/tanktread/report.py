@@ -12,10 +12,9 @@ import json
 import math
 import pathlib
 
-import h5py
 import numpy
-import yaml
 
+from .files import opened, parsed
 from .mistakes import expect, log
 from .runs import run as run_of
 from .snapshots import DIMENSIONS, evenly
@@ -141,7 +140,7 @@ def of_run(directory, field):
 def of_sweep(directory):
     columns, keys, labels = table(directory)
     single = {name: values for name, values in columns.items() if values.ndim == 1}
-    with h5py.File(directory / "table.h5", "r") as file:
+    with opened(directory / "table.h5") as file:
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
     rows = [[*(labels[name] for name in single), "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
@@ -155,8 +154,10 @@ def of_sweep(directory):
 
 
 def of_fit(directory):
-    fits = yaml.safe_load((directory / "fit.yaml").read_text(encoding="utf-8"))
+    fits = parsed(directory / "fit.yaml")
     rows = [["law", "unknown", "value", "standard error", "chi square", "degrees of freedom", "AIC", "runs"]]
+    expect(isinstance(fits, dict) and fits and all(isinstance(fit, dict) and {"unknown", *rows[0][4:]} <= set(fit)
+                                                   for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
             known = numpy.isfinite(one["error"])
@@ -164,7 +165,7 @@ def of_fit(directory):
                          *(fit[key] for key in rows[0][4:])])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
-            "sections": [("What the data say", "text", (directory / "fit.txt").read_text(encoding="utf-8")),
+            "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),
                          ("Unknowns", "table", rows)]}
 
 

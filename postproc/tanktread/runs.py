@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+from .files import parsed
 from .mistakes import Mistake, expect
 from .results import Run
 
@@ -76,17 +77,7 @@ def run(where, settings=None):
         outcome = Study(directory="results").run(where, settings)
         expect(outcome.done, f"{where} did not run to its end: {outcome.message}")
         return outcome.run
-    directory = results_of(where) if str(where).endswith(".yaml") else where
-    try:
-        found = Run(directory)
-    except FileNotFoundError:
-        raise Mistake(f"{directory} holds no run.h5: give the directory of a run's results, or a deck") from None
-    except (OSError, KeyError) as error:
-        raise Mistake(f"{directory}/run.h5 cannot be read: {error}") from None
-    for name, values in found.series.items():
-        expect("NaN if" in found.descriptions[name] or not math.isnan(values.sum()),
-               f"{directory}/run.h5 has NaN in the series {name}, which is always defined: the file is damaged")
-    return found
+    return Run(results_of(where) if str(where).endswith(".yaml") else where)
 
 
 def runs_of(runs):
@@ -162,7 +153,7 @@ class Outcome:
         """The simulated time that the run came to."""
         try:
             return float(self.series["time"][-1])
-        except (OSError, IndexError):
+        except (Mistake, IndexError):
             return 0.0
 
 
@@ -186,7 +177,7 @@ class Study:
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"
-        before = Outcome(where, json.loads(note.read_text())) if note.exists() else None
+        before = self._before(where, note)
         if before and (where in self._made or not self.fresh) and self._stands(before):
             return before
         self._made.add(where)
@@ -203,6 +194,14 @@ class Study:
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
+
+    @staticmethod
+    def _before(where, note):
+        """Returns the Outcome that a run left, or None if there is none or its note is damaged."""
+        try:
+            return Outcome(where, parsed(note, json.loads))
+        except Mistake:
+            return None
 
     def _stands(self, outcome):
         """Returns whether a run need not be made again: another program may know the keys that were refused."""
@@ -230,7 +229,7 @@ class Study:
     @staticmethod
     def name(decks, settings, ranks=1):
         """Returns the name of a run's directory, by the content of the decks and the settings."""
-        texts = [deck_at(deck).read_text() for deck in decks]
+        texts = [parsed(deck_at(deck), str) for deck in decks]
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 

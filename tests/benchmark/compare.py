@@ -173,7 +173,7 @@ def loaded(outcome):
     """Returns the results of a run, or None if it ended before it had any."""
     try:
         return tanktread.Run(outcome.directory)
-    except (OSError, KeyError):
+    except tanktread.Mistake:
         return None
 
 

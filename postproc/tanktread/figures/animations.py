@@ -67,7 +67,6 @@ class Film:
         upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
         self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
         self.shown = shown(run)
-        run.require(*(name for names in self.shown.values() for name in names))
         self.marks = self.draw_series()
 
     def draw_series(self):

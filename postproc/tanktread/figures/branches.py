@@ -20,8 +20,6 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
 
     series: what is drawn against the parameter
     exact: a known point, as parameter and value (repeatable)"""
-    for run in runs:
-        run.require("parameter", "fold", series)
     rated = all("leading_rate" in run.series for run in runs)
     figure, axes = style.panels(axes, 1 + rated, 1, 5.2, 3.4 + 1.8 * rated, sharex=True,
                                 height_ratios=[3, 1.6][: 1 + rated])
@@ -70,10 +68,9 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     figure, (upper, lower) = style.panels(axes, 2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
     names, reached = set(), []
     for run, color in zip(runs, style.RUNS * len(runs)):
-        run.require("parameter", "second_parameter", "fold", series)
+        found = numpy.flatnonzero(run.series["fold"] > 0)
         continuation = run.deck["Continuation"]
         names.add((continuation["second parameter"], continuation["parameter"]))
-        found = numpy.flatnonzero(run.series["fold"] > 0)
         found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
         second, parameter, value = (run.series[name][found] for name in ("second_parameter", "parameter", series))
         reached += list(second)
@@ -109,7 +106,6 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     series: series whose difference is taken
     amplitude: of the mode, over R_C
     length: of the runs, in times of the rate"""
-    run.require("leading_rate", series)
     study = Study(directory="results/growth_rates")
     deck = deck_in_time(run, study.directory)
     path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")

@@ -38,7 +38,7 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
 
 def channel_of(run):
     """Returns the arrays of channel.h5 by name: centre (n, 3), s (n,), wall (4, n, 3) and others."""
-    return arrays_of(run.directory / "channel.h5", "give the directory of a run in a channel")
+    return arrays_of(run.directory / "channel.h5")
 
 
 def centroid(run):
@@ -128,7 +128,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
 
     elements: elements of the membrane, from pole to pole"""
     first = runs[0]
-    first.require("channel_pressure_drop")
     needed = {"Channel/profile": "constriction", "Channel/section": "circle", "Membrane/law": "neo-Hookean",
               "Particle/shape": "sphere"}
     for key, wanted in needed.items():

@@ -65,9 +65,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
     gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
     for k, (run, color) in enumerate(zip(runs, style.RUNS * len(runs))):
-        run.require("gap")
-        sections(figure.add_subplot(grid[k, :]), run, times)
         film = run.series["gap"] / run.radius
+        sections(figure.add_subplot(grid[k, :]), run, times)
         gap.plot(run.time, film, color=color, label=run.name)
         away, along = velocities(run)
         speed.plot(run.time, away, color=color, label="away" if k == 0 else None)

@@ -7,7 +7,7 @@ import scipy.interpolate
 
 from ..files import table
 from ..interpolation import difference
-from ..mistakes import Mistake, expect, log
+from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study, deck_at, settings_of
 from . import style
@@ -44,8 +44,8 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     series: which series, and column of the curve"""
     expect(curve, "give the reference: --curve FILE")
     known = table(curve, ("t", series))
-    for run in runs:
-        run.require(series)
+    expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
+                                                 or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
     found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
     families = sorted({one.family for one in found})
     color = dict(zip(families, style.RUNS * len(families)))
@@ -190,10 +190,7 @@ def of_radius(runs, deck, words, finer, radius, x):
 
 def curve_of(path, between):
     """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
-    try:
-        curve = numpy.loadtxt(path, delimiter=",", ndmin=2)
-    except (OSError, ValueError) as error:
-        raise Mistake(f"{path} is no curve: {error}") from error
-    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])] if curve.shape[1] == 2 else []
-    expect(len(inside), "{} has no rows of two numbers with the first between {:g} and {:g}".format(path, *between))
+    curve = table(path)[:, :2]
+    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])]
+    expect(len(inside), "{} has no row between {:g} and {:g}".format(path, *between))
     return curve, inside

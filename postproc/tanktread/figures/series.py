@@ -22,9 +22,6 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
 
     curves: folder of literature curves, named as figures/literature.py says
     deformation: which Taylor parameter"""
-    for run in runs:
-        if not run.several:
-            run.require("taylor_inertia", "taylor_surface", "inclination")
     inclined = any(has_inclination(run) for run in runs)
     width = 6.4 if len(runs) == 1 else 9.8
     if inclined:
@@ -151,8 +148,6 @@ def refinement(runs, axes=None, *, steady: list[float] | None = None, deformatio
 
     steady: steady values of D in the literature, drawn at the right
     deformation: which Taylor parameter"""
-    for run in runs:
-        run.require("taylor_inertia", "taylor_surface")
     compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
     heights = [3, 1.5, 1.8] if compares else [3, 1.8]
     figure, axes = style.panels(axes, len(heights), 1, 6.4, 1.25 * sum(heights), sharex=True, height_ratios=heights)

@@ -43,7 +43,6 @@ def stresses(run):
     """Returns [η], N1 and N2 over time (rows,), without a unit."""
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
-    run.require("stresslet_13")
     volume = run.series["volume"][0] if "volume" in run.series else run.snapshots()[0].volume()
     unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
     s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))
@@ -61,7 +60,6 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     blocks: number of parts of an average"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in zip(runs, style.RUNS * len(runs)):
-        run.require(*SERIES)
         strain, words = run.time, []
         label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for name, symbol in SERIES.items():
@@ -186,7 +184,6 @@ def drift(run, axes=None, *, from_: int = 10):
 
     from_: first turn of the straight line"""
     expect(from_ >= 0, f"--from needs a turn, but is given {from_}")
-    run.require("phase", *DRIFTS)
     stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]

@@ -47,7 +47,7 @@ def duct(runs, axes=None, *, no_path: bool = False):
 
 def duct_of(run):
     """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
-    arrays = arrays_of(run.directory / "duct.h5", "give the directory of a run in a tube")
+    arrays = arrays_of(run.directory / "duct.h5")
     for name in "outline", "x2", "x3":
         arrays[name] = arrays[name] / arrays["radius"]
     arrays["maximum"][:2] /= arrays["radius"]
@@ -103,7 +103,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
 
     times: simulated times of the shapes"""
-    ducts = [in_tube(run) for run in runs]
+    ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
     for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
         shots = shots_of(run, times)
@@ -123,12 +123,6 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=rows,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
-
-
-def in_tube(run):
-    """Returns the arrays of the duct of a run, after a check that the run follows a particle."""
-    run.require("centroid_x1")
-    return duct_of(run)
 
 
 def shots_of(run, times):
@@ -194,7 +188,7 @@ def across(axis, run, d, shots, colours):
 @figure
 def tube_motion(runs, axes=None):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
-    ducts = [in_tube(run) for run in runs]
+    ducts = [duct_of(run) for run in runs]
     figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
     for run, d, colour in zip(runs, ducts, style.RUNS):
         speed, radius = d["mean_velocity"], d["radius"]

@@ -50,8 +50,8 @@ class Runs:
         return self._run.in_units(self.study.dimension(key)) if self._run else ""
 
     def _predicted(self, experiment, outcome):
+        self._run = outcome.run
         try:
-            self._run = outcome.run
             return [datum.prediction(outcome.run) for datum in experiment.data]
         except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
             self.messages.append(str(error))

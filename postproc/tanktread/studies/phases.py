@@ -134,7 +134,6 @@ class Diagram:
         outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
         said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:
-            outcome.run.require(*self.kind.series)
             said, *measures = self.kind.tell(outcome.series, self.begin)
         said = said or "neither"
         told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))

@@ -27,6 +27,7 @@ import time
 import h5py
 import numpy
 
+from ..files import opened
 from ..mistakes import Mistake, expect, log, progress
 from ..runs import Study, text_of
 from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
@@ -196,7 +197,7 @@ class Sweep:
 
 def table(directory):
     """Returns of a sweep's table.h5 {column or key: values}, the keys that vary, and labels of axes by both names."""
-    with h5py.File(directory / "table.h5", "r") as file:
+    with opened(directory / "table.h5") as file:
         keys = list(file.attrs["keys"])
         found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
                                                               for name in file.attrs["columns"]}
