@@ -32,8 +32,7 @@ def load_form(study):
                 axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
                               fontsize=7.5, color="white")
                 rows.append((ca, mesh, load, outcome.end, outcome.message[:100]))
-        axis.set_title(f"Ca = {ca:g}")
-        axis.set_xlabel("time reached")
+        axis.set(title=f"Ca = {ca:g}", xlabel="time reached")
         axis.grid(visible=False, axis="y")
     axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="paper")
     axes[0].set_yticks(range(len(meshes)), meshes)
@@ -114,8 +113,7 @@ def pre_inflation(study):
     axis.plot(numpy.repeat(x[None], len(y), 0), numpy.repeat(y[:, None], len(x), 1), ".", color=style.INK, ms=2)
     axis.set_xticks(x, [f"{value:g}" for value in capillary])
     axis.grid(visible=False)
-    axis.set_xlabel("Ca")
-    axis.set_ylabel("pre-inflation α, per cent")
+    axis.set(xlabel="Ca", ylabel="pre-inflation α, per cent")
     figure.colorbar(filled, label="smallest tension over G_s")
     rows = [(settings["Membrane/capillary number"], settings["Membrane/pre-inflation"], value) for (_, settings),
             value in zip(jobs, smallest)]

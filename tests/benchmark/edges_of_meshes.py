@@ -29,8 +29,7 @@ def pole_treatment(study):
                 found.append((outcome.final["n_control_points"], outcome.final["pressure_l2_error"]))
                 rows.append((name, *found[-1], outcome.final["drag_error"]))
         axis.loglog(*zip(*found), line, color=color, marker=mark, ms=5, label=name)
-    axis.set_xlabel("control points")
-    axis.set_ylabel("L2 error of the pressure")
+    axis.set(xlabel="control points", ylabel="L2 error of the pressure")
     axis.legend(loc="best")
     return figure, ["case", "control_points", "pressure_error", "drag_error"], rows
 
@@ -112,8 +111,7 @@ def gap_tube(study):
         axis.loglog([1 - a for a in radii], errors, color=color, marker=mark, ms=5, label=name)
     axis.set_xticks([1 - a for a in radii], [f"{1 - a:g}" for a in radii])
     axis.xaxis.set_minor_locator(plt.NullLocator())
-    axis.set_xlabel("gap over the radius of the tube")
-    axis.set_ylabel("relative error of the velocity")
+    axis.set(xlabel="gap over the radius of the tube", ylabel="relative error of the velocity")
     axis.legend(loc="best")
     return figure, ["case", "radius", "reference", "error"], rows
 
@@ -196,9 +194,7 @@ def tip_traction(study):
             axis.plot(height, values, line, color=color, linewidth=width,
                       label=f"{name}: {100 * error:.1f} %" if error > 0 else name)
     for axis, label in (outline, "x₁"), (along, "traction"):
-        axis.set_xlim(-0.3, 0.3)
-        axis.set_xlabel("x₃")
-        axis.set_ylabel(label)
+        axis.set(xlim=(-0.3, 0.3), xlabel="x₃", ylabel=label)
     outline.set_ylim(bottom=outline.dataLim.y1 - 0.6)
     outline.legend(loc="lower center", title="control points: error of the traction")
     return figure, ["mesh", "control_points", "largest_error", "taylor_inertia"], rows
@@ -231,8 +227,7 @@ def drop_mesh(study):
         axis.set_yticks(range(2), ["Ca = 0.05", "Ca = 0.1"])
         axis.grid(visible=False, axis="y")
     left.set_xlabel("time reached")
-    right.set_xlabel("largest over smallest element, by area")
-    right.set_xscale("log")
+    right.set(xlabel="largest over smallest element, by area", xscale="log")
     figure.legend(*left.get_legend_handles_labels(), loc="upper right", ncols=3)
     return figure, ["capillary_number", "motion", "time_reached", "area_ratio", "taylor_surface", "message"], rows
 

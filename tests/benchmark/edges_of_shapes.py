@@ -37,8 +37,7 @@ def bursting(study):
             rows.append((name, second, ca, d, apart[0] / ca, apart[1]))
         axis.plot(coarse[0], coarse[1], "x", color=color, ms=6, label=f"{name}: n = {meshes[0]}")
         axis.plot(fine[0], fine[1], "o-", color=color, ms=3.5, label=f"n = {meshes[1]}")
-    left.set_xscale("log")
-    left.set_xlabel("viscosity ratio λ")
+    left.set(xscale="log", xlabel="viscosity ratio λ")
     right.set_xlabel("pre-inflation")
     for axis in left, right:
         axis.set_ylabel("Ca at the fold")
@@ -68,8 +67,7 @@ def squeezing(study):
            for radius in size]
     axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
     rows += [("without film", "", *pair) for pair in zip(size, dry)]
-    axis.set_xlabel("radius of the capsule over that of the channel")
-    axis.set_ylabel("Ca above which it passes")
+    axis.set(xlabel="radius of the capsule over that of the channel", ylabel="Ca above which it passes")
     axis.legend()
     return figure, ["kind", "elements_per_side", "radius", "capillary_number"], rows
 
@@ -99,11 +97,8 @@ def wrinkling(study):
                     right.plot(angle, wave / abs(wave).max(), color=color,
                                label=f"{name}: {crests} crests, Ca = {ca:g}")
             left.plot(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
-    left.set_xlabel("Ca")
-    left.set_ylabel("E_b/(G_s R²) at onset")
-    right.set_xlabel("angle around the axis (degrees)")
-    right.set_ylabel("radial part of the mode")
-    right.set_ylim(-1.1, 1.6)
+    left.set(xlabel="Ca", ylabel="E_b/(G_s R²) at onset")
+    right.set(xlabel="angle around the axis (degrees)", ylabel="radial part of the mode", ylim=(-1.1, 1.6))
     for axis in left, right:
         axis.legend()
     return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows

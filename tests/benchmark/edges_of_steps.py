@@ -60,8 +60,7 @@ def draw_steps(study, variable, label, values, of):
                 label="2.51/ρ, ρ by (4.5)")
     axis.set_xticks(values, [f"{value:g}" for value in values])
     axis.xaxis.set_minor_locator(plt.NullLocator())
-    axis.set_xlabel(label)
-    axis.set_ylabel("largest step that works, times rate")
+    axis.set(xlabel=label, ylabel="largest step that works, times rate")
     axis.legend(loc="best")
     return figure, ["scheme", variable, "largest_step", "note"], rows
 
@@ -128,12 +127,9 @@ def viscosity_ratio(study):
         left.semilogx([one[0] for one in found], [one[1] for one in found], "o-", color=color, ms=4,
                       label=f"Volume/constraint `{constraint}`")
         right.loglog([one[0] for one in found], [max(one[3], 1e-16) for one in found], "o-", color=color, ms=4)
-    left.set_xlabel("λ")
-    left.set_ylabel("iterations a velocity")
-    left.set_ylim(bottom=0)
+    left.set(xlabel="λ", ylabel="iterations a velocity", ylim=(0, None))
     left.legend(loc="best")
-    right.set_xlabel("λ")
-    right.set_ylabel("largest volume error")
+    right.set(xlabel="λ", ylabel="largest volume error")
     return figure, ["constraint", "viscosity_ratio", "iterations_a_velocity", "steps", "volume_error", "message"], rows
 
 

@@ -43,8 +43,7 @@ def step_tolerance(study):
                     axis.loglog([one[0] for one in found], [one[column] for one in found], line, color=color,
                                 marker=mark, ms=4, label=name if line == "-" else None)
     for axis, label in zip(axes, ("error of D at the end", "volume error without `exact`", "velocity evaluations")):
-        axis.set_xlabel("Time/tolerance")
-        axis.set_ylabel(label)
+        axis.set(xlabel="Time/tolerance", ylabel=label)
         axis.invert_xaxis()
     axes[0].plot([], [], ":", color=style.FAINT, label="Volume/constraint `flux`")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="upper right", ncols=3, fontsize=7,
@@ -116,8 +115,7 @@ def volume_drift(study):
                                                          outcome.series["taylor_inertia"])]
     left.set_ylabel("volume error")
     left.legend(loc="center right")
-    right.set_ylabel("Taylor parameter D")
-    right.set_ylim(0.45, 0.6)
+    right.set(ylabel="Taylor parameter D", ylim=(0.45, 0.6))
     for axis in left, right:
         axis.set_xlabel("time")
     return figure, ["constraint", "time", "volume_error", "taylor_inertia"], rows

@@ -56,19 +56,13 @@ def main():
     outline.set_aspect("equal")
     outline.autoscale_view()
     reach = outline.dataLim.x1
-    tip.set_xlim(0.9 * reach, 1.01 * reach)
-    tip.set_ylim(-0.11 * reach, 0.11 * reach)
+    tip.set(xlim=(0.9 * reach, 1.01 * reach), ylim=(-0.11 * reach, 0.11 * reach))
     outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False,
                                     edgecolor=style.FAINT, linewidth=0.8))
     for axis, title in (outline, "the section x₂ = 0"), (tip, "its tip"):
-        axis.set_title(title)
-        axis.set_xlabel("x₁ / R$_C$")
-        axis.set_ylabel("x₃ / R$_C$")
-    along.set_title(f"{arguments.field} on the section near the tip")
-    along.set_xlabel("x₃ / R$_C$")
-    along.set_ylabel(words)
-    along.set_xlim(-0.11 * reach, 0.11 * reach)
-    along.set_ylim(bottom=0)
+        axis.set(title=title, xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$")
+    along.set(title=f"{arguments.field} on the section near the tip", xlabel="x₃ / R$_C$", ylabel=words,
+              xlim=(-0.11 * reach, 0.11 * reach), ylim=(0, None))
     along.legend(loc="upper left", bbox_to_anchor=(0, -0.2))
     for run, (angle, values) in zip(runs[1:], curves[1:]):
         print(f"{run.name}: largest {arguments.field} {largest(values):.5g} against {largest(curves[0][1]):.5g}, "

@@ -143,8 +143,7 @@ def figure_8(found, path):
           "  slope %.2f, finest pair %.2f" % slope(points, far))
     axes.plot(546, PAPER_TABLE[2][0], "*", color=style.INK, ms=9, label="paper, Table 1", zorder=5)
     draw_guide(axes, (700, 3000), 6e-4, PAPER_SLOPES["normal"][1], "paper's mean slope,\nunstructured: 1.62")
-    axes.set_ylabel("L2 error of the normal")
-    axes.set_title("Figure 8: the normal")
+    axes.set(ylabel="L2 error of the normal", title="Figure 8: the normal")
     for text in (line for line in axes.get_lines() if "," in str(line.get_label())):
         text.set_label(text.get_label().replace(", rules by tolerance", ""))
     figure.legend(*axes.get_legend_handles_labels(), loc="upper center", ncol=2, bbox_to_anchor=(0.5, 0))
@@ -155,15 +154,13 @@ def figure_9(found, path):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6))
     draw_convergence(left, found, "pressure_l2_error")
     left.plot(546, PAPER_TABLE[3][1], "*", color=style.INK, ms=9, label="paper, Table 1", zorder=5)
-    left.set_ylabel("L2 error of the pressure")
-    left.set_title("Figure 9 (a): the pressure")
+    left.set(ylabel="L2 error of the pressure", title="Figure 9 (a): the pressure")
     draw_convergence(right, found, "drag_error", 100.0)
     cube = [one for one in found["cube"] if "drag_error_of_traction" in one]
     right.loglog(column(cube, "n_control_points"), 100 * column(cube, "drag_error_of_traction"), color=style.RUNS[0],
                  linestyle=":", marker="o", ms=4.5, mfc="none", label="unstructured, without the reciprocal theorem")
     right.plot(546, PAPER_TABLE[3][2], "*", color=style.INK, ms=9, label="paper, Table 1", zorder=5)
-    right.set_ylabel("error of the drag, per cent")
-    right.set_title("Figure 9 (b): the drag")
+    right.set(ylabel="error of the drag, per cent", title="Figure 9 (b): the drag")
     handles, labels = right.get_legend_handles_labels()
     figure.legend(handles, labels, loc="upper center", ncol=2, bbox_to_anchor=(0.5, 0))
     style.save(figure, path)

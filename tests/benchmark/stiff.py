@@ -131,8 +131,7 @@ def draw(panels, column, label, path):
                             lw=1.8 if scheme == "auto" else 1, ls="--" if scheme.startswith("CN") else "-",
                             label=scheme)
         axis.set_title(f"{scene}: {SCENES[scene][0]}", fontsize=8)
-        axis.set_xlabel(label)
-        axis.set_ylabel("largest error in D")
+        axis.set(xlabel=label, ylabel="largest error in D")
     for axis in list(axes.flat)[len(panels):]:
         axis.set_axis_off()
     axes.flat[0].legend(fontsize=7)

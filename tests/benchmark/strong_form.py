@@ -57,9 +57,7 @@ def draw_series(upper, lower, runs, end):
     upper.set_ylim(bottom=0)
     upper.tick_params(labelbottom=False)
     upper.legend(loc="lower right")
-    lower.set_ylabel("step")
-    lower.set_xlabel("time")
-    lower.set_xlim(left=0)
+    lower.set(ylabel="step", xlabel="time", xlim=(0, None))
     lower.annotate(f"stalls at {end:.3g}", (end, lower.get_ylim()[0]), (5, 8), textcoords="offset points",
                    color=style.INK, fontsize=8.5)
 

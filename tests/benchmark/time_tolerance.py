@@ -175,8 +175,7 @@ def figure(runs, parsed):
             errors = [error(one, reference) for one in done]
             for axis, work in zip(axes[:, column], ([one.processor_seconds for one in done], [one.counts["evaluations"] for one in done])):
                 axis.loglog(work, errors, ".-", color=color, label=name, markersize=4, linewidth=1)
-        axes[0, column].set_title(f"viscosity ratio {ratio:g}")
-        axes[0, column].set_xlabel("processor seconds")
+        axes[0, column].set(title=f"viscosity ratio {ratio:g}", xlabel="processor seconds")
         axes[1, column].set_xlabel("velocity evaluations")
     for axis in axes[:, 0]:
         axis.set_ylabel("largest error of D")

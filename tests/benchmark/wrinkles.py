@@ -79,14 +79,10 @@ def main():
             if waved:
                 left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
             middle.plot(t, d, color=color, label=f"n = {n}")
-        left.set_title("no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s")
-        left.set_xlabel("degree")
-        left.set_ylabel("power of the load")
-        left.set_ylim(1e-9, 2)
+        left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
+                 ylabel="power of the load", ylim=(1e-9, 2))
         left.legend(loc="best")
-        middle.set_xlabel("time")
-        middle.set_ylabel("Taylor parameter D")
-        middle.set_ylim(0.9 * rows[-1][7], 1.1 * rows[-1][7])
+        middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][7], 1.1 * rows[-1][7]))
         if lengths:
             right.plot([1 / s for s, _ in lengths], [length for _, length in lengths], "o-", color=style.RUNS[0])
         else:
@@ -94,9 +90,7 @@ def main():
         sizes = [element_size(n) for n in parsed.meshes]
         right.plot([1 / s for s in sizes], [2.25 * s for s in sizes], color=style.FAINT, linestyle=(0, (4, 3)),
                    label="2.25 elements")
-        right.set_xlabel("elements a radius")
-        right.set_ylabel("wavelength over R")
-        right.set_ylim(0, 0.9)
+        right.set(xlabel="elements a radius", ylabel="wavelength over R", ylim=(0, 0.9))
         right.legend(loc="best")
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)

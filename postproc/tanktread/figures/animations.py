@@ -84,8 +84,7 @@ class Film:
             if len(values) and values.min() >= 0:
                 axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
         self.panels[0].tick_params(labelbottom=False)
-        self.panels[1].set_xlabel(self.run.time_label)
-        self.panels[1].set_xlim(self.run.time[0], self.run.time[-1])
+        self.panels[1].set(xlabel=self.run.time_label, xlim=(self.run.time[0], self.run.time[-1]))
         return marks
 
     def show(self, shot):
@@ -96,8 +95,7 @@ class Film:
         room = 0.11 * (self.window[1] - self.window[0])[0]
         (left, low), (right, high) = self.window + middle_seen
         draw_triad(self.surface, view_axes(*self.view), numpy.array([left, right, low, high]))
-        self.surface.set_xlim(left - room, right + room)
-        self.surface.set_ylim(low - room, high + room)
+        self.surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room))
         # of this saved step, the last one if none came after
         row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))
         row = min(row, len(self.run.time) - 1)

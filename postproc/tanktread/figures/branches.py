@@ -90,8 +90,7 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set_ylabel("Taylor parameter D there" if series.startswith("taylor") else series + " there")
-    lower.set_xlabel(second)
+    lower.set(ylabel="Taylor parameter D there" if series.startswith("taylor") else series + " there", xlabel=second)
     return figure
 
 
@@ -119,8 +118,7 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     draw(axis, parameter, rate, unstable(run), style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
-    axis.set_xlabel(path)
-    axis.set_ylabel("rate of the leading mode")
+    axis.set(xlabel=path, ylabel="rate of the leading mode")
     axis.legend()
     return figure
 

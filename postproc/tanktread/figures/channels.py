@@ -149,11 +149,8 @@ def stuck(runs, axes=None, *, elements: int = 160):
         lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
         log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
                  f"smallest film {run.series['gap'].min():.4g}")
-    upper.set_ylim(0, None)
-    upper.set_ylabel("Ca")
+    upper.set(ylim=(0, None), ylabel="Ca")
     upper.legend()
-    lower.set_yscale("log")
-    lower.set_ylabel("velocity / V")
-    lower.set_xlabel("centroid $x_1$")
+    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$")
     lower.legend()
     return figure

@@ -134,9 +134,7 @@ def draw_sections(axis, runs, shots):
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
-    axis.set_xlabel("x₁ / R$_C$")
-    axis.set_ylabel("x₃ / R$_C$")
-    axis.set_title("section in the x₁x₃ plane")
+    axis.set(xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 
 
@@ -145,8 +143,7 @@ def share_window(axes):
     limits = numpy.array([[axis.get_xlim(), axis.get_ylim()] for axis in axes])
     middles, half = limits.mean(2), numpy.ptp(limits, axis=2).max(0) / 2
     for axis, middle in zip(axes, middles):
-        axis.set_xlim(middle[0] - half[0], middle[0] + half[0])
-        axis.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        axis.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
         axis.set_anchor("C")
 
 

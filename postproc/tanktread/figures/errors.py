@@ -57,8 +57,7 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
             members = [one for one in found if one.family == family]
             axis.loglog([getattr(one, cost) for one in members], [one.largest for one in members], "o-",
                         color=color[family], ms=4, label=family)
-        axis.set_xlabel(label)
-        axis.set_ylabel(f"largest error of {series}")
+        axis.set(xlabel=label, ylabel=f"largest error of {series}")
     draw_order(axes[1], found)
     axes[1].legend(loc="lower left")
     report(found, families)
@@ -141,9 +140,8 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
         axis.plot(*curve.T, style.MARKS[k], color=style.FAINT, markersize=3, label=f"published, {names[k]}")
         log.info(f"along {names[k]}: {off[at]:+.4f} off the curve at most, at {inside[at, 0]:.3f}; "
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
-    axis.set_xlabel("centroid $x_1$")
-    axis.set_ylabel("extent over 2a")
-    axis.set_title(f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
+    axis.set(xlabel="centroid $x_1$", ylabel="extent over 2a",
+             title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
     axis.legend()
     return figure
 

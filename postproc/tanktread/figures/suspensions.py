@@ -33,8 +33,7 @@ def rheology(runs, axes=None):
     upper.set_ylabel("intrinsic viscosity [η]")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set_ylabel("normal stress differences / (μ γ̇ φ)")
-    lower.set_xlabel(time_label(runs))
+    lower.set(ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
     lower.legend()
     return figure
 
@@ -75,8 +74,7 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     upper.set_ylabel("effective viscosity μ_eff/μ")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set_ylabel("normal stress differences")
-    lower.set_xlabel("strain")
+    lower.set(ylabel="normal stress differences", xlabel="strain")
     lower.legend()
     return figure
 
@@ -129,9 +127,7 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
             log.info(f"  per volume fraction, extrapolated to 0: {slope:.3f} ± {off:.3f}; one capsule: {alone:.4f}")
     upper.set_ylabel("relative viscosity μ_eff/μ")
     upper.legend()
-    lower.set_ylabel("(μ_eff/μ − 1)/φ; at 0: one capsule")
-    lower.set_xlabel("volume fraction φ")
-    lower.set_xlim(left=-0.005)
+    lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
     return figure
 
 

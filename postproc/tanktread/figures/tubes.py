@@ -35,8 +35,7 @@ def duct(runs, axes=None, *, no_path: bool = False):
         filled = draw_section(axis, d, levels)
         if not no_path:
             draw_path(axis, run, d["radius"])
-        axis.set_xlim(low[0], high[0])
-        axis.set_ylim(low[1], high[1])
+        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
     axes[0].set_ylabel("x₃ / R$_T$")
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
@@ -155,8 +154,7 @@ def along(axis, run, d, shots, colours):
     axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
     axis.set_aspect("equal")
     axis.autoscale_view()
-    axis.set_xlabel("x₁, flow to the right")
-    axis.set_ylabel("x₃ / R$_T$")
+    axis.set(xlabel="x₁, flow to the right", ylabel="x₃ / R$_T$")
     axis.set_xticks([])
     axis.grid(False)
     axis.set_title("section x₂ = centroid")
@@ -180,9 +178,7 @@ def across(axis, run, d, shots, colours):
     axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.set_xlabel("x₂ / R$_T$")
-    axis.set_ylabel("x₃ / R$_T$")
-    axis.set_title("section x₁ = centroid")
+    axis.set(xlabel="x₂ / R$_T$", ylabel="x₃ / R$_T$", title="section x₁ = centroid")
 
 
 @figure
@@ -205,12 +201,9 @@ def tube_motion(runs, axes=None):
             scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed
             axis.plot(time[1:], s[name][1:] / scale, color=colour)
             axis.set_title(label)
-    axes[0].set_aspect("equal")
-    axes[0].set_title("paths of the centroid; + largest velocity")
-    axes[0].set_xlabel("x₂ / R$_T$")
-    axes[0].set_ylabel("x₃ / R$_T$")
-    axes[1].set_ylim(bottom=FLOOR)
-    axes[1].set_title("distance from the largest velocity / R$_T$")
+    axes[0].set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel="x₂ / R$_T$",
+                ylabel="x₃ / R$_T$")
+    axes[1].set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$")
     for axis in axes[1:]:
         axis.set_xlabel("t vₘ / R$_T$")
     for axis in axes[2:]:

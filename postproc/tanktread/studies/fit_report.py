@@ -125,8 +125,7 @@ def told(fits, rows):
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
-            lines.append(f"  signs of the residuals along the data: {meaning} "
-                         f"({z:.1f} standard deviations)")
+            lines.append(f"  signs of the residuals along the data: {meaning} " f"({z:.1f} standard deviations)")
     if len(fits) > 1:
         gap = [fit.aic - fits[0].aic for fit in fits]
         total = sum(numpy.exp(-one / 2) for one in gap)
@@ -187,8 +186,7 @@ def draw(fits, axes=None):
     if series:
         data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series)))
     data.set_title(f"data and {best.law}")
-    residual.set_title("residuals over their errors")
-    residual.set_xlabel("number of the datum")
+    residual.set(title="residuals over their errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
     names = [one for one, yes in zip(best.unknowns, best.told) if yes]

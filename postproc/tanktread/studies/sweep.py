@@ -235,8 +235,7 @@ def plot(directory, column, key, axes=None):
                   color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
     if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
         axis.set_xscale("log")
-    axis.set_xlabel(labels[key])
-    axis.set_ylabel(labels[column])
+    axis.set(xlabel=labels[key], ylabel=labels[column])
     if axis.get_legend_handles_labels()[1] and others:
         axis.legend(fontsize=7.5)
     return figure
