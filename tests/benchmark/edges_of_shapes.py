@@ -1,6 +1,6 @@
 """Maps of the atlas about the particle itself: where there is no steady shape any more."""
 
-from package import numpy, plt, style
+from package import SIDE, numpy, plt, style
 from tanktread.figures import pushed as stuck
 
 DROP = "inputs/drop_folds.yaml"
@@ -30,7 +30,7 @@ def bursting(study):
     rows = []
     for (name, deck, settings, meshes), color in zip(curves, style.RUNS):
         axis = right if "capsule" in name else left
-        coarse, fine = (folds(study.run(deck, settings | {"Surface/elements per side": n})) for n in meshes)
+        coarse, fine = (folds(study.run(deck, settings | {SIDE: n})) for n in meshes)
         for second, ca, d in fine.T:
             before = coarse[1:, coarse[0] == second]
             apart = abs(before[:, 0] - (ca, d)) if before.size else (numpy.nan, numpy.nan)
@@ -59,7 +59,7 @@ def squeezing(study):
     figure, axis = plt.subplots(figsize=(5.6, 4.2))
     values, rows = "[0.65, 0.6, 0.55]", []
     for n, mark in ((8, "x"), (10, "o-")):
-        outcome = study.run(STUCK, {"Surface/elements per side": n, "Continuation/second values": values})
+        outcome = study.run(STUCK, {SIDE: n, "Continuation/second values": values})
         size, ca, _ = folds(outcome)
         axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
         rows += [("with a film", n, *pair) for pair in zip(size, ca)]
@@ -88,7 +88,7 @@ def wrinkling(study):
             onsets = []
             for ca in numbers:
                 bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity,
-                                                 "Surface/elements per side": n})
+                                                 SIDE: n})
                 angle, wave = along_waist(outcome)
                 crests = number_of_crests(angle, wave)
                 onsets.append(bending)

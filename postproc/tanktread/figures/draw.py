@@ -157,6 +157,15 @@ def field_cut(shot, field):
     return cut(grid, 1, 0)
 
 
+def near_tip(shot, field):
+    """Returns x1 (n,), x3 (n,) and the magnitude of a field (n,) along the half of the section where x1 is above the
+    middle, by x3; positions from the middle."""
+    place = field_cut(shot, field).mean(axis=1)
+    place = place[place[:, 0] > 0]
+    place = place[numpy.argsort(place[:, 2])]
+    return place[:, 0], place[:, 2], numpy.linalg.norm(place[:, 3:], axis=1)
+
+
 def on_section(shot, field):
     """Returns angle (n,), distance from the middle (n,) and field (n, k) along the section x2 = middle, by angle."""
     place = field_cut(shot, field).mean(axis=1)
