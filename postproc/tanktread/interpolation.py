@@ -19,7 +19,8 @@ def difference(t, values, curve_t, curve_values):
     the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
     a mesh has changed, are left out. The result is 0 if no times are left."""
     series = []
-    for times, found in (numpy.asarray(t), numpy.asarray(values)), (numpy.asarray(curve_t), numpy.asarray(curve_values)):
+    for times, found in (t, values), (curve_t, curve_values):
+        times, found = numpy.asarray(times), numpy.asarray(found)
         kept = ~numpy.isnan(found) & (numpy.diff(times, prepend=-numpy.inf) > 0)
         series.append((times[kept], found[kept]))
     (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))

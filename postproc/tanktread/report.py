@@ -143,8 +143,8 @@ def of_sweep(directory):
     with opened(directory / "table.h5") as file:
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
-    rows = [[*(labels[name] for name in single), "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
-                                    end in zip(zip(*single.values()), status)]
+    cells = zip(*(values.tolist() for values in single.values()), status)
+    rows = [[*(labels[name] for name in single), "status"], *cells]
     scatter = {"keys": [key for key in keys if key in numbers],
                "columns": [name for name in numbers if name not in keys],
                "labels": labels, "values": {name: _list(single[name]) for name in numbers}}

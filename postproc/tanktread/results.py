@@ -18,7 +18,8 @@ class Run:
     """The results in a directory, in the units of the deck.
 
     `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
-    A series is NaN where it is undefined, as its description states; a name that is not there is a Mistake. `units`, `descriptions`: by the same names.
+    A series is NaN where it is undefined, as its description states; a name that is not there is a Mistake. `units`,
+    `descriptions`: by the same names.
     `errors`: estimated errors of the series, by the same names, if an accuracy was requested; NaN where none can be
     estimated, as `untrusted` states by the same names. Empty without a request.
     `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.

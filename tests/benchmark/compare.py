@@ -276,8 +276,8 @@ def main():
            "seconds", "remarks"], rows())
     print(totals("All decks", comparisons))
     print(totals("Viscosity ratio 1, no viscous membrane, no rigid body", [one for one in comparisons if one.plain]))
-    print(f"\nWall time: {(time.time() - start) / 60:.1f} minutes. {len(found_again)} runs, with their seconds, are of an "
-          "earlier comparison.")
+    print(f"\nWall time: {(time.time() - start) / 60:.1f} minutes. {len(found_again)} runs, with their seconds, are of "
+          "an earlier comparison.")
     if failed := [one.name for one in comparisons if one.failed]:
         sys.exit(f"{len(failed)} decks differ: {', '.join(failed)}")
 

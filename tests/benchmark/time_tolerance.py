@@ -41,7 +41,8 @@ SCENES = {  # name: deck, settings
     "flow that oscillates, ratio 0.2": of("oscillating_shear", 0.2),
     "drop in extension, ratio 5": of("drop_uniaxial", 5, 4),
     "drop in extension, ratio 0.1": of("drop_uniaxial", 0.1, 4),
-    "drop in shear, ratio 2": of("drop_uniaxial", 2, 4, **{"Flow/type": "simple shear", "Membrane/capillary number": 0.2}),
+    "drop in shear, ratio 2": of("drop_uniaxial", 2, 4, **{
+        "Flow/type": "simple shear", "Membrane/capillary number": 0.2}),
     "red cell stretched": of("red_cell_si"),
     "red cell in shear, ratio 5": of("shear_bending", 5, 3, **SKALAK | {
         "Particle/shape": "red cell", SIDE: 8, "Membrane/capillary number": 0.5}),

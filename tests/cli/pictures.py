@@ -227,7 +227,7 @@ def pictures_and_curves_that_cannot_be_are_one_sentence():
 def help_is_there_and_absent_results_are_named():
     for name in "deformation", "shape.py", "read", "animation", "growth", "work-precision", "tweezers":
         check("usage" in _command(name, "--help"), name)
-        said = _command(name, "nowhere", code=1 if name in ("growth", "work-precision") else 2)
+        said = _command(name, "nowhere", code=2)
         check("nowhere" in said and said.count("\n") == 1, said)
 
 
