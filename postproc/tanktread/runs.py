@@ -23,10 +23,11 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
 
 def _program():
     """Returns the path of the program: TANKTREAD, that of this source directory or installation, or that in PATH."""
+    if named := os.environ.get("TANKTREAD"):
+        return pathlib.Path(named)
     found = [parent / "bin/tanktread" for parent in pathlib.Path(__file__).resolve().parents[3:6]]
     found = [SOURCE / "build/release/app/tanktread", *found, pathlib.Path(shutil.which("tanktread") or "tanktread")]
-    named = os.environ.get("TANKTREAD")
-    return pathlib.Path(named) if named else next((path for path in found if path.is_file()), found[0])
+    return next((path for path in found if path.is_file()), found[0 if (SOURCE / "CMakeLists.txt").exists() else -1])
 
 
 PROGRAM = _program()
@@ -101,8 +102,8 @@ def results_of(deck, name=None, settings=None, accepted=(0, 1)):
 
 
 def _exists(program):
-    expect(program.is_file(), f"{program} does not exist: build it (cmake --workflow --preset release), "
-                              "or name another one: TANKTREAD=...")
+    expect(program.is_file(), f"there is no program {program}: build it (cmake --workflow --preset release), install "
+                              "it, or name one: TANKTREAD=...")
 
 
 def _set(settings):

@@ -51,8 +51,6 @@ class Snapshot:
         origin."""
         return self.points if self.cell is None else self.points + self.fields["into cell"]
 
-    places = positions  # the former name
-
     @property
     def frame(self):
         """Points (m, 3) whose extent is that of a picture: `points`, or in a lattice the eight corners of the cell."""
