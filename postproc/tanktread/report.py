@@ -80,9 +80,7 @@ def curves(run):
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
-    kept = names if len(names) <= 80 else [name for name in names
-                                           if "/" not in name] + [name for name in names
-                                                                  if name.endswith("/taylor_inertia")]
+    kept = [name for name in names if len(names) <= 80 or "/" not in name or name.endswith("/taylor_inertia")]
     return {"x": _list(run.time[rows]), "label": run.time_label,
             "y": {name: _list(run.series[name][rows]) for name in kept},
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},

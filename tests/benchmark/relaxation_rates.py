@@ -16,8 +16,8 @@ from package import RATIO, SIDE, answer, expect, numpy, table, tanktread
 
 HARMONICS = range(2, 7)
 LARGEST_ODD = 8  # n
-SCENES = {f"drop, viscosity ratio {ratio:g}": ratio for ratio in (0.1, 1.0, 10.0)} | {"capsule, slow": None,
-                                                                                     "capsule, fast": None}
+SCENES = {"drop, viscosity ratio 0.1": 0.1, "drop, viscosity ratio 1": 1.0, "drop, viscosity ratio 10": 10.0,
+          "capsule, slow": None, "capsule, fast": None}
 DECK = """Tanktread:
   Flow: {type: quiescent}
   Particle: {shape: sphere}

@@ -146,10 +146,8 @@ def in_time(study, deck, run, k, path, series, amplitude, length):
     settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
                 "Particle/initial shape/mode": number,
                 "Particle/initial shape/run": pathlib.Path(run.snapshots()[k].path).resolve()}
-    settings |= {key: run.series[name][k] for key, name in ((path, "parameter"),
-                                                            (run.value("Continuation/second parameter"),
-                                                             "second_parameter"))
-                 if name in run.series}
+    keys = {"parameter": path, "second_parameter": run.value("Continuation/second parameter")}
+    settings |= {key: run.series[name][k] for name, key in keys.items() if name in run.series}
     times = numpy.linspace(end / 2, end, 11)
     for sign in 1, -1:
         outcome = study.run(deck, settings | {"Particle/initial shape/mode amplitude": sign * amplitude})

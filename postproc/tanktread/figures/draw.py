@@ -36,9 +36,8 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
     """Draws the visible part of the surface with the edges of its elements, and the directions of the axes."""
     view = view_axes(azimuth, elevation)
     values = shot.fields[field]
-    image, extent = render.picture(
-    shot, magnitude(values), view, lambda seen: plt.get_cmap(colours)(
-        norm(seen)), pixels)
+    paint = plt.get_cmap(colours)
+    image, extent = render.picture(shot, magnitude(values), view, lambda seen: paint(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
     if shot.cell is not None:
         draw_cell(axis, shot.frame @ view.T)
@@ -66,16 +65,8 @@ def draw_triad(axis, view, extent):
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     for k, arm in enumerate(view[:2].T * length):
-        axis.annotate(
-    "",
-    foot + arm,
-    foot,
-    arrowprops={
-        "arrowstyle": "->",
-        "color": style.INK,
-        "lw": 0.9,
-        "shrinkA": 0,
-         "shrinkB": 0})
+        axis.annotate("", foot + arm, foot, arrowprops={"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0,
+                                                        "shrinkB": 0})
         axis.annotate(f"x{'₁₂₃'[k]}", foot + 1.35 * arm, ha="center", va="center", fontsize=8.5)
     axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters
 

@@ -169,8 +169,8 @@ def extents(outcome, x):
            f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
     expect(way[0] <= x[0] and x[-1] <= way[-1],
            f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
-    return scipy.interpolate.CubicSpline(way, numpy.transpose([series[f"length_x{k}"]
-                                                               for k in (1, 2, 3)]))(x).T / (2 * a)
+    lengths = numpy.transpose([series[f"length_x{k}"] for k in (1, 2, 3)])
+    return scipy.interpolate.CubicSpline(way, lengths)(x).T / (2 * a)
 
 
 def of_radius(runs, deck, words, finer, radius, x):

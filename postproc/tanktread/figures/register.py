@@ -109,9 +109,8 @@ def parser_of(name, program="tanktread-figure"):
 def measurements():
     """Returns {name: caption} of the scripts of the source directory that measure the program and draw a figure."""
     texts = {path.stem: path.read_text(encoding="utf-8") for path in BENCHMARK.glob("*.py")}
-    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split()) for name,
-            text in texts.items()
-            if "style.save(" in text and text.startswith("#!")}
+    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split())
+            for name, text in texts.items() if "style.save(" in text and text.startswith("#!")}
 
 
 def command():

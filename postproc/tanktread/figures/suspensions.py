@@ -120,8 +120,7 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
         fraction, mean, error = numpy.array(sorted(found)).T
         draw_viscosity(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
-        log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m,
-                                              e in zip(fraction, mean, error)))
+        log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
             slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
             log.info(f"  per volume fraction, extrapolated to 0: {slope:.3f} ± {off:.3f}; one capsule: {alone:.4f}")

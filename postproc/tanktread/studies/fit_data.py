@@ -30,8 +30,8 @@ class Unknown:
         start = self.number(self.start_value)
         for word in {"known", "error", "from", "to"} & set(given):
             number(given[word], f"{self.name}: {word}")
-        self.bounds = tuple(self.number(given[word]) if word in given else start + far for word,
-                            far in (("from", -FAR), ("to", FAR)))
+        self.bounds = tuple(self.number(given[word]) if word in given else start + far
+                            for word, far in (("from", -FAR), ("to", FAR)))
         self.known, self.error = given.get("known"), given.get("error")
 
     def number(self, value):
@@ -106,8 +106,8 @@ class SeriesData:
                f"{name}: a series has value or curve, and error, at, over, origin")
         for word in {"value", "error"} & set(given):
             number(given[word], f"{name}: {word}")
-        self.name, self.series, self.error = name, [given["series"],
-                                                    *([given["over"]] if "over" in given else [])], given.get("error")
+        self.name, self.error = name, given.get("error")
+        self.series = [given[word] for word in ("series", "over") if word in given]
         self.places = int("origin" in given)
         expect(not self.places or given["origin"] == "free" and "curve" in given,
                f"{name}: `origin: free` is of a curve, and there is no other origin")
@@ -171,14 +171,11 @@ class Experiment:
         expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
         expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
         self.name, self.settings = name, keys_of(given.get("set"), f"{name}: set")
-        self.unknowns = [Unknown(key, one, name) for key,
-                         one in keys_of(given.get("unknown"), f"{name}: unknown").items()]
-        kinds = {"outline": OutlineData, "series": SeriesData}
-        self.data = []
+        unknowns = keys_of(given.get("unknown"), f"{name}: unknown")
+        self.unknowns, self.data = [Unknown(key, one, name) for key, one in unknowns.items()], []
         expect(isinstance(given["data"], list), f"{name}: data must be a list of outlines and series")
-        for k, one in enumerate(given["data"]):
+        for one in given["data"]:
             one = keys_of(one, f"{name}: a datum")
-            kind = next((kind for word, kind in kinds.items() if word in one), None)
-            expect(kind, f"{name}: a datum is an outline or a series")
-            self.data.append(kind(one, f"{name}: {one.get('outline') or one['series']}" if k
-                                  or len(given["data"]) > 1 else f"{name}: data", folder))
+            expect("outline" in one or "series" in one, f"{name}: a datum is an outline or a series")
+            label = one.get("outline") or one["series"] if len(given["data"]) > 1 else "data"
+            self.data.append((OutlineData if "outline" in one else SeriesData)(one, f"{name}: {label}", folder))

@@ -94,8 +94,8 @@ class Fit:
         for datum, prediction in zip(self.data, predictions):
             parts.append(datum.residuals(prediction, places[start:start + datum.places]))
             start += datum.places
-        known = [(one.value(x) - one.known) / one.error for one,
-                 x in zip(self.unknowns, numbers) if one.known is not None]
+        known = [(one.value(x) - one.known) / one.error for one, x in zip(self.unknowns, numbers)
+                 if one.known is not None]
         return numpy.concatenate([*parts, known])
 
     def length(self):

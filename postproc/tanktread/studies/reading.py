@@ -62,8 +62,8 @@ def values_of(key, given):
         return [given]
     expect({"from", "to", "number"} <= set(given), f"{key}: a range has from, to and number")
     low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
-    return [float(value) for value in spaced(key, given, low,
-                                             high)(numpy.linspace(0, 1, whole(given["number"], f"{key}: number")))]
+    shares = numpy.linspace(0, 1, whole(given["number"], f"{key}: number"))
+    return [float(value) for value in spaced(key, given, low, high)(shares)]
 
 
 def spaced(key, given, low, high):

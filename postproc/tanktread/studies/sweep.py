@@ -28,7 +28,7 @@ import h5py
 import numpy
 
 from ..files import opened
-from ..mistakes import Mistake, expect, log, progress
+from ..mistakes import expect, log, progress
 from ..runs import Study, text_of
 from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
 
@@ -93,24 +93,20 @@ def recorded(outcome, columns):
     A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
-        values = outcome.series.get(series) if outcome.done else None
-        if outcome.done and values is None:
-            raise Mistake(f"a run of this study has no series {series} (column {name}); there are: "
-                          f"{', '.join(sorted(outcome.series))}")
-        if values is None or not len(values):
-            row[name] = numpy.array([]) if take == "all" else numpy.nan
-        elif take == "all":
+        values = outcome.series[series] if outcome.done else numpy.array([])
+        if take == "all":
             row[name] = values
-        else:
-            # a series is NaN where it is undefined
-            defined = values if take == "last" else values[~numpy.isnan(values)]
-            row[name] = numpy.interp(at, outcome.series["time"],
-                                     values) if at is not None else TAKES[take](defined) if len(defined) else numpy.nan
-            row[name] = float(row[name])
-            error = outcome.run.errors.get(series)
-            if error is not None:
-                row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
-                                             else error[-1] if take == "last" else numpy.max(error))
+            continue
+        defined = values if take == "last" else values[~numpy.isnan(values)]  # a series is NaN where it is undefined
+        row[name] = numpy.nan
+        if at is not None and len(values):
+            row[name] = float(numpy.interp(at, outcome.series["time"], values))
+        elif len(defined):
+            row[name] = float(TAKES[take](defined))
+        error = outcome.run.errors.get(series) if len(values) else None
+        if error is not None:
+            row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
+                                         else error[-1] if take == "last" else numpy.max(error))
     return row
 
 
@@ -169,8 +165,8 @@ class Sweep:
                 numbers = all(isinstance(value, (int, float)) for value in values)
                 file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
             if whole:
-                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])} for values,
-                         outcome in zip(found, self.outcomes)]
+                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])}
+                         for values, outcome in zip(found, self.outcomes)]
             file.attrs["columns"] = [*single, *whole, *(["time"] if whole else [])]
             for name in file.attrs["columns"]:
                 longest = max(numpy.size(values[name]) for values in found)
@@ -199,8 +195,8 @@ def table(directory):
     """Returns of a sweep's table.h5 {column or key: values}, the keys that vary, and labels of axes by both names."""
     with opened(directory / "table.h5") as file:
         keys = list(file.attrs["keys"])
-        found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
-                                                              for name in file.attrs["columns"]}
+        found = {key: file[f"keys/{key}"] for key in keys}
+        found |= {name: file[f"columns/{name}"] for name in file.attrs["columns"]}
         labels = {name: name + data.attrs.get("unit", "") for name, data in found.items()}
         values = {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}
         return values, keys, labels
