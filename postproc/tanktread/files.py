@@ -73,13 +73,12 @@ def table(path, names=(), columns=2, delimiter=","):
     """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
 
     Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
+    expect(pathlib.Path(path).is_file(), f"there is no file {path}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found = numpy.genfromtxt(path, delimiter=delimiter, names=True if names else None)
-    except OSError as error:
-        raise Mistake(f"{path} cannot be read: {error}") from None
-    except (ValueError, IndexError):
+    except (OSError, ValueError, IndexError):
         found = numpy.zeros(0)
     if names:
         expect(found.size > 1 and set(names) <= set(found.dtype.names or ()),
