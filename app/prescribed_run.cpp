@@ -65,7 +65,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   PrescribedRow{solution, surface::measures(body.space, body.rest), -resistance.stresslet(solution.density, scene.particle.shape.center),
                 body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);
-  if (around) tube_row(*around, solution.density, solution.pressure_drop).add_columns(scene, row);
+  if (around) tube_row(*around, body.flow.amplitude(), solution.density, solution.pressure_drop).add_columns(scene, row);
   if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
   finish(row);
 

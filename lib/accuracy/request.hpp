@@ -12,7 +12,7 @@ namespace tanktread::accuracy {
 /// Part of a series whose error a request limits.
 enum class Of { run, end, mean };
 
-/// A request: `[<particle>/]<series>[@end|@mean]=<value>[%]`.
+/// A request: `[<particle>/]<series>=<value>[%]`; `\@end` or `\@mean` may follow the series.
 struct Request {
   std::string series;     ///< name of the series in `run.h5`, for example `taylor_inertia` or `left/velocity_x1`
   Of of = Of::run;        ///< largest error over the run, error of the last value, or error of the time average

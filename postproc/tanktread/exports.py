@@ -76,11 +76,9 @@ def mesh(snapshot, kind):
     points, grid = core.vtkPoints(), model.vtkUnstructuredGrid()
     points.SetData(convert.numpy_to_vtk(snapshot.points, deep=True))
     grid.SetPoints(points)
-    for nodes in cells:
-        for cell in nodes:
-            grid.InsertNextCell(model.VTK_LAGRANGE_QUADRILATERAL if hasattr(model,
-                                                                            "VTK_LAGRANGE_QUADRILATERAL") else 70,
-                                len(cell), cell.tolist())
+    kind = getattr(model, "VTK_LAGRANGE_QUADRILATERAL", 70)
+    for cell in (cell for nodes in cells for cell in nodes):
+        grid.InsertNextCell(kind, len(cell), cell.tolist())
     for name, values in snapshot.fields.items():
         array = convert.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
         array.SetName(name)

@@ -1,5 +1,8 @@
 """Reading of files that the program or a user wrote. What is wrong with one is a Mistake: one sentence."""
 
+import contextlib
+import difflib
+import pathlib
 import warnings
 
 import h5py
@@ -14,6 +17,28 @@ def yaml_text(text):
     return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
+def parsed(path, parse=yaml_text):
+    """Returns parse(text) of a file in UTF-8."""
+    try:
+        return parse(pathlib.Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise Mistake(f"{path} cannot be read: {error.strerror}") from None
+    except yaml.YAMLError as error:
+        raise Mistake(f"{path} is not YAML: {error}") from None
+    except ValueError as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+
+
+@contextlib.contextmanager
+def opened(path):
+    """Opens an HDF5 file to read it. What it lacks in the body of the `with` statement is a Mistake too."""
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except (OSError, KeyError, RuntimeError) as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+
+
 def text_of_hdf(value):
     """Returns a string of HDF5 as str."""
     return value.decode("utf-8") if isinstance(value, bytes) else str(value)
@@ -26,29 +51,40 @@ def datasets(group):
     return found
 
 
-def arrays_of(path, purpose):
-    """Returns {name: array} of an HDF5 file's datasets, such as duct.h5 and channel.h5. `purpose` ends the sentence."""
-    try:
-        with h5py.File(path, "r") as file:
-            return {name: data[()] for name, data in file.items()}
-    except OSError:
-        raise Mistake(f"{path} cannot be read: {purpose}") from None
+class Named(dict):
+    """A dict of what a file holds. A name that it lacks is a Mistake: "`where` holds no series D; there are: …"."""
+
+    def __init__(self, content, where):
+        super().__init__(content)
+        self.where = where
+
+    def __missing__(self, name):
+        there = sorted(self) if len(self) < 60 else difflib.get_close_matches(name, self, 9, 0)
+        raise Mistake(f"{self.where} {name}; there are: {', '.join(there)}")
 
 
-def table(path, names=()):
+def arrays_of(path):
+    """Returns {name: array} of the datasets of an HDF5 file, such as duct.h5 of a tube and channel.h5 of a channel."""
+    with opened(path) as file:
+        return {name: data[()] for name, data in file.items()}
+
+
+def table(path, names=(), columns=2, delimiter=","):
     """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
 
-    Needs two rows or columns of numbers. Raises Mistake otherwise."""
+    Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
+    expect(pathlib.Path(path).is_file(), f"there is no file {path}")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found = numpy.genfromtxt(path, delimiter=",", comments="#", names=True if names else None)
+            found = numpy.genfromtxt(path, delimiter=delimiter, names=True if names else None)
     except (OSError, ValueError, IndexError):
         found = numpy.zeros(0)
-    whole = found.ndim == 2 and found.shape[1] > 1
     if names:
-        whole = found.size > 1 and set(names) <= set(found.dtype.names or ())
-    expect(whole,
-           f"{path} is no table {'with the columns ' + ', '.join(names) if names else 'of two columns of numbers'}, "
-                  "separated by commas")
-    return found if names else found[numpy.isfinite(found).all(axis=1)]
+        expect(found.size > 1 and set(names) <= set(found.dtype.names or ()),
+               f"{path} is no table with the columns {', '.join(names)}, separated by commas")
+        return found
+    found = found[1:] if found.ndim == 2 and not numpy.isfinite(found[0]).any() else found
+    expect(found.ndim == 2 and len(found) and found.shape[1] >= columns and numpy.isfinite(found[:, :columns]).all(),
+           f"{path} is no table of {columns} columns of numbers, separated by commas")
+    return found

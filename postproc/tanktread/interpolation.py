@@ -16,10 +16,13 @@ def interpolated(t, values, at, order=6):
 
 def difference(t, values, curve_t, curve_values):
     """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to
-    the times of the other. Rows with NaN, where a series is undefined, are left out. The result is 0 if no times are
-    left."""
-    series = [(numpy.asarray(times)[~numpy.isnan(found)], numpy.asarray(found)[~numpy.isnan(found)])
-              for times, found in ((t, values), (curve_t, curve_values))]
+    the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
+    a mesh has changed, are left out. The result is 0 if no times are left."""
+    series = []
+    for times, found in (t, values), (curve_t, curve_values):
+        times, found = numpy.asarray(times), numpy.asarray(found)
+        kept = ~numpy.isnan(found) & (numpy.diff(times, prepend=-numpy.inf) > 0)
+        series.append((times[kept], found[kept]))
     (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))
     if not len(coarse_t):
         return 0.0

@@ -44,6 +44,12 @@ class _Lines(logging.Handler):
         print(record.getMessage(), flush=True)
 
 
+def _fail(text):
+    progress("")
+    print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(text.split())}", file=sys.stderr)
+    sys.exit(2)
+
+
 def answer(main):
     """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -53,8 +59,8 @@ def answer(main):
     try:
         sys.exit(main())
     except Mistake as mistake:
-        progress("")
-        print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(str(mistake).split())}", file=sys.stderr)
-        sys.exit(2)
+        _fail(str(mistake))
+    except OSError as error:  # a file that cannot be written
+        _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except KeyboardInterrupt:
         sys.exit("stopped: the same command continues from here")

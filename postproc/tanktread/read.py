@@ -14,7 +14,6 @@ def main():
     arguments = parser.parse_args()
     result = run(arguments.results)
     if arguments.series:
-        result.require(*arguments.series)
         for values in zip(*(result.series[name] for name in arguments.series)):
             log.info(" ".join(f"{value:.16g}" for value in values))
         return 0

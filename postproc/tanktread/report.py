@@ -9,12 +9,12 @@ import argparse
 import base64
 import gzip
 import json
+import math
 import pathlib
 
-import h5py
 import numpy
-import yaml
 
+from .files import opened, parsed
 from .mistakes import expect, log
 from .runs import run as run_of
 from .snapshots import DIMENSIONS, evenly
@@ -80,13 +80,11 @@ def curves(run):
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
-    kept = names if len(names) <= 80 else [name for name in names
-                                           if "/" not in name] + [name for name in names
-                                                                  if name.endswith("/taylor_inertia")]
+    kept = [name for name in names if len(names) <= 80 or "/" not in name or name.endswith("/taylor_inertia")]
     return {"x": _list(run.time[rows]), "label": run.time_label,
             "y": {name: _list(run.series[name][rows]) for name in kept},
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
-            "units": {name: run.units[name] for name in kept},
+            "labels": {name: run.axis(name) for name in kept},
             "meanings": {name: run.descriptions[name] for name in kept}}
 
 
@@ -99,9 +97,13 @@ def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
 
 
-def _or_dash(value):
-    """Returns a number of the summary, or a dash if it is NaN, which JSON does not have."""
-    return "–" if value != value else value
+def _finite(content):
+    """Returns the content of a page with dashes in the place of NaN and infinities, which JSON does not have."""
+    if isinstance(content, dict):
+        return {key: _finite(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_finite(value) for value in content]
+    return "–" if isinstance(content, float) and not math.isfinite(content) else content
 
 
 def accuracy_rows(found):
@@ -109,8 +111,7 @@ def accuracy_rows(found):
     if not found:
         return []
     return [["", "request", "value", "allowed", "estimated error", "remark"]] + [
-        ["✓" if one["met"] else "✗", one["request"], *(_or_dash(one[key]) for key in ("value", "allowed",
-                                                                                 "estimated error")),
+        ["✓" if one["met"] else "✗", one["request"], one["value"], one["allowed"], one["estimated error"],
          one.get("untrusted", "")] for one in found["requests"]]
 
 
@@ -121,7 +122,7 @@ def of_run(directory, field):
     facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
     sections = [("Expectations", "table", [["", "name", "value", "expected", "error", "estimated error"]] + [
         ["✓" if one.get("passed") else "✗", one.get("name"),
-         *(_or_dash(one.get(key, "–")) for key in ("value", "expected", "error", "estimated error"))]
+         *(one.get(key, "–") for key in ("value", "expected", "error", "estimated error"))]
         for one in summary.get("expect") or []])]
     sections.append(("Accuracy", "table", accuracy_rows(summary.get("accuracy"))))
     sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
@@ -135,24 +136,26 @@ def of_run(directory, field):
 
 
 def of_sweep(directory):
-    columns, keys = table(directory)
+    columns, keys, labels = table(directory)
     single = {name: values for name, values in columns.items() if values.ndim == 1}
-    with h5py.File(directory / "table.h5", "r") as file:
+    with opened(directory / "table.h5") as file:
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
-    rows = [[*single, "status"]] + [[*(one.item() if hasattr(one, "item") else one for one in row), end] for row,
-                                    end in zip(zip(*single.values()), status)]
+    cells = zip(*(values.tolist() for values in single.values()), status)
+    rows = [[*(labels[name] for name in single), "status"], *cells]
     scatter = {"keys": [key for key in keys if key in numbers],
                "columns": [name for name in numbers if name not in keys],
-               "values": {name: _list(single[name]) for name in numbers}}
+               "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
     facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
     return {"title": f"sweep {directory.resolve().name}", "facts": facts, "scatter": scatter,
             "sections": [("Runs", "table", rows)]}
 
 
 def of_fit(directory):
-    fits = yaml.safe_load((directory / "fit.yaml").read_text(encoding="utf-8"))
+    fits = parsed(directory / "fit.yaml")
     rows = [["law", "unknown", "value", "standard error", "chi square", "degrees of freedom", "AIC", "runs"]]
+    expect(isinstance(fits, dict) and fits and all(isinstance(fit, dict) and {"unknown", *rows[0][4:]} <= set(fit)
+                                                   for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
             known = numpy.isfinite(one["error"])
@@ -160,7 +163,7 @@ def of_fit(directory):
                          *(fit[key] for key in rows[0][4:])])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
-            "sections": [("What the data say", "text", (directory / "fit.txt").read_text(encoding="utf-8")),
+            "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),
                          ("Unknowns", "table", rows)]}
 
 
@@ -177,7 +180,7 @@ def write(directory, output=None, field=None):
     expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
     colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
     content = kinds[kind]() | {"cite": CITE, "colours": packed(numpy.round(255 * colours).astype("u1"))}
-    data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False, default=str).encode())).decode()
+    data = base64.b64encode(gzip.compress(json.dumps(_finite(content), allow_nan=False, default=str).encode())).decode()
     page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = pathlib.Path(output or directory / "report.html")
     title = content["title"].replace("&", "&amp;").replace("<", "&lt;")

@@ -4,12 +4,11 @@ import json
 import pathlib
 import re
 
-import h5py
 import numpy
 
 from . import exports
-from .files import datasets, text_of_hdf, yaml_text
-from .mistakes import Mistake, expect
+from .files import Named, datasets, opened, parsed, text_of_hdf, yaml_text
+from .mistakes import expect
 from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
@@ -19,7 +18,8 @@ class Run:
     """The results in a directory, in the units of the deck.
 
     `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
-    A series is NaN where it is undefined, as its description states. `units`, `descriptions`: by the same names.
+    A series is NaN where it is undefined, as its description states; a name that is not there is a Mistake. `units`,
+    `descriptions`: by the same names.
     `errors`: estimated errors of the series, by the same names, if an accuracy was requested; NaN where none can be
     estimated, as `untrusted` states by the same names. Empty without a request.
     `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.
@@ -27,9 +27,11 @@ class Run:
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
-        with h5py.File(self.directory / "run.h5", "r") as file:
+        path, summary = self.directory / "run.h5", self.directory / "summary.yaml"
+        expect(path.is_file(), f"{directory} holds no run.h5: give the directory of a run's results, or a deck")
+        with opened(path) as file:
             found = datasets(file["series"])
-            self.series = {name: data[:] for name, data in found.items()}
+            self.series = Named({name: data[:] for name, data in found.items()}, f"{directory} holds no series")
             self.units = {name: text_of_hdf(data.attrs["unit"]) for name, data in found.items()}
             self.descriptions = {name: text_of_hdf(data.attrs["description"]) for name, data in found.items()}
             errors = datasets(file["error"]) if "error" in file else {}
@@ -38,9 +40,11 @@ class Run:
                               for name, data in errors.items() if not numpy.isfinite(data[:]).any()}
             self.deck_text = text_of_hdf(file["deck"][()])
             self.provenance = {key: text_of_hdf(value) for key, value in file["provenance"].attrs.items()}
+        for name, values in self.series.items():
+            expect("NaN if" in self.descriptions[name] or not numpy.isnan(values.sum()),
+                   f"{path} has NaN in the series {name}, which is always defined: the file is damaged")
         self.deck = (yaml_text(self.deck_text) or {}).get("Tanktread", {})
-        summary = self.directory / "summary.yaml"
-        self.summary = yaml_text(summary.read_text(encoding="utf-8")) if summary.exists() else None
+        self.summary = parsed(summary) if summary.exists() else None
 
     def __repr__(self):
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
@@ -71,11 +75,8 @@ class Run:
         return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
 
     def of(self, particle, name):
-        """Returns a series (rows,) of one particle by its name in `particles`. Raises Mistake if it was not
-        recorded."""
-        path = f"{particle}/{name}" if self.several else name
-        self.require(path)
-        return self.series[path]
+        """Returns a series (rows,) of one particle by its name in `particles`."""
+        return self.series[f"{particle}/{name}" if self.several else name]
 
     def frame(self, tidy=False):
         """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
@@ -91,13 +92,22 @@ class Run:
 
     def in_units(self, dimension):
         """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
+        return self.unit(dimension) if self.deck.get("Units") else ""
+
+    def unit(self, dimension):
+        """Returns ", µm/s" for length/time, or without the section Units ", length/time"; "" of a number."""
         units = self.deck.get("Units") or {}
         named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
-        dimension = dimension.replace("viscosity x length", "force x time/length").replace("stress", "force/length^2")
-        if not named or not dimension:
+        if dimension in ("", "1", "of the key"):
             return ""
-        words = re.sub("length|time|force", lambda word: named[word[0]], dimension.replace(" x ", " "))
-        return ", " + words.replace("^2", "²")
+        dimension = dimension.replace("viscosity x length", "force x time/length")
+        dimension = re.sub("stress|pressure", "force/length^2", dimension).replace(" x ", " ")
+        words = re.sub("length|time|force", lambda word: named.get(word[0], word[0]), dimension)
+        return ", " + re.sub(r"\^(\d)", lambda power: "⁰¹²³⁴"[int(power[1])], words)
+
+    def axis(self, name):
+        """Returns the label of an axis of a series: its name and, unless it is a number, its unit."""
+        return name + self.unit(self.units[name])
 
     @property
     def rate(self):
@@ -107,7 +117,7 @@ class Run:
         of a circle of the duct's area."""
         kind = self.value("Flow/type")
         if kind == "duct":
-            with h5py.File(self.directory / "duct.h5", "r") as file:
+            with opened(self.directory / "duct.h5") as file:
                 return float(file["mean_velocity"][()] / file["radius"][()]), "mean velocity / tube radius"
         if kind == "linear":
             gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
@@ -119,14 +129,16 @@ class Run:
 
     @property
     def time(self):
-        """Times of the series (rows,), multiplied by `rate`: `time_label` names them."""
-        return self.series["time"] * self.rate[0]
+        """Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`."""
+        return self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0])
 
     @property
     def time_label(self):
         """The label of an axis of `time`."""
+        if "Continuation" in self.deck:
+            return "number of the point"
         name = self.rate[1]
-        return f"time · {name}" if name else "time, in the deck's unit"
+        return f"time · {name}" if name else f"time{self.in_units('time') or ', in the unit of the deck'}"
 
     @property
     def radius(self):
@@ -180,15 +192,8 @@ class Run:
         vectors = [[self.series[f"cell_{k}_x{i}"][row] for i in (1, 2, 3)] for k in (1, 2, 3)]
         return numpy.array(vectors) / self.scale("length")[0]
 
-    def require(self, *names):
-        """Raises Mistake unless the run recorded these series."""
-        for name in names:
-            expect(name in self.series, f"{self.directory} holds no series {name}; "
-                                        f"there are: {', '.join(sorted(self.series))}")
-
     def defined(self, name):
         """Returns times and values of a series at the rows where it is defined (not NaN)."""
-        self.require(name)
         known = ~numpy.isnan(self.series[name])
         return self.series["time"][known], self.series[name][known]
 
@@ -205,14 +210,13 @@ class Run:
         series = self.directory / "run.hdf.series"
         if not series.exists():
             return []
-        files = json.loads(series.read_text())["files"]
-        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
+        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles)
+                for entry in parsed(series, json.loads)["files"]]
 
     def snapshot_at(self, time):
         """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""
         saved = self.snapshots()
-        if not saved:
-            raise Mistake(f"{self.directory} holds no snapshots")
+        expect(saved, f"{self.directory} holds no snapshots")
         return saved[-1] if time is None else min(saved, key=lambda one: abs(one.time - time))
 
 

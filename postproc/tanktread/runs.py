@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 
+from .files import parsed
 from .mistakes import Mistake, expect
 from .results import Run
 
@@ -22,10 +23,11 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
 
 def _program():
     """Returns the path of the program: TANKTREAD, that of this source directory or installation, or that in PATH."""
+    if named := os.environ.get("TANKTREAD"):
+        return pathlib.Path(named)
     found = [parent / "bin/tanktread" for parent in pathlib.Path(__file__).resolve().parents[3:6]]
     found = [SOURCE / "build/release/app/tanktread", *found, pathlib.Path(shutil.which("tanktread") or "tanktread")]
-    named = os.environ.get("TANKTREAD")
-    return pathlib.Path(named) if named else next((path for path in found if path.is_file()), found[0])
+    return next((path for path in found if path.is_file()), found[0 if (SOURCE / "CMakeLists.txt").exists() else -1])
 
 
 PROGRAM = _program()
@@ -76,17 +78,7 @@ def run(where, settings=None):
         outcome = Study(directory="results").run(where, settings)
         expect(outcome.done, f"{where} did not run to its end: {outcome.message}")
         return outcome.run
-    directory = results_of(where) if str(where).endswith(".yaml") else where
-    try:
-        found = Run(directory)
-    except FileNotFoundError:
-        raise Mistake(f"{directory} holds no run.h5: give the directory of a run's results, or a deck") from None
-    except (OSError, KeyError) as error:
-        raise Mistake(f"{directory}/run.h5 cannot be read: {error}") from None
-    for name, values in found.series.items():
-        expect("NaN if" in found.descriptions[name] or not math.isnan(values.sum()),
-               f"{directory}/run.h5 has NaN in the series {name}, which is always defined: the file is damaged")
-    return found
+    return Run(results_of(where) if str(where).endswith(".yaml") else where)
 
 
 def runs_of(runs):
@@ -110,8 +102,8 @@ def results_of(deck, name=None, settings=None, accepted=(0, 1)):
 
 
 def _exists(program):
-    expect(program.is_file(), f"{program} does not exist: build it (cmake --workflow --preset release), "
-                              "or name another one: TANKTREAD=...")
+    expect(program.is_file(), f"there is no program {program}: build it (cmake --workflow --preset release), install "
+                              "it, or name one: TANKTREAD=...")
 
 
 def _set(settings):
@@ -162,7 +154,7 @@ class Outcome:
         """The simulated time that the run came to."""
         try:
             return float(self.series["time"][-1])
-        except (OSError, IndexError):
+        except (Mistake, IndexError):
             return 0.0
 
 
@@ -186,7 +178,7 @@ class Study:
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"
-        before = Outcome(where, json.loads(note.read_text())) if note.exists() else None
+        before = self._before(where, note)
         if before and (where in self._made or not self.fresh) and self._stands(before):
             return before
         self._made.add(where)
@@ -203,6 +195,14 @@ class Study:
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
+
+    @staticmethod
+    def _before(where, note):
+        """Returns the Outcome that a run left, or None if there is none or its note is damaged."""
+        try:
+            return Outcome(where, parsed(note, json.loads))
+        except Mistake:
+            return None
 
     def _stands(self, outcome):
         """Returns whether a run need not be made again: another program may know the keys that were refused."""
@@ -230,7 +230,7 @@ class Study:
     @staticmethod
     def name(decks, settings, ranks=1):
         """Returns the name of a run's directory, by the content of the decks and the settings."""
-        texts = [deck_at(deck).read_text() for deck in decks]
+        texts = [parsed(deck_at(deck), str) for deck in decks]
         text = json.dumps([texts, {key: text_of(value) for key, value in sorted(settings.items())}, ranks])
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 

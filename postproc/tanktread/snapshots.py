@@ -3,11 +3,10 @@
 import itertools
 import pathlib
 
-import h5py
 import numpy
 
 from . import exports, lagrange
-from .files import text_of_hdf
+from .files import opened, text_of_hdf
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
@@ -34,7 +33,7 @@ class Snapshot:
 
     def _read(self):
         if self._content is None:
-            with h5py.File(self.path, "r") as file:
+            with opened(self.path) as file:
                 grid = file["VTKHDF"]
                 connectivity, offsets = grid["Connectivity"][:], grid["Offsets"][:]
                 cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
@@ -51,8 +50,6 @@ class Snapshot:
         """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the
         origin."""
         return self.points if self.cell is None else self.points + self.fields["into cell"]
-
-    places = positions  # the former name
 
     @property
     def frame(self):
@@ -131,7 +128,7 @@ class Snapshot:
 
     def checkpoint(self):
         """Returns the data from which the run is resumed: {"arrays": {...}, "numbers": {...}, "texts": {...}}."""
-        with h5py.File(self.path, "r") as file:
+        with opened(self.path) as file:
             root = file["checkpoint"]
             return {
                 "arrays": {name: data[:] for name, data in root["arrays"].items()},

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Which mesh and tolerances an accuracy takes, and what it costs: the table of inputs/manual/accuracy/index.md, or that of any deck.
+"""Which mesh and tolerances an accuracy takes, and what it costs: the table of inputs/manual/accuracy/index.md, or that
+of any deck.
 
     tests/benchmark/accuracy.py                      # a quarter of an hour; runs are kept under results/accuracy
     tests/benchmark/accuracy.py --scene shear tube   # these scenes
@@ -12,8 +13,9 @@ are printed as multiples of those that the first deck takes.
 """
 
 import argparse
+import pathlib
 
-from package import answer, expect, numpy, studies, tanktread
+from package import SHEAR, SIDE, answer, expect, numpy, studies, table, tanktread
 from tanktread.interpolation import difference
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
@@ -21,27 +23,22 @@ DEMANDS = [1e-2, 1e-3, 1e-4]
 TOLERANCES = [(1e-3, 1e-3), (3e-4, 3e-4), (1e-4, 1e-4), (2e-5, 1e-5), (4e-6, 1e-5)]
 
 
-def _side(n):
-    return {"Surface/elements per side": n}
-
-
 def _refined(n, tolerance):
-    return _side(n) | {"Adaptation/surface tolerance": tolerance}
+    return {SIDE: n, "Adaptation/surface tolerance": tolerance}
 
 
-MESHES = [(f"n = {n}", _side(n)) for n in (3, 4, 6, 8, 10)]
+MESHES = [(f"n = {n}", {SIDE: n}) for n in (3, 4, 6, 8, 10)]
 REFINED = [(f"n = {n}, surface tolerance {tolerance:g}", _refined(n, tolerance)) for n, tolerance in
            ((4, 1.6e-3), (4, 8e-4), (6, 8e-4), (6, 4e-4), (6, 2e-4), (8, 1e-4))]
-FIRST = "inputs/shear_neo_hookean.yaml"
 # name: title, deck, settings of all runs, series, settings of the reference run (None: the expected value), meshes
 SCENES = {
-    "shear": ("capsule in shear, Ca = 0.3, to 7.5", FIRST, {}, "taylor_inertia", _side(14), MESHES),
-    "ratio": ("the same, viscosity ratio 5", FIRST, {"Particle/viscosity ratio": 5.0}, "taylor_inertia", _side(12),
+    "shear": ("capsule in shear, Ca = 0.3, to 7.5", SHEAR, {}, "taylor_inertia", {SIDE: 14}, MESHES),
+    "ratio": ("the same, viscosity ratio 5", SHEAR, {"Particle/viscosity ratio": 5.0}, "taylor_inertia", {SIDE: 12},
               MESHES),
     "refined": ("Skalak capsule drawn out, Ca = 0.6, mesh refined", "inputs/hyperbolic_skalak.yaml", {},
                 "taylor_inertia", _refined(10, 4e-5), REFINED),
     "drop": ("drop in uniaxial extension", "inputs/drop_uniaxial.yaml", {}, "taylor_inertia",
-             _side(12) | {"Time/tolerance": 1e-6}, MESHES),
+             {SIDE: 12} | {"Time/tolerance": 1e-6}, MESHES),
     "tube": ("capsule that nearly fills a tube", "inputs/capsule_in_tube.yaml", {}, "velocity_x1", None, MESHES[1:]),
 }
 
@@ -52,32 +49,34 @@ def main():
                         help=f"of {', '.join(SCENES)} (default: all)")
     parser.add_argument("--deck", help="a deck of yours instead of the scenes")
     parser.add_argument("--series", default="taylor_inertia", help="series of that deck (default: %(default)s)")
-    parser.add_argument("--mesh", nargs="+", default=["Surface/elements per side", "3", "4", "6", "8"], metavar="WORD",
+    parser.add_argument("--mesh", nargs="+", default=[SIDE, "3", "4", "6", "8"], metavar="WORD",
                         help="key of that deck's mesh and its values, coarse to fine; the reference has 1.5 times the "
                              "last one (default: %(default)s)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="another key of that deck")
-    studies.arguments(parser, "results/accuracy")
+    studies.arguments(parser, pathlib.Path("results/accuracy"))
     parsed = parser.parse_args()
     study, scenes = studies.study(parsed), {name: SCENES[name] for name in parsed.scene}
     if parsed.deck:
         scenes = {"deck": scene_of(parsed)}
-    unit = study.run(FIRST, {"Output/interval": 0.75}).processor_seconds
+    unit = study.run(SHEAR, {"Output/interval": 0.75}).processor_seconds
     rows = []
-    print("| scene | error | mesh | `Time/tolerance` | `Quadrature/tolerance` | kernel evaluations | "
-          "seconds over the first deck's |\n|---|---|---|---|---|---|---|")
-    for name, scene in scenes.items():
-        found = runs(study, *scene[1:])
-        rows += [(name, mesh, *tolerances, error, one.kernel_evaluations, one.processor_seconds)
-                 for mesh, tolerances, one, error in found]
-        for demand in DEMANDS:
-            good = [entry for entry in found if entry[3] <= demand]
-            mesh, (time, quadrature), one, error = min(good or found, key=lambda entry: (
-                entry[2].kernel_evaluations if good else entry[3]))
-            met = f"{demand:g}" if good else f"{demand:g}: not met, {error:.1e}"
-            print(f"| {scene[0]} | {met} | {mesh} | {time:g} | {quadrature:g} | {one.kernel_evaluations:.2g} | "
-                  f"{one.processor_seconds / unit:.2g} |", flush=True)
-    studies.write_table(parsed.output / "accuracy.csv", ["scene", "mesh", "time", "quadrature", "error",
-                                                         "kernel_evaluations", "seconds"], rows)
+
+    def lines():
+        for name, scene in scenes.items():
+            found = runs(study, *scene[1:])
+            rows.extend((name, mesh, *tolerances, error, one.kernel_evaluations, one.processor_seconds)
+                        for mesh, tolerances, one, error in found)
+            for demand in DEMANDS:
+                good = [entry for entry in found if entry[3] <= demand]
+                mesh, tolerances, one, error = min(good or found, key=lambda entry: (
+                    entry[2].kernel_evaluations if good else entry[3]))
+                met = f"{demand:g}" if good else f"{demand:g}: not met, {error:.1e}"
+                yield [scene[0], met, mesh, *tolerances, float(one.kernel_evaluations), one.processor_seconds / unit]
+
+    table(["scene", "error", "mesh", "`Time/tolerance`", "`Quadrature/tolerance`", "kernel evaluations",
+           "seconds over the first deck's"], lines())
+    head = ["scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"]
+    studies.write_table(parsed.output / "accuracy.csv", head, rows)
 
 
 def scene_of(parsed):
@@ -102,7 +101,6 @@ def runs(study, deck, base, series, reference, meshes):
     if reference:
         finer = study.run(deck, settings(base, reference, (5e-6, 1e-6)))
         expect(finer.done, f"the reference did not come to its end: {finer.message}")
-        finer.run.require(series)
         truth = finer.series
     found = []
     for name, mesh in meshes:

@@ -12,14 +12,15 @@ Nunan & Keller (J. Fluid Mech. 142, 1984).
 """
 
 import argparse
+import itertools
 import pathlib
 
-from package import answer, numpy, tanktread
+from package import answer, numpy, table, tanktread
 
 ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
           "face-centred": (4, (1 - numpy.eye(3)) / 2)}
 K = {"simple": (3.787, -0.858), "body-centred": (0.14079, 1.57281), "face-centred": (0.23611, 1.50926)}
-FLOWS = {"alpha": {"Flow/type": "uniaxial extension"}, "beta": {"Flow/type": "simple shear"}}
+FLOWS = {"alpha": "uniaxial extension", "beta": "simple shear"}
 DECK = """Tanktread:
   Particles: {sphere: {shape: sphere}}
   Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
@@ -38,40 +39,38 @@ def main():
     deck = pathlib.Path("results/arrays.yaml").resolve()
     deck.parent.mkdir(exist_ok=True)
     deck.write_text(DECK)
-    (drag if arguments.what == "drag" else viscosity)(arguments, deck)
+
+    def of(array, fraction, n, settings):
+        """Returns the series of a run."""
+        spheres, vectors = ARRAYS[array]
+        side = (4 * numpy.pi / 3 * spheres / fraction) ** (1 / 3)
+        return tanktread.run(deck, settings | {
+            "Domain/lattice vectors": (side * vectors).ravel().tolist(), "Quadrature/tolerance": arguments.quadrature,
+            "Particles/sphere/Surface/elements per side": n}).series
+
+    (drag if arguments.what == "drag" else viscosity)(of, arguments)
 
 
-def of(arguments, deck, array, fraction, n, settings):
-    """The last row of the series of a run."""
-    spheres, vectors = ARRAYS[array]
-    side = (4 * numpy.pi / 3 * spheres / fraction) ** (1 / 3)
-    lattice = "[" + ", ".join(repr(float(x)) for x in (side * vectors).ravel()) + "]"
-    return tanktread.run(deck, {"Domain/lattice vectors": lattice, "Particles/sphere/Surface/elements per side": n,
-                                "Quadrature/tolerance": arguments.quadrature, **settings}).series
-
-
-def drag(arguments, deck):
+def drag(of, arguments):
     held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed",
             "Solvers/rigid bodies": "first kind"}
-    for array in arguments.arrays:
-        for fraction in arguments.fractions or (0.001, 0.064, 0.2):
-            for n in arguments.elements:
-                series = of(arguments, deck, array, fraction, n, held)
-                print(f"{array}, {fraction:g}, n = {n}: K = {series['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}",
-                      flush=True)
+    cases = itertools.product(arguments.arrays, arguments.fractions or (0.001, 0.064, 0.2), arguments.elements)
+    found = ([*case, of(*case, held)["sphere/drag_x1"][0] / (6 * numpy.pi)] for case in cases)
+    table(["array", "volume fraction", "n", "K"], ([*case, f"{k:.10g}"] for *case, k in found))
 
 
-def viscosity(arguments, deck):
+def viscosity(of, arguments):
     fractions = numpy.array(arguments.fractions or (0.0025, 0.005, 0.01))
     powers = fractions[:, None] ** (2 / 3 * numpy.arange(len(fractions)))
-    for array in arguments.arrays:
-        for flow, expected in zip(FLOWS, K[array]):
-            free = {"Particles/sphere/motion": "free", **FLOWS[flow]}
-            for n in arguments.elements:
-                v = [of(arguments, deck, array, fraction, n, free)["relative_viscosity"][0] - 1
-                     for fraction in fractions]
-                k = numpy.linalg.solve(powers, (1 - 2.5 * fractions / v) / fractions)[0]
-                print(f"{array}, {flow}, n = {n}: k = {k:.5f} (Nunan & Keller: {expected:.5f})", flush=True)
+
+    def row(array, flow, n):
+        free = {"Particles/sphere/motion": "free", "Flow/type": FLOWS[flow]}
+        v = [of(array, fraction, n, free)["relative_viscosity"][0] - 1 for fraction in fractions]
+        k = numpy.linalg.solve(powers, (1 - 2.5 * fractions / v) / fractions)[0]
+        return [array, flow, n, f"{k:.5f}", K[array][flow == "beta"]]
+
+    table(["array", "flow", "n", "k", "Nunan & Keller"],
+          itertools.starmap(row, itertools.product(arguments.arrays, FLOWS, arguments.elements)))
 
 
 if __name__ == "__main__":

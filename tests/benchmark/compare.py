@@ -1,20 +1,24 @@
 #!/usr/bin/python3
 """Compares the results and the work of two programs on all decks of inputs/ and tests/decks/ (named decks/<name> here).
 
-    tests/benchmark/compare.py OLD_PROGRAM NEW_PROGRAM [--decks NAME ...] [--jobs N] [--output DIR] [--tolerance 1e-9] [--differences FILE]
+    tests/benchmark/compare.py OLD_PROGRAM NEW_PROGRAM [--decks NAME ...] [--differences FILE]
 
-The difference of a series is the largest one over its rows, divided by the larger of two numbers: the largest absolute value of the series
-in the old run, and the natural unit of its dimension, made of R_C, the reciprocal rate of the flow and the viscosity. If the runs have
-different numbers of rows, they are compared at the times that both recorded and at their ends, and the table says so. Nothing is
-interpolated, because the interpolation error would hide the difference. Values that only the summary holds are compared as well.
+The difference of a series is the largest one over its rows, divided by the larger of two numbers: the largest absolute
+value of the series in the old run, and the natural unit of its dimension, made of R_C, the reciprocal rate of the flow
+and the viscosity. If the runs have different numbers of rows, they are compared at the times that both recorded and at
+their ends, and the table says so. Nothing is interpolated, because the interpolation error would hide the difference.
+Values that only the summary holds are compared as well.
 
-The script prints one row per deck. The exit code is 1 if a difference exceeds the tolerance, unless FILE allows it: a YAML list of {deck,
-series, tolerance, reason}, where deck and series may be patterns like `*`. The series `exit code` and `Expect/<name>` stand for a changed
-exit code and for an expectation that is no longer met. Their difference is infinite, which the tolerance `.inf` allows.
+The script prints one row per deck. The exit code is 1 if a difference exceeds the tolerance, unless FILE allows it: a
+YAML list of {deck, series, tolerance, reason}, where deck and series may be patterns like `*`. The series `exit code`
+and `Expect/<name>` stand for a changed exit code and for an expectation that is no longer met. Their difference is
+infinite, which the tolerance `.inf` allows.
 
-The two runs of a deck are neighbours in the queue, so that other work on the machine slows both alike. Results are kept in DIR, separately
-for each role and each content of the program, and are found again. Decks for two ranks run last, half as many at a time.
+The two runs of a deck are neighbours in the queue, so that other work on the machine slows both alike. Results are kept
+in DIR, separately for each role and each content of the program, and are found again. Decks for two ranks run last,
+half as many at a time.
 """
+
 import argparse
 import concurrent.futures
 import fnmatch
@@ -26,61 +30,49 @@ import shutil
 import sys
 import time
 
-import yaml
+from package import INPUTS, SIDE, numpy, table, tanktread, yaml
+from power_balance import ENDS
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-import package  # noqa: E402, F401 before the package tanktread
-import numpy  # noqa: E402
-
-import tanktread  # noqa: E402
-from power_balance import ENDS  # noqa: E402
-
-# Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their own ends. Round-off
-# grows from step to step in suspensions, so they end after about ten steps. Two branches end before their fold, with exit code 3.
-BY_TIME = ("capsule_capillary", "capsule_constriction", "capsule_cylinder", "capsule_step", "shear_paper", "suspension")
-SHORTER = {name: {"Time/final time": ENDS[name]} for name in BY_TIME} | {
-    "capsule_branch": {"Continuation/points": 3},
-    "capsule_expansion": {"Time/final time": 2},
-    "capsule_stuck": {"Time/final time": 200},  # the run fails at 330, where the gap is smaller than Channel/contact gap
-    "capsule_stuck_folds": {"Continuation/points": 2},
-    "drop_folds": {"Continuation/second values": [5]},
-    "drop_shear_folds": {"Continuation/points": 5},
-    "drop_shear_hysteresis": {"Continuation/points": 4},
-    "red_cell_file": {"Time/final time": "8 ms"},
-    "red_cell_slit": {"Time/final time": "5 ms"},
-    "sheared_suspension": {"Time/final time": 1},
-    "sphere_constriction": {"Time/fixed step": 0.01},
-    "sphere_rolling_down_wall": {"Time/final time": 1.5},
-    "sphere_settling_to_wall": {"Time/final time": 1},
-    "vesicle_aspirated": {"Time/final time": 100},
-    "viscoelastic_membrane": {"Time/final time": 6},
-    "decks/capsule_in_tube": {"Time/final time": 2},
-    "decks/capsule_through_constriction": {"Time/final time": 1},
+# Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their
+# own ends. Round-off grows from step to step in suspensions, so they end after about ten steps. Two branches end before
+# their fold, with exit code 3. capsule_stuck fails at 330, where the gap is smaller than Channel/contact gap.
+SOONER = {name: ENDS[name] for name in ("capsule_capillary", "capsule_constriction", "capsule_cylinder", "capsule_step",
+                                        "shear_paper", "suspension")} | {
+    "capsule_expansion": 2, "capsule_stuck": 200, "red_cell_file": "8 ms", "red_cell_slit": "5 ms",
+    "sheared_suspension": 1, "sphere_rolling_down_wall": 1.5, "sphere_settling_to_wall": 1, "vesicle_aspirated": 100,
+    "viscoelastic_membrane": 6, "decks/capsule_in_tube": 2, "decks/capsule_through_constriction": 1}
+SHORTER = {name: {"Time/final time": end} for name, end in SOONER.items()} | {
+    "capsule_branch": {"Continuation/points": 3}, "capsule_stuck_folds": {"Continuation/points": 2},
+    "drop_folds": {"Continuation/second values": [5]}, "drop_shear_folds": {"Continuation/points": 5},
+    "drop_shear_hysteresis": {"Continuation/points": 4}, "sphere_constriction": {"Time/fixed step": 0.01},
     "decks/sphere_free_in_throat": {"Time/fixed step": 0.01},
-    "decks/sphere_held_in_throat": {"Surface/elements per side": 6, "Channel/axial elements": 80},
-}
+    "decks/sphere_held_in_throat": {SIDE: 6, "Channel/axial elements": 80}}
 
-# Series that count work. The table shows their totals and ratios; they are not compared as results. Series in seconds are left out because
-# they measure the machine. Step sizes and estimated errors are compared only if the runs have the same number of rows.
-WORK = {"rejected_steps", "iterations", "evaluations", "assemblies", "solver_iterations", "velocity_iterations", "kernel_evaluations"}
+# Series that count work. The table shows their totals and ratios; they are not compared as results. Series in seconds
+# are left out because they measure the machine. Step sizes and estimated errors are compared only if the runs have the
+# same number of rows.
+WORK = {"rejected_steps", "iterations", "evaluations", "assemblies", "solver_iterations", "velocity_iterations",
+        "kernel_evaluations"}
 STEPS, EVALUATIONS, ITERATIONS, KERNELS, SECONDS = range(5)
-
-DIMENSIONS = dict(re.findall(r"^\| `(\w+)` \| ([^|]+) \|", (SOURCE / "inputs" / "SERIES.md").read_text(), re.MULTILINE))
+DIMENSIONS = dict(re.findall(r"^\| `(\w+)` \| ([^|]+) \|", (INPUTS / "SERIES.md").read_text(), re.MULTILINE))
 
 
 def all_decks():
     """Returns {name: (paths of the deck and of its overlay, ranks)}."""
     found = {}
-    for path in sorted((SOURCE / "inputs").glob("*.yaml")) + sorted((SOURCE / "tests" / "decks").glob("*.yaml")):
+    for path in sorted(INPUTS.glob("*.yaml")) + sorted((tanktread.SOURCE / "tests/decks").glob("*.yaml")):
         remarks = dict(re.findall(r"^# (base|ranks): (\S+)", path.read_text(), re.MULTILINE))
-        base = [SOURCE / remarks["base"]] if "base" in remarks else []
-        found[path.stem if path.parent.name == "inputs" else f"decks/{path.stem}"] = base + [path], int(remarks.get("ranks", 1))
+        base = [tanktread.SOURCE / remarks["base"]] if "base" in remarks else []
+        name = path.stem if path.parent.name == "inputs" else f"decks/{path.stem}"
+        found[name] = base + [path], int(remarks.get("ranks", 1))
     return found
 
 
 def study_of(program, role, arguments):
-    """Returns the study for this content of the program. It runs a copy, so that the program may be built anew during the comparison."""
-    directory = pathlib.Path(arguments.output).resolve() / f"{role}-{hashlib.sha1(pathlib.Path(program).read_bytes()).hexdigest()[:12]}"
+    """Returns the study for this content of the program. It runs a copy, so that the program may be built anew during
+    the comparison."""
+    digest = hashlib.sha1(pathlib.Path(program).read_bytes()).hexdigest()[:12]
+    directory = pathlib.Path(arguments.output).resolve() / f"{role}-{digest}"
     directory.mkdir(parents=True, exist_ok=True)
     if not (directory / "program").exists():
         shutil.copy2(program, directory / "program")
@@ -88,7 +80,8 @@ def study_of(program, role, arguments):
 
 
 def natural_unit(dimension, run):
-    """Returns the natural unit of a dimension such as `force length/time`; 1 for dimensionless values and for keys of the deck."""
+    """Returns the natural unit of a dimension such as `force length/time`; 1 for dimensionless values and for keys of
+    the deck."""
     length, velocity, stress = (run.scale(name)[0] for name in ("length", "velocity", "stress"))
     units = {"length": length, "time": length / velocity, "force": stress * length**2, "degree": 180 / math.pi}
     factors = re.findall(r"(/?)([a-z]+)(?:\^(\d))?", dimension)
@@ -100,14 +93,15 @@ def rows_of(old, new):
     t, u = old.series["time"], new.series["time"]
     if len(t) == len(u):
         return numpy.arange(len(t)), numpy.arange(len(u)), ""
-    i, j = numpy.nonzero(numpy.abs(t[:, None] - u) <= 1e-9 * max(t[-1], u[-1]))
-    return numpy.append(i, len(t) - 1), numpy.append(j, len(u) - 1), f"{len(t)} and {len(u)} rows, compared at {len(i)} common times"
+    i, j = numpy.nonzero(abs(t[:, None] - u) <= 1e-9 * max(t[-1], u[-1]))
+    remark = f"{len(t)} and {len(u)} rows, compared at {len(i)} common times"
+    return numpy.append(i, len(t) - 1), numpy.append(j, len(u) - 1), remark
 
 
 def conditioning(prefix, name, series):
-    """Returns the factor by which the difference of a series is multiplied: 1, but for a direction the relative difference of the axes that
-    determine it, because a direction amplifies round-off if the axes are equally long. Returns None if no series has the axes. This is the
-    inclination of a rigid body, whose quaternion is compared."""
+    """Returns the factor by which the difference of a series is multiplied: 1, but for a direction the relative
+    difference of the axes that determine it, because a direction amplifies round-off if the axes are equally long.
+    Returns None if no series has the axes. This is the inclination of a rigid body, whose quaternion is compared."""
     if name == "inclination" and prefix + "taylor_inertia" in series:
         return numpy.minimum(1, 2 * series[prefix + "taylor_inertia"])
     if name == "inclination" or name.startswith("axis_1_x"):
@@ -118,13 +112,13 @@ def conditioning(prefix, name, series):
 def scaled(name, old, new, unit):
     """Returns the difference of a series in every row; infinity where only one is NaN."""
     with numpy.errstate(invalid="ignore"):  # inf - inf, of values that are equal
-        change = numpy.abs(new - old)
+        change = abs(new - old)
     if name == "inclination":
-        change = numpy.minimum(change, numpy.abs(180 - change))  # -90 and 90 degrees are the same direction
+        change = numpy.minimum(change, abs(180 - change))  # -90 and 90 degrees are the same direction
     elif name.startswith("axis_1_x"):
-        change = numpy.minimum(change, numpy.abs(new + old))  # the sign of an axis is arbitrary
+        change = numpy.minimum(change, abs(new + old))  # the sign of an axis is arbitrary
     change = numpy.where((old == new) | (numpy.isnan(old) & numpy.isnan(new)), 0.0, change)
-    return numpy.nan_to_num(change, nan=numpy.inf) / numpy.max(numpy.abs(old), initial=unit, where=numpy.isfinite(old))
+    return numpy.nan_to_num(change, nan=numpy.inf) / numpy.max(abs(old), initial=unit, where=numpy.isfinite(old))
 
 
 def differences_of(old, new):
@@ -137,7 +131,8 @@ def differences_of(old, new):
         skipped = base in WORK or old.units[name] == "s" or (base in ("time_step", "step_error") and remark)
         if not skipped and factor is not None:
             change = scaled(base, old.series[name][i], new.series[name][j], natural_unit(old.units[name], old))
-            change[numpy.isinf(change) & (factor[i] < 2e-6)] = 0  # the axes are equal, and only one of the programs writes NaN for this
+            # where the axes are equal, only one of the programs may write NaN for that
+            change[numpy.isinf(change) & (factor[i] < 2e-6)] = 0
             found[name] = float(numpy.max(numpy.where(change > 0, change * factor[i], 0.0), initial=0.0))
     first, second = ((run.summary or {}).get("final", {}) for run in (old, new))
     for name in (first.keys() | second.keys()) - old.series.keys() - new.series.keys() - WORK - {"wall_seconds"}:
@@ -149,18 +144,22 @@ def differences_of(old, new):
 
 
 def work_of(outcome, run):
-    """Returns steps, velocity evaluations, solver iterations, kernel evaluations (nan if unknown) and processor seconds of a run."""
+    """Returns steps, velocity evaluations, solver iterations, kernel evaluations and processor seconds of a run; NaN if
+    unknown."""
     if not run:
         return [math.nan] * SECONDS + [outcome.processor_seconds]
-    counts = {name: float(values[-1]) for name, values in run.series.items() if len(values)} | (run.summary or {}).get("counts", {})
+    counts = {name: float(values[-1]) for name, values in run.series.items() if len(values)}
+    counts |= (run.summary or {}).get("counts", {})
     kernels = [value for name, value in counts.items() if name.startswith("kernel_evaluations")]
     iterations = [counts[name] for name in ("solver_iterations", "velocity_iterations") if name in counts]
     return [counts.get("steps", len(run.series["time"]) - 1), counts.get("evaluations", math.nan),
-            sum(iterations) if iterations else math.nan, sum(kernels) if kernels else math.nan, outcome.processor_seconds]
+            sum(iterations) if iterations else math.nan, sum(kernels) if kernels else math.nan,
+            outcome.processor_seconds]
 
 
 def plain(deck):
-    """Tells whether all particles of an effective deck are deformable and have the viscosity ratio 1 and a membrane without viscosity."""
+    """Returns whether all particles of an effective deck are deformable and have the viscosity ratio 1 and a membrane
+    without viscosity."""
     def values(node):
         for key, value in node.items():
             yield from values(value) if isinstance(value, dict) else [(key, value)]
@@ -173,12 +172,13 @@ def loaded(outcome):
     """Returns the results of a run, or None if it ended before it had any."""
     try:
         return tanktread.Run(outcome.directory)
-    except (OSError, KeyError):
+    except tanktread.Mistake:
         return None
 
 
 class Comparison:
-    """Compares the outcomes of one deck. `failed` is true if a difference is neither within the tolerance nor allowed."""
+    """Compares the outcomes of one deck. `failed` is true if a difference is neither within the tolerance nor
+    allowed."""
 
     def __init__(self, name, ranks, outcomes, arguments, named):
         self.name, self.ranks, self.remarks, found = name, ranks, [], {}
@@ -198,7 +198,8 @@ class Comparison:
             self.remarks += [remark] * bool(remark) + [f"Expect/{key} is met now" for key in sorted(met[1] - met[0])]
         failures = {}
         for series, difference in found.items():
-            entry = next((one for one in named if fnmatch.fnmatch(name, one["deck"]) and fnmatch.fnmatch(series, one["series"])), {})
+            entry = next((one for one in named if fnmatch.fnmatch(name, one["deck"])
+                          and fnmatch.fnmatch(series, one["series"])), {})
             if difference > float(entry.get("tolerance", arguments.tolerance)):
                 failures[series] = difference
             elif difference > arguments.tolerance and entry["reason"] not in self.remarks:
@@ -208,27 +209,44 @@ class Comparison:
         self.worst = max((failures or found).items(), key=lambda item: (item[1], item[0]), default=("", 0.0))
 
     def ratio(self, k):
-        """Returns new/old of the entry k of `work`; nan if the old one is 0 or one is unknown."""
+        """Returns new/old of the entry k of `work`; NaN if the old one is 0 or one is unknown."""
         return self.work[1][k] / self.work[0][k] if self.work[0][k] else math.nan
 
     def row(self):
-        steps, evaluations = (f"{self.work[0][k]:.0f} | {self.work[1][k]:.0f}" for k in (STEPS, EVALUATIONS))
-        ratios = " | ".join(f"{self.ratio(k):.3f}" for k in (EVALUATIONS, ITERATIONS, KERNELS, SECONDS))
-        numbers = f"{steps} | {evaluations} | {ratios}".replace("nan", "")
-        return f"| `{self.name}` | {self.worst[0] if self.worst[1] else ''} | {self.worst[1]:.1e} | {numbers} | {'; '.join(self.remarks)} |"
+        numbers = [f"{self.work[role][k]:.0f}" for k in (STEPS, EVALUATIONS) for role in (0, 1)]
+        numbers += [f"{self.ratio(k):.3f}" for k in (EVALUATIONS, ITERATIONS, KERNELS, SECONDS)]
+        numbers = ["" if one == "nan" else one for one in numbers]
+        series = self.worst[0] if self.worst[1] else ""
+        return [f"`{self.name}`", series, f"{self.worst[1]:.1e}", *numbers, "; ".join(self.remarks)]
 
 
 def totals(title, comparisons):
-    """Returns a line with the sums of evaluations and of seconds over some decks, and the deck with the largest ratio of each."""
+    """Returns a line with the sums of evaluations and of seconds over some decks, and the deck with the largest ratio
+    of each."""
     words = []
     one_rank = [one for one in comparisons if one.ranks == 1]  # processor seconds of several ranks include busy waiting
-    for what, k, measured in ("velocity evaluations", EVALUATIONS, comparisons), ("processor seconds on one rank", SECONDS, one_rank):
+    for what, k, measured in (("velocity evaluations", EVALUATIONS, comparisons),
+                              ("processor seconds on one rank", SECONDS, one_rank)):
         known = [one for one in measured if one.work[0][k] > 0 and one.work[1][k] > 0]
         if known:
             old, new = (sum(one.work[role][k] for one in known) for role in (0, 1))
-            top = max([one for one in known if one.work[0][k] >= 1] or known, key=lambda one: one.ratio(k))  # shorter runs are mostly noise
-            words.append(f"{what} {old:.0f} and {new:.0f}, ratio {new / old:.3f}, largest {top.ratio(k):.3f} (`{top.name}`)")
+            # runs below 1 are mostly noise
+            top = max([one for one in known if one.work[0][k] >= 1] or known, key=lambda one: one.ratio(k))
+            words.append(f"{what} {old:.0f} and {new:.0f}, ratio {new / old:.3f}, largest {top.ratio(k):.3f} "
+                         f"(`{top.name}`)")
     return f"\n{title} ({len(comparisons)} decks): " + "; ".join(words)
+
+
+def pairs_of(arguments, decks):
+    """Yields (name, ranks, outcomes of the old and the new program) of each deck; decks on two ranks last."""
+    studies = [study_of(program, role, arguments) for program, role in zip(arguments.programs, ("old", "new"))]
+    for several_ranks in False, True:
+        names = [name for name in arguments.decks or decks if (decks[name][1] > 1) == several_ranks]
+        with concurrent.futures.ThreadPoolExecutor(max(1, arguments.jobs // (1 + several_ranks))) as pool:
+            pairs = [[pool.submit(study.run, decks[name][0], SHORTER.get(name, {}), decks[name][1])
+                      for study in studies] for name in names]
+            for name, pair in zip(names, pairs):
+                yield name, decks[name][1], [future.result() for future in pair]
 
 
 def main():
@@ -236,32 +254,30 @@ def main():
     parser.add_argument("programs", nargs=2, metavar="PROGRAM", help="the old and the new program")
     parser.add_argument("--decks", nargs="+", metavar="NAME", help="names of decks (default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
-    parser.add_argument("--output", default="results/compare", metavar="DIR", help="directory of the results (default: %(default)s)")
-    parser.add_argument("--tolerance", type=float, default=1e-9, help="largest difference that passes (default: %(default)s)")
+    parser.add_argument("--output", default="results/compare", metavar="DIR", help="of results (default: %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-9, help="largest difference that passes (%(default)s)")
     parser.add_argument("--differences", metavar="FILE", help="YAML list of differences that are allowed")
-    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS", help="processor time of a run (default: %(default)s)")
+    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS",
+                        help="processor time of a run (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="repeat the runs of an earlier comparison")
     arguments = parser.parse_args()
     named = yaml.safe_load(pathlib.Path(arguments.differences).read_text()) or [] if arguments.differences else []
-    decks = all_decks()
+    decks, start, found_again, comparisons = all_decks(), time.time(), [], []
     if unknown := set(arguments.decks or []) - decks.keys():
         sys.exit(f"there is no deck {', '.join(sorted(unknown))}; choose from {', '.join(decks)}")
-    start, found_again, comparisons = time.time(), 0, []
-    studies = [study_of(program, role, arguments) for program, role in zip(arguments.programs, ("old", "new"))]
-    titles = "| deck | worst series | difference | steps | new | evaluations | new | ratio | iterations | kernels | seconds | remarks |"
-    print(titles + "\n" + "|---" * (titles.count("|") - 1) + "|")
-    for several_ranks in False, True:
-        names = [name for name in arguments.decks or decks if (decks[name][1] > 1) == several_ranks]
-        with concurrent.futures.ThreadPoolExecutor(max(1, arguments.jobs // (1 + several_ranks))) as pool:
-            pairs = [[pool.submit(study.run, decks[name][0], SHORTER.get(name, {}), decks[name][1]) for study in studies] for name in names]
-            for name, pair in zip(names, pairs):
-                outcomes = [future.result() for future in pair]
-                found_again += sum((outcome.directory / "outcome.json").stat().st_mtime < start for outcome in outcomes)
-                comparisons.append(Comparison(name, decks[name][1], outcomes, arguments, named))
-                print(comparisons[-1].row(), flush=True)
+
+    def rows():
+        for name, ranks, outcomes in pairs_of(arguments, decks):
+            found_again.extend(one for one in outcomes if (one.directory / "outcome.json").stat().st_mtime < start)
+            comparisons.append(Comparison(name, ranks, outcomes, arguments, named))
+            yield comparisons[-1].row()
+
+    table(["deck", "worst series", "difference", "steps", "new", "evaluations", "new", "ratio", "iterations", "kernels",
+           "seconds", "remarks"], rows())
     print(totals("All decks", comparisons))
     print(totals("Viscosity ratio 1, no viscous membrane, no rigid body", [one for one in comparisons if one.plain]))
-    print(f"\nWall time: {(time.time() - start) / 60:.1f} minutes. {found_again} runs, with their seconds, are of an earlier comparison.")
+    print(f"\nWall time: {(time.time() - start) / 60:.1f} minutes. {len(found_again)} runs, with their seconds, are of "
+          "an earlier comparison.")
     if failed := [one.name for one in comparisons if one.failed]:
         sys.exit(f"{len(failed)} decks differ: {', '.join(failed)}")
 

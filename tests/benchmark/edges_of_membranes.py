@@ -1,9 +1,8 @@
 """Maps of the atlas about the membrane: compression, pre-stress, bending, the form of the load."""
 
-from package import numpy, plt, style
+from package import PENS, RATIO, SHEAR, SIDE, final, line, numpy, plt, style, ticks
 import waves
 
-SHEAR = "inputs/shear_neo_hookean.yaml"
 PLAIN = "tests/stability/shear.yaml"  # says nothing of the mesh
 
 
@@ -16,29 +15,26 @@ def load_form(study):
     paper sees it at γ̇t = 0.664 for Ca = 0.45 and poles on x₂ (cross).
 
     Survives: virtual work (3.5), wherever the poles are; every bar to the end is one."""
-    end = 2.0
-    meshes = {f"poles on {axis}": {"Surface/mesh": "polar", "Surface/pole axis": axis, "Surface/azimuthal elements": 16,
-                                   "Surface/meridional elements": 8}
-              for axis in ("x1", "x2", "x3")} | {"cube": {"Surface/mesh": "cube", "Surface/elements per side": 6}}
-    rows = []
+    end, rows = 2.0, []
+    polar = {"Surface/mesh": "polar", "Surface/azimuthal elements": 16, "Surface/meridional elements": 8}
+    meshes = {f"poles on {axis}": polar | {"Surface/pole axis": axis} for axis in ("x1", "x2", "x3")}
+    meshes["cube"] = {"Surface/mesh": "cube", SIDE: 6}
     figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.6), sharey=True)
     for axis, ca in zip(axes, (0.3, 0.45, 0.6)):
-        for k, (mesh, settings) in enumerate(meshes.items()):
-            for load, color, offset in (("strong", style.RUNS[1], -0.19), ("weak", style.RUNS[0], 0.19)):
-                outcome = study.run(PLAIN, settings | {"Membrane/capillary number": ca, "Membrane/load": load,
-                                                       "Time/final time": end, "Time/minimum step": 1e-6,
-                                                       "Output/interval": end})
+        for load, color, offset in (("strong", style.RUNS[1], -0.19), ("weak", style.RUNS[0], 0.19)):
+            for k, (mesh, settings) in enumerate(meshes.items()):
+                outcome = study.run(PLAIN, settings | {
+                    "Membrane/capillary number": ca, "Membrane/load": load, "Time/final time": end,
+                    "Time/minimum step": 1e-6, "Output/interval": end})
                 axis.barh(k + offset, outcome.end, 0.34, color=color, label=f"{load} form" if k == 0 else None)
                 axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
                               fontsize=7.5, color="white")
                 rows.append((ca, mesh, load, outcome.end, outcome.message[:100]))
-        axis.set_title(f"Ca = {ca:g}")
-        axis.set_xlabel("time reached")
+        axis.set(title=f"Ca = {ca:g}", xlabel="time reached", xlim=(0, end))
         axis.grid(visible=False, axis="y")
     axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="paper")
     axes[0].set_yticks(range(len(meshes)), meshes)
     axes[0].invert_yaxis()
-    axes[0].set_xlim(0, end)
     figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=3)
     return figure, ["capillary_number", "mesh", "load", "time_reached", "message"], rows
 
@@ -54,40 +50,23 @@ def buckling(study):
     Survives: a bending modulus, pre-inflation by 5 %, or Ca between the windows of compression (0.45 to 0.6 for this
     law). A viscous filling (λ = 5) only delays."""
     values = [0.05, 0.1, 0.2, 0.3, 0.45, 0.6]
-    cures = {"as it is": ({}, style.RUNS[1], "o"), "bending 0.02 R²G_s": ({"bending": 0.02}, style.RUNS[0], "s"),
-             "pre-inflation 5 %": ({"Membrane/pre-inflation": 0.05}, style.RUNS[2], "^"),
-             "λ = 5": ({"Particle/viscosity ratio": 5.0}, style.RUNS[3], "D")}
+    cures = {"bending 0.02 R²G_s": lambda ca: {"Membrane/bending modulus": 0.02 / ca}, "as it is": lambda ca: {},
+             "pre-inflation 5 %": lambda ca: {"Membrane/pre-inflation": 0.05}, "λ = 5": lambda ca: {RATIO: 5.0}}
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
     rows = []
-    for name, (settings, color, mark) in cures.items():
-        for n, line in ((6, ":"), (9, "-")):
-            tensions, shares = [], []
-            for ca in values:
-                cure = dict(settings)
-                if "bending" in cure:
-                    cure = {"Membrane/bending modulus": cure["bending"] / ca}
-                outcome = study.run(SHEAR, cure | {"Surface/elements per side": n, "Membrane/capillary number": ca,
-                                                   "Time/final time": 4.0, "Output/interval": 1.0})
-                tension = outcome.series["smallest_tension"][-1] if outcome.done else numpy.nan
-                share = waves.short_share(outcome.run) if outcome.done else numpy.nan
-                tensions.append(tension)
-                shares.append(share)
-                rows.append((name, n, ca, tension, share, outcome.message[:80]))
-            left.plot(values, tensions, line, color=color, marker=mark, ms=4, label=name if line == "-" else None)
-            right.loglog(values, shares, line, color=color, marker=mark, ms=4)
+    for (name, cure), pen in zip(cures.items(), PENS):
+        for n, dash in (6, ":"), (9, "-"):
+            jobs = {ca: (SHEAR, cure(ca) | {SIDE: n, "Membrane/capillary number": ca, "Time/final time": 4.0,
+                                            "Output/interval": 1.0}) for ca in values}
+            rows += line(study, (left, right), f"{name}, n = {n}", jobs, (
+                final("smallest_tension"), lambda one: waves.short_share(one.run)), linestyle=dash, **pen)
     left.axhline(0, color=style.FAINT, linewidth=0.9)
-    left.set_xscale("log")
-    for axis in left, right:
-        axis.set_xticks(values, [f"{value:g}" for value in values])
-        axis.minorticks_off()
-        axis.set_xlabel("Ca")
-    left.set_ylabel("smallest tension over G_s")
-    right.set_ylabel("share of the load in degrees ≥ 9")
-    right.plot([], [], ":", color=style.FAINT, label="n = 6")
-    right.plot([], [], "-", color=style.FAINT, label="n = 9")
-    left.legend(loc="best")
-    right.legend(loc="best")
-    return figure, ["cure", "elements_per_side", "capillary_number", "smallest_tension", "short_share", "message"], rows
+    for axis, label in (left, "smallest tension over G_s"), (right, "share of the load in degrees ≥ 9"):
+        ticks(axis, values, "Ca")
+        axis.set_ylabel(label)
+    right.set_yscale("log")
+    left.legend(loc="best", fontsize=7)
+    return figure, ["cure", "capillary_number", "smallest_tension", "short_share", "message"], rows
 
 
 def pre_inflation(study):
@@ -100,25 +79,22 @@ def pre_inflation(study):
     Survives: α above the line; 1 % at Ca = 0.02, 2.3 % at 0.1, 4 % at 0.3. Beyond Ca = 0.6 the compression is that of
     the tips."""
     capillary, inflation = [0.02, 0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.9], [0.0, 0.01, 0.02, 0.03, 0.05, 0.08]
-    jobs = [(SHEAR, {"Surface/elements per side": 4, "Membrane/capillary number": ca, "Membrane/pre-inflation": alpha,
-                     "Time/final time": 3.0, "Output/interval": 3.0}) for alpha in inflation for ca in capillary]
-    outcomes = study.all(jobs)
+    pairs = [(ca, alpha) for alpha in inflation for ca in capillary]
+    outcomes = study.all([(SHEAR, {SIDE: 4, "Membrane/capillary number": ca, "Membrane/pre-inflation": alpha,
+                                   "Time/final time": 3.0, "Output/interval": 3.0}) for ca, alpha in pairs])
     smallest = [outcome.series["smallest_tension"].min() if outcome.done else numpy.nan for outcome in outcomes]
-    figure, axis = plt.subplots(figsize=(7.2, 4.6))
     field = numpy.reshape(smallest, (len(inflation), len(capillary)))
-    bound = numpy.nanmax(numpy.abs(field))
-    levels = numpy.linspace(-bound, bound, 21)
-    x, y = numpy.log10(capillary), 100 * numpy.array(inflation)
-    filled = axis.contourf(x, y, field, levels, cmap=style.SIGNED)
+    bound = numpy.nanmax(abs(field))
+    x, y = numpy.meshgrid(capillary, 100 * numpy.array(inflation))
+    figure, axis = plt.subplots(figsize=(7.2, 4.6))
+    filled = axis.contourf(x, y, field, numpy.linspace(-bound, bound, 21), cmap=style.SIGNED)
     axis.contour(x, y, field, [0], colors=style.INK, linewidths=1.4)
-    axis.plot(numpy.repeat(x[None], len(y), 0), numpy.repeat(y[:, None], len(x), 1), ".", color=style.INK, ms=2)
-    axis.set_xticks(x, [f"{value:g}" for value in capillary])
-    axis.grid(visible=False)
-    axis.set_xlabel("Ca")
+    axis.plot(x, y, ".", color=style.INK, ms=2)
+    ticks(axis, capillary, "Ca")
     axis.set_ylabel("pre-inflation α, per cent")
+    axis.grid(visible=False)
     figure.colorbar(filled, label="smallest tension over G_s")
-    rows = [(settings["Membrane/capillary number"], settings["Membrane/pre-inflation"], value) for (_, settings),
-            value in zip(jobs, smallest)]
+    rows = [(*pair, value) for pair, value in zip(pairs, smallest)]
     return figure, ["capillary_number", "pre_inflation", "smallest_tension"], rows
 
 

@@ -1,6 +1,6 @@
 """Maps of the atlas about the particle itself: where there is no steady shape any more."""
 
-from package import numpy, plt, style
+from package import SIDE, numpy, plt, style
 from tanktread.figures import pushed as stuck
 
 DROP = "inputs/drop_folds.yaml"
@@ -30,15 +30,14 @@ def bursting(study):
     rows = []
     for (name, deck, settings, meshes), color in zip(curves, style.RUNS):
         axis = right if "capsule" in name else left
-        coarse, fine = (folds(study.run(deck, settings | {"Surface/elements per side": n})) for n in meshes)
+        coarse, fine = (folds(study.run(deck, settings | {SIDE: n})) for n in meshes)
         for second, ca, d in fine.T:
             before = coarse[1:, coarse[0] == second]
             apart = abs(before[:, 0] - (ca, d)) if before.size else (numpy.nan, numpy.nan)
             rows.append((name, second, ca, d, apart[0] / ca, apart[1]))
         axis.plot(coarse[0], coarse[1], "x", color=color, ms=6, label=f"{name}: n = {meshes[0]}")
         axis.plot(fine[0], fine[1], "o-", color=color, ms=3.5, label=f"n = {meshes[1]}")
-    left.set_xscale("log")
-    left.set_xlabel("viscosity ratio λ")
+    left.set(xscale="log", xlabel="viscosity ratio λ")
     right.set_xlabel("pre-inflation")
     for axis in left, right:
         axis.set_ylabel("Ca at the fold")
@@ -60,7 +59,7 @@ def squeezing(study):
     figure, axis = plt.subplots(figsize=(5.6, 4.2))
     values, rows = "[0.65, 0.6, 0.55]", []
     for n, mark in ((8, "x"), (10, "o-")):
-        outcome = study.run(STUCK, {"Surface/elements per side": n, "Continuation/second values": values})
+        outcome = study.run(STUCK, {SIDE: n, "Continuation/second values": values})
         size, ca, _ = folds(outcome)
         axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
         rows += [("with a film", n, *pair) for pair in zip(size, ca)]
@@ -68,8 +67,7 @@ def squeezing(study):
            for radius in size]
     axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
     rows += [("without film", "", *pair) for pair in zip(size, dry)]
-    axis.set_xlabel("radius of the capsule over that of the channel")
-    axis.set_ylabel("Ca above which it passes")
+    axis.set(xlabel="radius of the capsule over that of the channel", ylabel="Ca above which it passes")
     axis.legend()
     return figure, ["kind", "elements_per_side", "radius", "capillary_number"], rows
 
@@ -90,7 +88,7 @@ def wrinkling(study):
             onsets = []
             for ca in numbers:
                 bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity,
-                                                 "Surface/elements per side": n})
+                                                 SIDE: n})
                 angle, wave = along_waist(outcome)
                 crests = number_of_crests(angle, wave)
                 onsets.append(bending)
@@ -99,11 +97,8 @@ def wrinkling(study):
                     right.plot(angle, wave / abs(wave).max(), color=color,
                                label=f"{name}: {crests} crests, Ca = {ca:g}")
             left.plot(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
-    left.set_xlabel("Ca")
-    left.set_ylabel("E_b/(G_s R²) at onset")
-    right.set_xlabel("angle around the axis (degrees)")
-    right.set_ylabel("radial part of the mode")
-    right.set_ylim(-1.1, 1.6)
+    left.set(xlabel="Ca", ylabel="E_b/(G_s R²) at onset")
+    right.set(xlabel="angle around the axis (degrees)", ylabel="radial part of the mode", ylim=(-1.1, 1.6))
     for axis in left, right:
         axis.legend()
     return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows

@@ -2,66 +2,55 @@
 
 import math
 
-from package import plt, studies, style
+from package import PENS, RATIO, SHEAR, SIDE, line, plt, studies, style, ticks, worst
 
-SHEAR = "inputs/shear_neo_hookean.yaml"
-SCHEMES = {  # pen of each integrator
-    "bs3": (style.RUNS[0], "o", "explicit, BS3"),
-    "rkc2": (style.RUNS[2], "s", "stabilised explicit, RKC2"),
-    "crank-nicolson": (style.RUNS[1], "^", "Crank–Nicolson, sub-iterated (the paper's)"),
-    "bdf3": (style.RUNS[4], "v", "BDF3, quasi-Newton"),
-    "tr-bdf2": (style.RUNS[3], "D", "TR-BDF2, quasi-Newton"),
-}
+SCHEMES = {"bs3": "explicit, BS3", "crank-nicolson": "Crank–Nicolson, sub-iterated (the paper's)",
+           "rkc2": "stabilised explicit, RKC2", "tr-bdf2": "TR-BDF2, quasi-Newton", "bdf3": "BDF3, quasi-Newton"}
+PEN = dict(zip(SCHEMES, PENS))
 
 
-def follows(study, deck, settings, step, reference):
-    """Whether a run at a fixed step comes to its end and to where steps under control of the error lead: D and the
-    energy within 5 %."""
-    outcome = study.run(deck, settings | {"Time/fixed step": step})
-    if not outcome.done:
-        return False
-    return all(abs(outcome.final[name] - reference.final[name]) < 0.05 * abs(reference.final[name])
-               for name in ("taylor_inertia", "energy"))
+def follows(study, settings, step, reference):
+    """Returns whether a run at a fixed step comes to its end and to where steps under control of the error lead: D and
+    the energy within 5 %."""
+    outcome = study.run(SHEAR, settings | {"Time/fixed step": step})
+    return outcome.done and all(abs(outcome.final[name] / reference.final[name] - 1) < 0.05
+                                for name in ("taylor_inertia", "energy"))
 
 
 def largest_step(study, settings, scheme, stiffness):
-    """The largest fixed step of a scheme, and what it is (study.edge). The run is forty times the explicit limit long,
-    so that what grows can be seen to grow, and bisection starts around that limit."""
+    """Returns the largest fixed step of a scheme, and what it is (studies.edge). The run is forty times the explicit
+    limit long, so that what grows can be seen to grow, and bisection starts around that limit."""
     limit = 2.51 / stiffness
     settings = settings | {"Time/final time": 40 * limit, "Output/interval": 40 * limit}
     reference = study.run(SHEAR, settings | {"Time/scheme": "tr-bdf2"})
     if not reference.done:
         return math.nan, "no reference"
     settings = settings | {"Time/scheme": scheme}
-    return studies.edge(lambda step: follows(study, SHEAR, settings, step, reference),
+    return studies.edge(lambda step: follows(study, settings, step, reference),
                         (0.1 if scheme == "crank-nicolson" else 0.3) * limit, 10 * limit, 1.1)
 
 
 def stiffness(ca, n, dilatation=1.0):
-    """(4.5) for elements of the sphere's cube mesh: rho = max(1 + C, 1) k/(2 Ca), k = pi/h, h = pi/(2 n)."""
+    """Returns rho = max(1 + C, 1) k/(2 Ca), k = pi/h, h = pi/(2 n) of (4.5) for elements of the sphere's cube mesh."""
     return (1 + dilatation) * 2 * n / (2 * ca)
 
 
 def draw_steps(study, variable, label, values, of):
-    """Largest step of every scheme over a variable; of(value): settings and stiffness."""
+    """Draws the largest step of every scheme over a variable; of(value): settings and stiffness."""
     figure, axis = plt.subplots(figsize=(7.6, 5))
     rows = []
     for scheme in study.schemes(SCHEMES):
-        color, mark, name = SCHEMES[scheme]
         found = [(value, *largest_step(study, of(value)[0], scheme, of(value)[1])) for value in values]
-        rows += [(scheme, value, step, what) for value, step, what in found]
-        axis.loglog([value for value, _, _ in found], [step for _, step, _ in found], color=color, marker=mark, ms=5,
-                    label=name)
+        rows += [(scheme, *one) for one in found]
+        axis.plot(values, [step for _, step, _ in found], label=SCHEMES[scheme], **PEN[scheme])
         for value, step, what in found:
             if what != "edge":
-                axis.annotate("↑" if what == "holds to here" else "↓", (value, step), (0, 4),
-                              textcoords="offset points", ha="center", color=color)
-    axis.loglog(values, [2.51 / of(value)[1] for value in values], color=style.FAINT, linestyle=(0, (4, 3)),
-                label="2.51/ρ, ρ by (4.5)")
-    axis.set_xticks(values, [f"{value:g}" for value in values])
-    axis.xaxis.set_minor_locator(plt.NullLocator())
-    axis.set_xlabel(label)
-    axis.set_ylabel("largest step that works, times rate")
+                axis.annotate("↑" if what == "holds to here" else "↓", (value, step), (0, 4), ha="center",
+                              textcoords="offset points", color=PEN[scheme]["color"])
+    axis.plot(values, [2.51 / of(value)[1] for value in values], color=style.FAINT, linestyle=(0, (4, 3)),
+              label="2.51/ρ, ρ by (4.5)")
+    ticks(axis, values, label)
+    axis.set(yscale="log", ylabel="largest step that works, times rate")
     axis.legend(loc="best")
     return figure, ["scheme", variable, "largest_step", "note"], rows
 
@@ -76,7 +65,7 @@ def fixed_step(study):
     Survives: an iteration that knows the stiff part (TR-BDF2 or BDF3 with the frozen Jacobian), whose step is bound by
     accuracy; as many stages as the step needs (RKC2). Arrows: no edge found."""
     return draw_steps(study, "capillary_number", "Ca", [0.02, 0.05, 0.1, 0.2, 0.3, 0.6],
-                      lambda ca: ({"Surface/elements per side": 4, "Membrane/capillary number": ca}, stiffness(ca, 4)))
+                      lambda ca: ({SIDE: 4, "Membrane/capillary number": ca}, stiffness(ca, 4)))
 
 
 def fixed_step_dilatation(study):
@@ -85,10 +74,8 @@ def fixed_step_dilatation(study):
     Skalak capsule in shear, Ca = 0.3, 98 control points. A membrane that resists dilatation has ρ ~ (1 + C)/Ca.
 
     Survives: the frozen Jacobian, which holds the dilatation."""
-    def of(c):
-        return {"Surface/elements per side": 4, "Membrane/law": "Skalak",
-                "Membrane/area dilatation": c}, stiffness(0.3, 4, c)
-    return draw_steps(study, "area_dilatation", "C", [1.0, 3.0, 10.0, 30.0, 100.0], of)
+    return draw_steps(study, "area_dilatation", "C", [1.0, 3.0, 10.0, 30.0, 100.0], lambda c: (
+        {SIDE: 4, "Membrane/law": "Skalak", "Membrane/area dilatation": c}, stiffness(0.3, 4, c)))
 
 
 def fixed_step_mesh(study):
@@ -99,7 +86,7 @@ def fixed_step_mesh(study):
 
     Survives: the frozen Jacobian, at a cost that does not depend on the mesh."""
     return draw_steps(study, "elements_per_side", "n, elements along a side of the cube", [3, 4, 5, 6],
-                      lambda n: ({"Surface/elements per side": n}, stiffness(0.3, n)))
+                      lambda n: ({SIDE: n}, stiffness(0.3, n)))
 
 
 def viscosity_ratio(study):
@@ -108,33 +95,23 @@ def viscosity_ratio(study):
     Neo-Hookean capsule in shear, Ca = 0.3, 98 control points, to γ̇t = 1. The equation (2.4) for the velocity, (1 − (1
     − λ)H) v = …, loses its breathing mode as λ → 0 and eleven more modes, rigid motions and strains, grow slow as λ →
     ∞. Left: iterations that its solver needs, with the flux taken out of its unknowns (`exact`, `flux`) and without
-    (`none`). Right: steps of the run and its volume error.
+    (`none`). Right: the volume error of the run.
 
     Survives: the flux constraint inside the system, which holds the breathing mode; its iterations stay bounded at both
     ends."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    ratios = [0.001, 0.01, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0]
+    figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.4))
+    base = {SIDE: 4, "Time/final time": 1.0, "Membrane/load measure": "current", "Output/interval": 1.0}
     rows = []
-    for constraint, color in (("exact", style.RUNS[0]), ("none", style.RUNS[1])):
-        found = []
-        for ratio in ratios:
-            outcome = study.run(SHEAR, {"Surface/elements per side": 4, "Particle/viscosity ratio": ratio,
-                                        "Time/final time": 1.0, "Membrane/load measure": "current",
-                                        "Volume/constraint": constraint, "Output/interval": 1.0})
-            if outcome.done:
-                iterations = outcome.counts["velocity_iterations"] / max(outcome.counts.get("evaluations"), 1)
-                found.append((ratio, iterations, outcome.counts["steps"], abs(outcome.series["volume_error"]).max()))
-            rows.append((constraint, ratio, *(found[-1][1:] if outcome.done else ("", "", "")), outcome.message[:80]))
-        left.semilogx([one[0] for one in found], [one[1] for one in found], "o-", color=color, ms=4,
-                      label=f"Volume/constraint `{constraint}`")
-        right.loglog([one[0] for one in found], [max(one[3], 1e-16) for one in found], "o-", color=color, ms=4)
-    left.set_xlabel("λ")
-    left.set_ylabel("iterations a velocity")
-    left.set_ylim(bottom=0)
-    left.legend(loc="best")
-    right.set_xlabel("λ")
-    right.set_ylabel("largest volume error")
-    return figure, ["constraint", "viscosity_ratio", "iterations_a_velocity", "steps", "volume_error", "message"], rows
+    for constraint, pen in zip(("exact", "none"), PENS):
+        jobs = {ratio: (SHEAR, base | {RATIO: ratio, "Volume/constraint": constraint})
+                for ratio in (0.001, 0.01, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0)}
+        rows += line(study, axes, f"Volume/constraint `{constraint}`", jobs, (
+            lambda one: one.counts["velocity_iterations"] / one.counts["evaluations"],
+            lambda one: max(worst("volume_error")(one), 1e-16), lambda one: one.counts["steps"]), **pen)
+    axes[0].set(xscale="log", xlabel="λ", ylabel="iterations a velocity", ylim=(0, None))
+    axes[0].legend(loc="best")
+    axes[1].set(xscale="log", yscale="log", xlabel="λ", ylabel="largest volume error")
+    return figure, ["constraint", "viscosity_ratio", "iterations_a_velocity", "volume_error", "steps", "message"], rows
 
 
 MAPS = [fixed_step, fixed_step_dilatation, fixed_step_mesh, viscosity_ratio]

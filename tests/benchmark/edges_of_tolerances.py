@@ -1,15 +1,11 @@
 """Maps of the atlas about accuracy asked for: of a step, of the integrals, of the volume."""
 
-import math
-
-from package import plt, style
-from edges_of_steps import SCHEMES
-
-SHEAR = "inputs/shear_neo_hookean.yaml"
+from edges_of_steps import PEN, SCHEMES
+from package import PENS, SHEAR, SIDE, line, plt, style, worst
 
 
-def _error(outcome, reference, name="taylor_inertia"):
-    return abs(outcome.final[name] - reference.final[name]) if outcome.done else math.nan
+def _error(reference):
+    return lambda outcome: max(abs(outcome.final["taylor_inertia"] - reference.final["taylor_inertia"]), 1e-9)
 
 
 def step_tolerance(study):
@@ -21,35 +17,27 @@ def step_tolerance(study):
 
     Survives: 1e-4 or tighter for explicit schemes; any tolerance for implicit ones, which then do take fewer steps; the
     exact constraint, which takes the drift out of both and with it most of the error of D."""
-    tolerances = [1e-2, 3e-3, 1e-3, 1e-4, 1e-5]
-    base = {"Surface/elements per side": 4, "Membrane/capillary number": 0.05, "Membrane/pre-inflation": 0.05,
-            "Time/final time": 2.0, "Output/interval": 2.0}
+    base = {SIDE: 4, "Membrane/capillary number": 0.05, "Membrane/pre-inflation": 0.05, "Time/final time": 2.0,
+            "Output/interval": 2.0}
     reference = study.run(SHEAR, base | {"Time/tolerance": 1e-7})
+    measures = _error(reference), lambda one: one.counts["evaluations"], worst("volume_error")
     figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.9))
     rows = []
     for scheme in study.schemes(("bs3", "rkc2", "tr-bdf2", "bdf3")):
-        color, mark, name = SCHEMES[scheme]
-        for constraint, line in (("exact", "-"), ("flux", ":")):
-            found = []
-            for tolerance in tolerances:
-                outcome = study.run(SHEAR, base | {"Time/scheme": scheme, "Time/tolerance": tolerance,
-                                                   "Volume/constraint": constraint})
-                if outcome.done:
-                    found.append((tolerance, _error(outcome, reference), abs(outcome.series["volume_error"]).max(),
-                                  outcome.counts["evaluations"]))
-                    rows.append((scheme, constraint, *found[-1]))
-            for axis, column in zip(axes, (1, 2, 3)):
-                if column != 2 or constraint == "flux":
-                    axis.loglog([one[0] for one in found], [one[column] for one in found], line, color=color,
-                                marker=mark, ms=4, label=name if line == "-" else None)
-    for axis, label in zip(axes, ("error of D at the end", "volume error without `exact`", "velocity evaluations")):
-        axis.set_xlabel("Time/tolerance")
-        axis.set_ylabel(label)
+        for constraint, dash in ("exact", "-"), ("flux", ":"):
+            jobs = {tolerance: (SHEAR, base | {"Time/scheme": scheme, "Time/tolerance": tolerance,
+                                               "Volume/constraint": constraint})
+                    for tolerance in (1e-2, 3e-3, 1e-3, 1e-4, 1e-5)}
+            shown = axes if constraint == "flux" else axes[:2]
+            rows += line(study, shown, SCHEMES[scheme] + ("" if dash == "-" else ", `flux`"), jobs, measures,
+                         linestyle=dash, **PEN[scheme])
+    for axis, label in zip(axes, ("error of D at the end", "velocity evaluations", "volume error without `exact`")):
+        axis.set(xscale="log", yscale="log", xlabel="Time/tolerance", ylabel=label)
         axis.invert_xaxis()
-    axes[0].plot([], [], ":", color=style.FAINT, label="Volume/constraint `flux`")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="upper right", ncols=3, fontsize=7,
-                  bbox_to_anchor=(1, 1.012), labelspacing=0.25)
-    return figure, ["scheme", "constraint", "tolerance", "deformation_error", "volume_error", "evaluations"], rows
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles[::2], labels[::2], loc="upper right", ncols=3, fontsize=7, title="dotted: constraint `flux`",
+                  title_fontsize=7, bbox_to_anchor=(1, 1.012), labelspacing=0.25)
+    return figure, ["scheme", "tolerance", "deformation_error", "evaluations", "volume_error", "message"], rows
 
 
 def quadrature_tolerance(study):
@@ -62,37 +50,24 @@ def quadrature_tolerance(study):
 
     Survives: any tolerance; four fixed points; the constraint, which closes the leak."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
-    base = {"Surface/elements per side": 4, "Time/final time": 3.0, "Output/interval": 3.0, "Time/tolerance": 1e-5}
+    base = {SIDE: 4, "Time/final time": 3.0, "Output/interval": 3.0, "Time/tolerance": 1e-5}
+    rules = (left, [{"Quadrature/tolerance": 10.0**-k} for k in range(1, 7)]), (
+        right, [{"Quadrature/points": points, "Quadrature/rule": "fixed"} for points in (2, 3, 4, 6, 8)])
     rows = []
-    for name, settings, color, mark in (("constraint `exact`", {"Volume/constraint": "exact"}, style.RUNS[0], "o"),
-                                        ("constraint `none`",
-                                         {"Volume/constraint": "none", "Membrane/load measure": "current"},
-                                         style.RUNS[1], "s")):
+    for name, settings, pen in (("exact", {"Volume/constraint": "exact"}, PENS[0]),
+                                ("none", {"Volume/constraint": "none", "Membrane/load measure": "current"}, PENS[1])):
         reference = study.run(SHEAR, base | settings | {"Quadrature/tolerance": 1e-9})
-        for axis, key, values in ((left, "tolerance", (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)),
-                                  (right, "points", (2, 3, 4, 6, 8))):
-            found = []
-            for value in values:
-                fixed = {"Quadrature/rule": "fixed", "Quadrature/points": value}
-                rule = {"Quadrature/tolerance": value} if key == "tolerance" else fixed
-                outcome = study.run(SHEAR, base | settings | rule)
-                if outcome.done:
-                    found.append((value, _error(outcome, reference), abs(outcome.series["volume_error"]).max()))
-                    rows.append((name, key, *found[-1], outcome.kernel_evaluations))
-            axis.plot([one[0] for one in found], [max(one[1], 1e-9) for one in found], color=color, marker=mark, ms=5,
-                      label=f"D, {name}")
-            if "none" in name:
-                axis.plot([one[0] for one in found], [one[2] for one in found], ":", color=color, marker=mark, ms=4,
-                          mfc="none", label=f"volume, {name}")
-    left.set_xscale("log")
+        for axis, chosen in rules:
+            jobs = {next(iter(one.values())): (SHEAR, base | settings | one) for one in chosen}
+            rows += line(study, [axis], f"D, constraint `{name}`", jobs, (_error(reference),), **pen)
+            if name == "none":
+                rows += line(study, [axis], "volume, constraint `none`", jobs, (worst("volume_error"),),
+                             linestyle=":", mfc="none", **pen)
+    left.set(xscale="log", yscale="log", xlabel="Quadrature/tolerance", ylabel="error")
     left.invert_xaxis()
-    left.set_xlabel("Quadrature/tolerance")
-    right.set_xlabel("Gauss points a direction, fixed rule")
-    for axis in left, right:
-        axis.set_yscale("log")
-    left.set_ylabel("error")
+    right.set(yscale="log", xlabel="Gauss points a direction, fixed rule")
     left.legend(loc="best")
-    return figure, ["constraint", "key", "value", "deformation_error", "volume_error", "kernel_evaluations"], rows
+    return figure, ["error", "tolerance_or_points", "value", "message"], rows
 
 
 def volume_drift(study):
@@ -105,21 +80,17 @@ def volume_drift(study):
     every step."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
     rows = []
-    for constraint, color in (("none", style.RUNS[1]), ("flux", style.RUNS[0]), ("exact", style.RUNS[2])):
-        outcome = study.run(SHEAR, {"Surface/elements per side": 4, "Membrane/capillary number": 0.6,
-                                    "Membrane/load measure": "current", "Volume/constraint": constraint,
-                                    "Time/final time": 20.0, "Output/interval": 20.0})
-        t = outcome.series["time"]
-        left.semilogy(t[1:], abs(outcome.series["volume_error"][1:]).clip(1e-16), color=color, label=f"`{constraint}`")
-        right.plot(t, outcome.series["taylor_inertia"], color=color)
-        rows += [(constraint, *values) for values in zip(t, outcome.series["volume_error"],
-                                                         outcome.series["taylor_inertia"])]
-    left.set_ylabel("volume error")
+    for constraint, color in zip(("flux", "none", "exact"), style.RUNS):
+        series = study.run(SHEAR, {SIDE: 4, "Membrane/capillary number": 0.6, "Membrane/load measure": "current",
+                                   "Volume/constraint": constraint, "Time/final time": 20.0,
+                                   "Output/interval": 20.0}).series
+        t, error, d = (series[name] for name in ("time", "volume_error", "taylor_inertia"))
+        left.semilogy(t[1:], abs(error[1:]).clip(1e-16), color=color, label=f"`{constraint}`")
+        right.plot(t, d, color=color)
+        rows += [(constraint, *values) for values in zip(t, error, d)]
+    left.set(xlabel="time", ylabel="volume error")
     left.legend(loc="center right")
-    right.set_ylabel("Taylor parameter D")
-    right.set_ylim(0.45, 0.6)
-    for axis in left, right:
-        axis.set_xlabel("time")
+    right.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.45, 0.6))
     return figure, ["constraint", "time", "volume_error", "taylor_inertia"], rows
 
 

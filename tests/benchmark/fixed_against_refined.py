@@ -8,100 +8,72 @@ Figures 17 and 18).
 
 import argparse
 
-from package import answer, draw, numpy, plt, style, tanktread
+from package import SIDE, answer, draw, numpy, plt, style, tanktread
 from matplotlib.collections import LineCollection
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("refined", nargs="?", help="directory of a run's results")
-    parser.add_argument("fixed", nargs="*", help="of others, to be compared with it")
+    parser.add_argument("runs", nargs="*", help="directories of results: a refined run, and those compared with it")
     parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE",
                         help="the picture (default: %(default)s)")
     parser.add_argument("--field", default="traction", help="field along the section (default: %(default)s)")
     arguments = parser.parse_args()
-
-    runs = [tanktread.run(directory) for directory in ([arguments.refined, *arguments.fixed]
-                                                       if arguments.refined else made())]
+    runs = [tanktread.run(directory) for directory in arguments.runs or made()]
     end = min(run.series["time"][-1] for run in runs)
     shots = [run.snapshot_at(end).scaled(run) for run in runs]
     names = [f"{run.name}, {run.series['n_control_points'][-1]:.0f} control points" for run in runs]
-    extent = shots[0].points.max(0) - shots[0].points.min(0)
-    columns = max(3, len(runs))
-    tall = 4.2 * (extent[2] / extent[0] + 0.25)
+    extent = numpy.ptp(shots[0].points, axis=0)
+    columns, tall = max(3, len(runs)), 4.2 * (extent[2] / extent[0] + 0.25)
     figure = plt.figure(figsize=(4.2 * columns, tall + 4.4), layout="constrained")
     grid = figure.add_gridspec(3, columns, height_ratios=[tall, 0.1, 3.4])
-    norm, colours = draw.scale([draw.magnitude(shot.fields[arguments.field]) for shot in shots])
-    for k, (shot, name) in enumerate(zip(shots, names)):
-        axis = figure.add_subplot(grid[0, k])
-        draw.draw_surface(axis, shot, arguments.field, norm, colours, *draw.VIEW)
-        axis.set_title(name)
-    vector = numpy.ndim(shots[0].fields[arguments.field]) > 1
-    words = tanktread.field_label(runs, arguments.field, "|{}|" if vector else "{}")
-    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
-                    label=words)
-
-    outline, tip, along = (figure.add_subplot(grid[2, k]) for k in range(3))
-    curves = []
-    for k, (shot, name, color) in enumerate(zip(shots, names, style.RUNS)):
-        look = {"color": color, "linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2)),
-                "zorder": 2 + k}
-        middle = (shot.points.min(0) + shot.points.max(0)) / 2
-        section = draw.section(shot, middle[1]) - middle[[0, 2]]
-        for axis in outline, tip:
-            axis.add_collection(LineCollection(section, colors=color, linewidths=look["linewidth"],
-                                               linestyles=look["linestyle"]))
-        curves.append(profile(shot, arguments.field))
-        along.plot(*by_distance(shot, arguments.field), label=name, **look)
-    outline.set_aspect("equal")
-    outline.autoscale_view()
-    reach = outline.dataLim.x1
-    tip.set_xlim(0.9 * reach, 1.01 * reach)
-    tip.set_ylim(-0.11 * reach, 0.11 * reach)
-    outline.add_patch(plt.Rectangle((0.9 * reach, -0.11 * reach), 0.11 * reach, 0.22 * reach, fill=False,
-                                    edgecolor=style.FAINT, linewidth=0.8))
-    for axis, title in (outline, "the section x₂ = 0"), (tip, "its tip"):
-        axis.set_title(title)
-        axis.set_xlabel("x₁ / R$_C$")
-        axis.set_ylabel("x₃ / R$_C$")
-    along.set_title(f"{arguments.field} on the section near the tip")
-    along.set_xlabel("x₃ / R$_C$")
-    along.set_ylabel(words)
-    along.set_xlim(-0.11 * reach, 0.11 * reach)
-    along.set_ylim(bottom=0)
-    along.legend(loc="upper left", bbox_to_anchor=(0, -0.2))
+    words = draw_surfaces(figure, grid, runs, shots, names, arguments.field)
+    draw_sections(*(figure.add_subplot(grid[2, k]) for k in range(3)), shots, names, arguments.field, words)
+    curves = [draw.on_section(shot, arguments.field) for shot in shots]
+    curves = [(angle, numpy.linalg.norm(values, axis=1)) for angle, _, values in curves]
+    first, top = curves[0], curves[0][1].max()
     for run, (angle, values) in zip(runs[1:], curves[1:]):
-        print(f"{run.name}: largest {arguments.field} {largest(values):.5g} against {largest(curves[0][1]):.5g}, "
-              f"largest difference on the section {100 * difference(curves[0], (angle, values)):.2f} % of the largest")
+        change = abs(numpy.interp(first[0], angle, values, period=2 * numpy.pi) - first[1]).max()
+        print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {top:.5g}, largest difference on the "
+              f"section {100 * change / top:.2f} % of the largest")
     style.save(figure, arguments.output)
 
 
 def made():
-    deck = tanktread.SOURCE / "inputs" / "hyperbolic_skalak_ca0.8.yaml"
-    fixed = {"Adaptation/enabled": "false", "Surface/elements per side": 10}
+    deck, fixed = "inputs/hyperbolic_skalak_ca0.8.yaml", {"Adaptation/enabled": "false", SIDE: 10}
     return [tanktread.results_of(deck), tanktread.results_of(deck, "fixed_against_refined/fixed", fixed)]
 
 
-def profile(shot, field):
-    """Magnitude of a field on the section, by angle."""
-    angle, _, values = draw.on_section(shot, field)
-    return angle, numpy.linalg.norm(values, axis=1)
+def draw_surfaces(figure, grid, runs, shots, names, field):
+    """Draws the surfaces in the first row, and returns the label of the field."""
+    norm, colours = draw.scale([draw.magnitude(shot.fields[field]) for shot in shots])
+    for k, (shot, name) in enumerate(zip(shots, names)):
+        axis = figure.add_subplot(grid[0, k])
+        draw.draw_surface(axis, shot, field, norm, colours, *draw.VIEW)
+        axis.set_title(name)
+    words = tanktread.field_label(runs, field, "|{}|" if shots[0].fields[field].ndim > 1 else "{}")
+    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
+                    label=words)
+    return words
 
 
-def by_distance(shot, field):
-    """x3 and the field's magnitude on that half of the section where x1 is above the middle."""
-    ends = draw.field_cut(shot, field).mean(axis=1)
-    ends = ends[ends[:, 0] > 0]
-    ends = ends[numpy.argsort(ends[:, 2])]
-    return ends[:, 2], numpy.linalg.norm(ends[:, 3:], axis=1)
-
-
-def largest(values):
-    return numpy.max(values)
-
-
-def difference(one, other):
-    return numpy.max(abs(numpy.interp(one[0], *other, period=2 * numpy.pi) - one[1])) / largest(one[1])
+def draw_sections(outline, tip, along, shots, names, field, words):
+    for k, (shot, name, color) in enumerate(zip(shots, names, style.RUNS)):
+        look = {"linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2))}
+        middle = (shot.points.min(0) + shot.points.max(0)) / 2
+        section = draw.section(shot, middle[1]) - middle[[0, 2]]
+        for axis in outline, tip:
+            axis.add_collection(LineCollection(section, colors=color, **look))
+        along.plot(*draw.near_tip(shot, field)[1:], label=name, color=color, zorder=2 + k, **look)
+    outline.autoscale_view()
+    reach = outline.dataLim.x1
+    low, size = -0.11 * reach, 0.22 * reach
+    outline.add_patch(plt.Rectangle((0.9 * reach, low), size / 2, size, fill=False, edgecolor=style.FAINT))
+    outline.set(aspect="equal", title="the section x₂ = 0", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$")
+    tip.set(xlim=(0.9 * reach, 1.01 * reach), ylim=(low, -low), title="its tip", xlabel="x₁ / R$_C$")
+    along.set(title=f"{field} on the section near the tip", xlabel="x₃ / R$_C$", ylabel=words, xlim=(low, -low),
+              ylim=(0, None))
+    along.legend(loc="upper left", bbox_to_anchor=(0, -0.2))
 
 
 if __name__ == "__main__":

@@ -12,94 +12,63 @@ import argparse
 import json
 import pathlib
 import subprocess
-import sys
 
-from package import answer, numpy, plt, style, tanktread
+from package import answer, expect, numpy, plt, style, table, tanktread
+from tanktread.files import parsed as read
 
-PARTS = [("evaluation s", "whole evaluation"), ("layer far s", "far sum"), ("layer near s", "near elements"),
-         ("layer self s", "own elements"), ("layer setup s", "nodes and forces"), ("projection s", "sparse solves"),
-         ("membrane s", "membrane")]
-
-
-def rows(benchmarks, dense):
-    """Of one kind of far sum, by control points."""
-    chosen = [one for one in benchmarks if one["name"].startswith("growth/") and f"/dense:{int(dense)}" in one["name"]]
-    return sorted(chosen, key=lambda one: one["points"])
-
-
-def exponent(chosen, key, least):
-    """Slope of log(key) over log(points), or None for fewer than two meshes."""
-    known = [one for one in chosen if one["points"] >= least and one.get(key, 0) > 0]
-    if len(known) < 2:
-        return None
-    return numpy.polyfit(numpy.log([one["points"] for one in known]), numpy.log([one[key] for one in known]), 1)[0]
-
-
-def table(trees, dense, least):
-    keys = ["evaluation s", "layer far s", "layer near s", "layer self s", "layer setup s", "projection s",
-            "membrane s", "volume s", "setup s", "far interactions", "far error", "bytes kept", "bytes peak"]
-    print(f"{'':>18}" + "".join(f"{one['points']:>12.0f}" for one in trees) + f"{'exponent':>12}{'step by step':>16}")
-    for key in keys:
-        slope = exponent(trees, key, least)
-        known = [one for one in trees if one["points"] >= least]
-        steps = [numpy.log(b[key] / a[key]) / numpy.log(b["points"] / a["points"]) for a, b in zip(known, known[1:])]
-        print(f"{key:>18}" + "".join(f"{one[key]:>12.4g}" for one in trees) + (""
-                                                                               if slope is None else f"{slope:>12.2f}")
-              + "".join(f"{step:>8.2f}" for step in steps))
-    for one in dense:
-        print(f"{'dense':>18}  {one['points']:.0f} control points: {one['evaluation s']:.4g} s, "
-              f"{one['far interactions']:.4g} far interactions")
-
-
-def draw(axis, chosen, key, label, color, least, line="o-"):
-    slope = exponent(chosen, key, least)
-    text = label if slope is None else f"{label}: $N^{{{slope:.2f}}}$"
-    axis.loglog([one["points"] for one in chosen], [one[key] for one in chosen], line, color=color, ms=4, label=text)
+PARTS = {"evaluation s": "whole evaluation", "layer far s": "far sum", "layer near s": "near elements",
+         "layer self s": "own elements", "layer setup s": "nodes and forces", "projection s": "sparse solves",
+         "membrane s": "membrane"}
+KEYS = [*PARTS, "volume s", "setup s", "far interactions", "far error", "bytes kept", "bytes peak"]
 
 
 def measured():
-    """The file that the benchmark writes, which is run when there is none."""
+    """Returns the file that the benchmark writes, which is run if there is none."""
     path, program = pathlib.Path("results/growth.json"), tanktread.SOURCE / "build/release/tests/benchmark/benchmark"
     if not path.exists():
-        if not program.exists():
-            sys.exit(f"{program} does not exist: build it (tests/run does)")
+        expect(program.exists(), f"{program} does not exist: build it (tests/run does)")
         path.parent.mkdir(exist_ok=True)
         subprocess.run([program, "--benchmark_filter=growth", f"--benchmark_out={path}"], check=True)
     return path
 
 
+def exponent(meshes, key, least):
+    """Returns the slope of log(key) over log(points), as text, or "" for fewer than two meshes."""
+    known = [(one["points"], one[key]) for one in meshes if one["points"] >= least and one.get(key, 0) > 0]
+    return f"{numpy.polyfit(*numpy.log(known).T, 1)[0]:.2f}" if len(known) > 1 else ""
+
+
+def draw(axis, meshes, lines, least, colors, dash="o-"):
+    for (key, label), color in zip(lines.items(), colors):
+        slope = exponent(meshes, key, least)
+        axis.loglog([one["points"] for one in meshes], [one[key] for one in meshes], dash, color=color, ms=4,
+                    label=f"{label}: $N^{{{slope}}}$" if slope else label)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("file", nargs="?",
-                        help="what the benchmark wrote (default: results/growth.json, written now if it is not there)")
+    parser.add_argument("file", nargs="?", help="what the benchmark wrote (default: results/growth.json, "
+                        "written now if it is not there)")
     parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS",
                         help="fit from here on (default: %(default)g)")
-    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE",
-                        help="the picture (default: %(default)s)")
+    parser.add_argument("-o", "--output", default="growth.png", metavar="FILE", help="default: %(default)s")
     arguments = parser.parse_args()
-    if arguments.file and not pathlib.Path(arguments.file).is_file():
-        sys.exit(f"{arguments.file} is no file: give what the benchmark wrote")
-    with open(arguments.file or measured()) as stream:
-        benchmarks = json.load(stream)["benchmarks"]
-    trees, dense = rows(benchmarks, False), rows(benchmarks, True)
-    table(trees, dense, arguments.least)
-
+    found = read(arguments.file or measured(), json.loads)["benchmarks"]
+    trees, dense = ([one for one in sorted(found, key=lambda one: one.get("points", 0))
+                     if one["name"].startswith("growth/") and f"/dense:{kind}" in one["name"]] for kind in (0, 1))
+    table(["", *(f"{one['points']:.0f}" for one in trees), "exponent"], (
+        [key, *(f"{one[key]:.4g}" for one in trees), exponent(trees, key, arguments.least)] for key in KEYS))
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.6, 4.4))
-    colors = style.RUNS + [style.FAINT, style.INK]
-    for (key, label), color in zip(PARTS, colors):
-        draw(left, trees, key, label, color, arguments.least)
+    colors, faint = style.RUNS + [style.FAINT, style.INK], [style.FAINT]
+    draw(left, trees, PARTS, arguments.least, colors)
+    draw(middle, trees, {"far interactions": "far sum as chosen"}, arguments.least, colors)
+    draw(right, trees, {"bytes peak": "highest", "bytes kept": "kept"}, arguments.least, colors)
     if dense:
-        draw(left, dense, "evaluation s", "whole, far sum dense", style.FAINT, arguments.least, "o--")
-    left.set_title("processor seconds of one velocity evaluation")
-    draw(middle, trees, "far interactions", "far sum as chosen", style.RUNS[0], arguments.least)
-    if dense:
-        draw(middle, dense, "far interactions", "dense", style.FAINT, arguments.least, "o--")
-    middle.set_title("pairs of points in the far sum")
-    draw(right, trees, "bytes peak", "highest", style.RUNS[0], arguments.least)
-    draw(right, trees, "bytes kept", "kept", style.RUNS[1], arguments.least)
-    right.set_title("bytes, mesh and fit not counted")
-    for axis in (left, middle, right):
-        axis.set_xlabel("control points")
+        draw(left, dense, {"evaluation s": "whole, far sum dense"}, arguments.least, faint, "o--")
+        draw(middle, dense, {"far interactions": "dense"}, arguments.least, faint, "o--")
+    for axis, title in ((left, "processor seconds of one velocity evaluation"),
+                        (middle, "pairs of points in the far sum"), (right, "bytes, mesh and fit not counted")):
+        axis.set(title=title, xlabel="control points")
         axis.legend(loc="upper left")
     left.set_ylim(top=left.get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)

@@ -25,7 +25,7 @@ import tempfile
 
 import yaml
 
-from package import answer, tanktread
+from package import answer, table, tanktread
 
 
 def summaries(program, deck, settings, ranks, copies):
@@ -79,20 +79,18 @@ def main():
             runs[kind] += summaries(arguments.program, arguments.deck, settings, ranks, copies)
     times = {kind: [seconds(summary) for summary in of_kind] for kind, of_kind in runs.items()}
     titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
-    print(f"{'seconds':>18}" + "".join(f"{title:>11}" for title in titles))
+    rows = []
     for phase in times["one"][0]:
         middle = {kind: statistics.median(run.get(phase, 0) for run in all_runs) for kind, all_runs in times.items()}
-        if min(middle.values()) <= 0:
-            continue
-        ratio = middle["one"] / middle["many"]
-        line = f"{phase:>18}{middle['one']:>11.4g}{middle['many']:>11.4g}{ratio:>11.2f}"
-        if arguments.capacity:
-            capacity = many * middle["one"] / middle["side"]
-            line += f"{capacity:>11.2f}{ratio / capacity:>11.2f}"
-        print(line)
+        if min(middle.values()) > 0:
+            ratio = middle["one"] / middle["many"]
+            capacity = [many * middle["one"] / middle["side"]] if arguments.capacity else []
+            rows.append([phase, middle["one"], middle["many"], ratio, *capacity, *(ratio / one for one in capacity)])
+    table(["seconds", *titles], rows)
+    one, other = runs["one"][0], runs["many"][0]
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
-        print(f"{key:>24}{runs['one'][0]['counts'][key]:>16.10g}{runs['many'][0]['counts'][key]:>16.10g}")
-    print(f"{'difference of D':>24}{difference(runs['one'][0], runs['many'][0]):>16.1e}")
+        print(f"{key}: {one['counts'][key]:.10g} and {other['counts'][key]:.10g}")
+    print(f"difference of D {difference(one, other):.1e}")
 
 
 if __name__ == "__main__":

@@ -15,16 +15,17 @@ NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how fa
 """
 
 import argparse
+import itertools
 import os
 import pathlib
 
-from package import answer, numpy, tanktread
+from package import INPUTS, SIDE, answer, expect, numpy, table, tanktread
 import scipy.interpolate
 import scipy.ndimage
 
 from tanktread.studies import fit_data, fit_model, outline, silhouette
 
-DECK = tanktread.SOURCE / "inputs" / "studies" / "capsule_in_tube.yaml"
+DECK = INPUTS / "studies/capsule_in_tube.yaml"
 FINE = {"Quadrature/tolerance": 1e-8, "Steady/tolerance": 1e-10}  # shapes that noise is not to hide
 LAWS = {"neo-Hookean": {"Membrane/law": "neo-Hookean"},
         "Skalak, C = 1": {"Membrane/law": "Skalak", "Membrane/area dilatation": 1.0}}
@@ -38,19 +39,17 @@ ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
 
 def profile(study, settings):
     outcome = study.run(DECK, settings)
-    if not outcome.done:
-        raise SystemExit(f"a run failed: {outcome.message}")
+    expect(outcome.done, f"a run failed: {outcome.message}")
     return silhouette.seen(outcome.run.snapshots()[-1]).centred()
 
 
 def radii(curve):
-    """Distances of a curve from its centroid at ANGLES."""
+    """Returns the distances of a curve from its centroid at ANGLES."""
     points = curve.even(3000)
+    points = numpy.vstack([points, points[:1]])
     angle = numpy.unwrap(numpy.arctan2(points[:, 1], points[:, 0]))
-    closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
-    length = numpy.linalg.norm(numpy.vstack([points, points[:1]]), axis=1)
-    return scipy.interpolate.CubicSpline(closed, length,
-                                         bc_type="periodic")(angle[0] + (ANGLES - angle[0]) % (2 * numpy.pi))
+    spline = scipy.interpolate.CubicSpline(angle, numpy.linalg.norm(points, axis=1), bc_type="periodic")
+    return spline(angle[0] + (ANGLES - angle[0]) % (2 * numpy.pi))
 
 
 class Emulator:
@@ -68,9 +67,9 @@ class Emulator:
         self._radii = scipy.interpolate.BarycentricInterpolator(nodes, values)
 
     def curve(self, capillary_number):
-        return silhouette.Outline(self._radii(numpy.log(capillary_number))[:,
-                                                                           None]
-                                  * numpy.column_stack([numpy.cos(ANGLES), numpy.sin(ANGLES)])).centred()
+        radius = self._radii(numpy.log(capillary_number))
+        points = numpy.column_stack([radius * numpy.cos(ANGLES), radius * numpy.sin(ANGLES)])
+        return silhouette.Outline(points).centred()
 
     def all(self, jobs):
         numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
@@ -100,9 +99,8 @@ def fitted(law, data, runs, start, settings=None):
 
 def exact(study):
     for law in LAWS:
-        curves = [profile(study, LAWS[law] | FINE | {"Flow/mean velocity": speed,
-                                                     "Membrane/shear modulus": MODULUS}).even(POINTS)
-                  for speed in SPEEDS]
+        base = LAWS[law] | FINE | {"Membrane/shear modulus": MODULUS}
+        curves = [profile(study, base | {"Flow/mean velocity": speed}).even(POINTS) for speed in SPEEDS]
         runs = fit_model.Runs(study, [DECK], law)
         one = fitted(law, experiments(curves, [0.005 * RADIUS] * len(SPEEDS)), runs, 10 * MODULUS, FINE)
         print(f"{law}, no noise, start {10 * MODULUS:g}: G_s / true - 1 = "
@@ -110,30 +108,26 @@ def exact(study):
 
 
 def told(law, noise, fits):
-    """One row about many samples: fits of the true law and of the other."""
+    """Returns one row about many samples: fits of the true law and of the other."""
     values = numpy.array([true.unknowns[0].value(true.x[0]) for true, _ in fits]) / MODULUS - 1
-    stated = numpy.array([true.number_errors[0] for true, _ in fits])
-    n, apart = len(fits), sum(other.aic - true.aic > 10 for true, other in fits)
-    wrong, runs = sum(other.aic - true.aic < -10 for true, other in fits), sum(other.runs_test() < -2 for _,
-                                                                               other in fits)
-    print(f"| {law} | {noise} | {100 * values.mean():+.3f} % ± {100 * values.std(ddof=1) / numpy.sqrt(n):.3f} % | "
-          f"{100 * values.std(ddof=1):.3f} % | " f"{100 * stated.mean():.3f} % | "
-                                                 f"{values.std(ddof=1) / stated.mean():.2f} | {apart} of {n}, wrongly "
-                                                 f"{wrong} | {runs} |", flush=True)
+    stated, spread = numpy.mean([true.number_errors[0] for true, _ in fits]), values.std(ddof=1)
+    gaps = numpy.array([other.aic - true.aic for true, other in fits])
+    return [law, noise, f"{100 * values.mean():+.3f} % ± {100 * spread / numpy.sqrt(len(fits)):.3f} %",
+            f"{100 * spread:.3f} %", f"{100 * stated:.3f} %", f"{spread / stated:.2f}",
+            f"{(gaps > 10).sum()} of {len(fits)}, wrongly {(gaps < -10).sum()}",
+            sum(other.runs_test() < -2 for _, other in fits)]
 
 
-def emulators(study):
+def print_rows(study, seed, rows):
+    """Makes the emulators, prints how far they are from runs in between, and a table of the rows."""
     made = {law: Emulator(study, law) for law in LAWS}
     for law, one in made.items():
-        off = [abs(one.curve(number).distances(profile(study,
-                                                       LAWS[law] | FINE
-                                                       | {"Membrane/shear modulus": 1 / number}).even(POINTS))).max()
-               for number in (0.02, 0.08)]
-        print(f"{law}: the emulator is {max(off) / RADIUS:.1e} of the radius from runs in between")
-    print("| law | noise | mean error of G_s ± its standard error | spread | stated error | spread / stated | law "
-          "told (AIC + 10) | runs test refuses the other |")
-    print("|---|---|---|---|---|---|---|---|")
-    return made
+        known = {number: profile(study, LAWS[law] | FINE | {"Membrane/shear modulus": 1 / number})
+                 for number in (0.02, 0.08)}
+        off = max(abs(one.curve(number).distances(curve.even(POINTS))).max() for number, curve in known.items())
+        print(f"{law}: the emulator is {off / RADIUS:.1e} of the radius from runs in between")
+    table(["law", "noise", "mean error of G_s ± its standard error", "spread", "stated error", "spread / stated",
+           "law told (AIC + 10)", "runs test refuses the other"], rows(made, numpy.random.default_rng(seed)))
 
 
 def both(law, data, made):
@@ -142,15 +136,15 @@ def both(law, data, made):
 
 
 def samples(study, number):
-    made, generator = emulators(study), numpy.random.default_rng(1)
-    for law in LAWS:
-        truth = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS]
-        for noise in 0.005, 0.02:
-            fits = []
+    def rows(made, generator):
+        for law, noise in itertools.product(LAWS, (0.005, 0.02)):
+            truth, fits = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS], []
             for _ in range(number):
                 noisy = [points + noise * RADIUS * generator.standard_normal(points.shape) for points in truth]
                 fits.append(both(law, experiments(noisy, [noise * RADIUS] * len(SPEEDS)), made))
-            told(law, f"{100 * noise:g} %", fits)
+            yield told(law, f"{100 * noise:g} %", fits)
+
+    print_rows(study, 1, rows)
 
 
 def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
@@ -169,21 +163,21 @@ def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
 
 
 def pictures(study, number):
-    made, generator = emulators(study), numpy.random.default_rng(2)
-    for law in LAWS:
-        truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
-        for _ in range(number):
-            points, errors = [], []
-            for curve in truth:
-                image, length, shift = picture(curve, generator)
-                found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
-                placed = (found - (image.shape[0] - 1) / 2) * [1, -1] + shift
-                off.append(curve.distances(placed * length) / length)
-                points.append(placed * length)
-                errors.append(error * length)
-            fits.append(both(law, experiments(points, errors), made))
-        off = numpy.concatenate(off)
-        told(law, f"pictures; edge {off.mean():+.3f} ± {off.std():.3f} pixel", fits)
+    def rows(made, generator):
+        for law in LAWS:
+            truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
+            for _ in range(number):
+                points, errors = [], []
+                for curve in truth:
+                    image, length, shift = picture(curve, generator)
+                    found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
+                    points.append(((found - (image.shape[0] - 1) / 2) * [1, -1] + shift) * length)
+                    off.extend(curve.distances(points[-1]) / length)
+                    errors.append(error * length)
+                fits.append(both(law, experiments(points, errors), made))
+            yield told(law, f"pictures; edge {numpy.mean(off):+.3f} ± {numpy.std(off):.3f} pixel", fits)
+
+    print_rows(study, 2, rows)
 
 
 def write(study, directory):
@@ -192,10 +186,9 @@ def write(study, directory):
     generator = numpy.random.default_rng(5)
     directory.mkdir(parents=True, exist_ok=True)
     for speed in SPEEDS:
-        curve = profile(study, {"Surface/elements per side": 8, "Flow/mean velocity": speed,
-                                "Membrane/shear modulus": MODULUS})
-        points = 100 * (curve.even(POINTS) + 0.005 * RADIUS
-                        * generator.standard_normal((POINTS, 2))) + generator.uniform(150, 250, 2)
+        curve = profile(study, {SIDE: 8, "Flow/mean velocity": speed, "Membrane/shear modulus": MODULUS})
+        noise = 0.005 * RADIUS * generator.standard_normal((POINTS, 2))
+        points = 100 * (curve.even(POINTS) + noise) + generator.uniform(150, 250, 2)
         path = directory / f"profile_{speed}.csv"
         numpy.savetxt(path, points, delimiter=",", header="x1,x3", comments="", fmt="%.2f")
         print(path)

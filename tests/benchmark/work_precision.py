@@ -15,88 +15,96 @@ import argparse
 import itertools
 import math
 import pathlib
-import sys
 
-from package import answer, interpolation, numpy, plt, studies, style
-import yaml
+from package import answer, expect, interpolation, numpy, plt, studies, style
+from tanktread.files import parsed as read
+from tanktread.files import table
+
+COSTS = {"seconds": "processor seconds", "kernels": "kernel evaluations"}
 
 
 class Scene:
-    """A study file. `options(choice)`: {option: settings}; the first is the default."""
+    """A study file. `choices`: {choice: {option: settings}}; the first option is the default."""
 
     def __init__(self, path, curves, without=()):
-        if not pathlib.Path(path).is_file():
-            sys.exit(f"{path} is no file: give a study of tests/benchmark")
-        text = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
-        self.name, self.title = pathlib.Path(path).stem, text["title"]
-        self.decks, self.base, self.choices = text["deck"], text.get("base", {}), text["choices"]
-        self.choices = {choice: {name: keys for name, keys in options.items() if name not in without} for choice,
-                        options in self.choices.items()}
-        self.error, self.levels = text["error"], text.get("levels", [1e-3, 1e-4, 1e-5])
-        self.pairs = text.get("pairs")
-        self.curves = curves
+        text = read(path)
+        self.name, self.title, self.curves = pathlib.Path(path).stem, text["title"], curves
+        self.decks, self.base, self.error = text["deck"], text.get("base", {}), text["error"]
+        self.choices = {choice: {name: keys or {} for name, keys in options.items() if name not in without}
+                        for choice, options in text["choices"].items()}
+        self.levels, self.pairs = text.get("levels", [1e-3, 1e-4, 1e-5]), text.get("pairs")
+        self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
+        # the choice that colours stand for: the one with most options, the scheme before others
+        self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
 
-    def default(self):
-        return {choice: next(iter(options)) for choice, options in self.choices.items()}
-
-    def settings(self, picked):
-        merged = dict(self.base)
-        for choice, option in picked.items():
-            merged |= self.choices[choice][option] or {}
-        return merged
+    def label(self, picked):
+        """Returns what differs from the default."""
+        return ", ".join(option for choice, option in picked.items() if option != self.default[choice]) or "default"
 
     def combinations(self, differences, only):
-        """The default, then every pick that differs from it in one choice, then in two."""
-        default = self.default()
-        yield default
+        """Yields the default, then every pick that differs from it in one choice, then in two."""
+        yield self.default
         choices = [choice for choice in self.choices if not only or choice in only]
         groups = [(choice,) for choice in choices]
         if differences > 1:
-            groups += [pair for pair in itertools.combinations(choices, 2) if self.pairs is None
-                       or any(set(pair) == set(wanted) for wanted in self.pairs)]
+            groups += [pair for pair in itertools.combinations(choices, 2)
+                       if self.pairs is None or set(pair) in map(set, self.pairs)]
         for group in groups:
-            others = [[option for option in self.choices[choice] if option != default[choice]] for choice in group]
+            others = [[option for option in self.choices[choice] if option != self.default[choice]] for choice in group]
             for options in itertools.product(*others):
-                yield default | dict(zip(group, options))
-
-    def against(self):
-        """What stands after the error's text: a curve of the literature is taken where its folder is given."""
-        if "curve" not in self.error:
-            return ""
-        return f", against {self.error['curve']}" if self.curves else ", against a finer run"
+                yield self.default | dict(zip(group, options))
 
     def errors(self, study):
-        """The function outcome -> error."""
+        """Returns the function outcome -> error. A curve of the literature is taken if its folder is given."""
         if "final" in self.error:
             return lambda outcome: abs(outcome.final[self.error["final"]] - self.error.get("value", 0.0))
         series = self.error["series"]
         if self.curves and "curve" in self.error:
-            curve = numpy.genfromtxt(self.curves / self.error["curve"], delimiter=",", names=True)
+            curve = table(self.curves / self.error["curve"], ("t", series))
             t, values = curve["t"], curve[series]
         else:
             reference = study.run(self.decks, self.base | self.error["reference"])
-            if not reference.done:
-                raise SystemExit(f"the reference run failed: {reference.message}")
+            expect(reference.done, f"the reference run failed: {reference.message}")
             t, values = reference.series["time"], reference.series[series]
         return lambda outcome: interpolation.difference(outcome.series["time"], outcome.series[series], t, values)
 
+    def points(self, study, differences, only):
+        """Makes the runs and returns those that came to their end as Points, and rows of all for the table."""
+        error_of, points, rows = self.errors(study), [], []
+        for picked in self.combinations(differences, only):
+            settings = dict(self.base)
+            for choice, option in picked.items():
+                settings |= self.choices[choice][option]
+            ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
+            outcome, label = study.run(decks, settings, ranks), self.label(picked)
+            if not outcome.done:
+                why = "not in this program" if outcome.refused else "failed"
+                print(f"{label}: {why}: {outcome.message}", flush=True)
+                rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
+                continue
+            points.append(Point(picked, label, outcome, error_of(outcome), kind(picked[self.shape])))
+            one = points[-1]
+            rows.append((*picked.values(), one.error, one.seconds, one.kernels, one.evaluations, ""))
+            print(f"{label:44} error {one.error:.2e}  {one.seconds:7.2f} s  {one.kernels:.3g} kernel, "
+                  f"{one.evaluations} velocity evaluations", flush=True)
+        return points, rows
+
 
 class Point:
-    def __init__(self, picked, default, outcome, error):
-        self.picked, self.outcome, self.error = picked, outcome, error
+    def __init__(self, picked, label, outcome, error, kind):
+        self.picked, self.label, self.error, self.kind = picked, label, error, kind
         self.seconds, self.kernels = outcome.processor_seconds, outcome.kernel_evaluations
         self.evaluations = outcome.counts.get("evaluations", 1)
-        self.label = ", ".join(option for choice, option in picked.items() if option != default[choice]) or "default"
 
 
 def kind(option):
-    """An option without its number: `tr-bdf2 1e-4` is a `tr-bdf2`."""
+    """Returns an option without its number: `tr-bdf2 1e-4` is a `tr-bdf2`."""
     name, _, number = option.rpartition(" ")
     return name if name and number[0].isdigit() else option
 
 
 def front(points, cost):
-    """Those that no other beats in both, by rising cost."""
+    """Returns the points that no other beats in both, by rising cost."""
     best, kept = math.inf, []
     for point in sorted(points, key=lambda one: (getattr(one, cost), one.error)):
         if point.error < best:
@@ -105,65 +113,61 @@ def front(points, cost):
     return kept
 
 
-def draw(axis, points, cost, label, colors, shape, families, numbers):
-    """Every run, lines through those of a family, and the front: filled, with its numbers."""
+def draw(axis, points, cost, colors, families, numbers):
+    """Draws every run, lines through the runs of a family, and the front: filled, with its numbers."""
+    def path(line):
+        return [getattr(one, cost) for one in line], [one.error for one in line]
+
     kept = front(points, cost)
     for family in families:
-        line = sorted(family, key=lambda one: getattr(one, cost))
-        axis.loglog([getattr(one, cost) for one in line], [one.error for one in line],
-                    color=colors[kind(line[0].picked[shape])], linewidth=0.7, alpha=0.55, zorder=1)
-    axis.loglog([getattr(one, cost) for one in kept], [one.error for one in kept], color=style.INK, linewidth=1.4,
-                zorder=2)
-    for point in points:
-        color = colors[kind(point.picked[shape])]
-        axis.plot(getattr(point, cost), point.error, "o", color=color, ms=5.5 if point in kept else 3.5,
-                  mfc=color if point in kept else "white", mew=0.9, zorder=3)
-        if point in kept:
-            axis.annotate(numbers[point], (getattr(point, cost), point.error), (-4, -4), textcoords="offset points",
+        axis.loglog(*path(sorted(family, key=lambda one: getattr(one, cost))), color=colors[family[0].kind],
+                    linewidth=0.7, alpha=0.55, zorder=1)
+    axis.loglog(*path(kept), color=style.INK, linewidth=1.4, zorder=2)
+    for one in points:
+        color, chosen = colors[one.kind], one in kept
+        axis.plot(*path([one]), "o", color=color, ms=5.5 if chosen else 3.5, mfc=color if chosen else "white", mew=0.9,
+                  zorder=3)
+        if chosen:
+            axis.annotate(numbers[one], (getattr(one, cost), one.error), (-4, -4), textcoords="offset points",
                           fontsize=7.5, ha="right", va="top")
-    axis.plot(getattr(points[0], cost), points[0].error, "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
-    axis.set_xlabel(label)
+    axis.plot(*path(points[:1]), "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
+    axis.set_xlabel(COSTS[cost])
 
 
-def families_of(points, choices, shape):
-    """Where a study has two choices: the runs that share an option of the one that colours stand for, told apart by the
-    other."""
-    if len(choices) != 2:
-        return []
-    return [[one for one in points if one.picked[shape] == option]
-            for option in dict.fromkeys(one.picked[shape] for one in points)]
+def draw_legend(axis, colors, numbers):
+    for name, color in colors.items():
+        axis.plot([], [], "o", color=color, ms=5, label=name)
+    axis.plot([], [], "o", ms=10, mfc="none", mec=style.INK, label="the default")
+    axis.plot([], [], color=style.INK, label="Pareto front:")
+    axis.axis("off")
+    axis.legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
+    lines = len(axis.get_legend_handles_labels()[0])
+    axis.text(0, 0.97 - 0.047 * lines, "\n".join(f"{number:2}  {one.label}" for one, number in numbers.items()),
+              transform=axis.transAxes, va="top", fontsize=7.5, linespacing=1.5)
 
 
 def report(scene, points):
-    """The default against the front; what each option of each choice needs at best for a level of error."""
+    """Prints the default against the front, and what each option of each choice needs at best for a level of error."""
     default = points[0]
-    for cost, unit in (("seconds", "s"), ("kernels", "kernel evaluations")):
-        better = [one for one in points if getattr(one, cost) < getattr(default, cost) and one.error <= default.error]
-        if better:
-            best = min(better, key=lambda one: getattr(one, cost))
-            print(f"the default is not on the front of {cost}: {best.label} has error {best.error:.2e} for "
-                  f"{getattr(best, cost):.4g} {unit}, " f"the default {default.error:.2e} for "
-                                                        f"{getattr(default, cost):.4g}, "
-                                                        f"{getattr(default, cost) / getattr(best, cost):.2f} times as "
-                                                        "much")
-        else:
-            print(f"the default is on the front of {cost}: {default.error:.2e} for {getattr(default, cost):.4g} {unit}")
+    for cost, unit in COSTS.items():
+        best = min((one for one in points if one.error <= default.error), key=lambda one: getattr(one, cost))
+        mine, least = getattr(default, cost), getattr(best, cost)
+        print(f"the default has error {default.error:.2e} for {mine:.4g} {unit}; the least for that is {least:.4g}, "
+              f"{mine / least:.2f} times less, by {best.label} with error {best.error:.2e}")
     for level in scene.levels:
         reaching = [one for one in points if one.error <= level]
         if not reaching:
             print(f"error {level:g}: none")
             continue
-        best = min(reaching, key=lambda one: one.seconds)
+        best, least = (min(reaching, key=lambda one: getattr(one, cost)) for cost in COSTS)
         print(f"error {level:g}: best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
               f"{best.evaluations} velocity evaluations")
-        for choice, options in scene.choices.items():
-            for option in options:
-                these = [one for one in reaching if one.picked[choice] == option]
-                if these and len(options) > 1:
-                    quickest, least = min(these, key=lambda one: one.seconds), min(these, key=lambda one: one.kernels)
-                    print(f"    {choice:14} {option:26} {quickest.seconds:9.3g} s "
-                          f"({quickest.seconds / best.seconds:6.2f} x)  {least.kernels:9.3g} kernels "
-                          f"({least.kernels / min(one.kernels for one in reaching):6.2f} x)  {quickest.label}")
+        for choice, option in [(choice, option) for choice, options in scene.choices.items() for option in options]:
+            these = [one for one in reaching if one.picked[choice] == option]
+            if these:
+                quick, lean = (min(these, key=lambda one: getattr(one, cost)) for cost in COSTS)
+                print(f"    {choice:14} {option:26} {quick.seconds:9.3g} s ({quick.seconds / best.seconds:6.2f} x)  "
+                      f"{lean.kernels:9.3g} kernels ({lean.kernels / least.kernels:6.2f} x)  {quick.label}")
 
 
 def main():
@@ -172,62 +176,35 @@ def main():
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2),
                         help="choices that may differ from the default at a time (default: 2)")
     parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
-    parser.add_argument("--without", nargs="+", default=[], metavar="OPTION",
-                        help="leave these options of the choices out")
+    parser.add_argument("--without", nargs="+", default=[], metavar="OPTION", help="leave these options out")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR",
                         help="folder of reference curves (default: none, a run of the study's `reference` instead)")
-    studies.arguments(parser, "results/work_precision")
+    studies.arguments(parser, pathlib.Path("results/work_precision"))
     parsed = parser.parse_args()
-    study, scene = studies.study(parsed), Scene(parsed.study, parsed.curves, parsed.without)
-
-    error_of, points, rows, default = scene.errors(study), [], [], scene.default()
-    for picked in scene.combinations(parsed.differences, parsed.only):
-        settings = scene.settings(picked)
-        ranks = int(settings.pop("ranks", 1))
-        decks = settings.pop("deck", scene.decks)
-        outcome = study.run(decks, settings, ranks)
-        name = ", ".join(option for choice, option in picked.items() if option != default[choice]) or "default"
-        if not outcome.done:
-            print(f"{name}: {'not in this program' if outcome.refused else 'failed'}: {outcome.message}", flush=True)
-            rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
-            continue
-        point = Point(picked, default, outcome, error_of(outcome))
-        points.append(point)
-        rows.append((*picked.values(), point.error, point.seconds, point.kernels, point.evaluations, ""))
-        print(f"{name:44} error {point.error:.2e}  {point.seconds:7.2f} s  {point.kernels:.3g} kernel, "
-              f"{point.evaluations} velocity evaluations", flush=True)
-
-    shape = max(scene.choices, key=lambda choice: len(scene.choices[choice])
-                if choice == "time" else 0.5 * len(scene.choices[choice]))
-    kinds = list(dict.fromkeys(kind(option) for option in scene.choices[shape]))
-    few = len(kinds) <= len(style.RUNS)
-    colors = dict(zip(kinds, style.RUNS if few else plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))))
+    scene = Scene(parsed.study, parsed.curves, parsed.without)
+    points, rows = scene.points(studies.study(parsed), parsed.differences, parsed.only)
+    expect(points, "no run came to its end")
+    kinds = list(dict.fromkeys(one.kind for one in points))
+    shades = plt.get_cmap("turbo")(numpy.linspace(0.05, 0.92, len(kinds)))
+    colors = dict(zip(kinds, style.RUNS if len(kinds) <= len(style.RUNS) else shades))
     on_front = sorted({*front(points, "seconds"), *front(points, "kernels")}, key=lambda one: -one.error)
     numbers = {point: number for number, point in enumerate(on_front, 1)}
-    families = families_of(points, scene.choices, shape)
+    # of a study with two choices, lines join the runs with the same option of the one that colours stand for
+    options = dict.fromkeys(one.picked[scene.shape] for one in points) if len(scene.choices) == 2 else ()
+    families = [[one for one in points if one.picked[scene.shape] == option] for option in options]
     figure, axes = plt.subplots(1, 3, figsize=(11.5, 5.2), width_ratios=[1, 1, 0.42])
     axes[1].sharey(axes[0])
     axes[0].set_ylabel("error")
-    draw(axes[0], points, "seconds", "processor seconds", colors, shape, families, numbers)
-    draw(axes[1], points, "kernels", "kernel evaluations", colors, shape, families, numbers)
-    for name, color in colors.items():
-        if any(kind(point.picked[shape]) == name for point in points):
-            axes[2].plot([], [], "o", color=color, ms=5, label=name)
-    axes[2].plot([], [], "o", ms=10, mfc="none", mec=style.INK, label="the default")
-    axes[2].plot([], [], color=style.INK, label="Pareto front:")
-    axes[2].axis("off")
-    axes[2].legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
-    rest = len(axes[2].get_legend_handles_labels()[0])
-    axes[2].text(0, 0.97 - 0.047 * rest, "\n".join(f"{number:2}  {point.label}" for point, number in numbers.items()),
-                 transform=axes[2].transAxes, va="top", fontsize=7.5, linespacing=1.5)
+    for axis, cost in zip(axes, COSTS):
+        draw(axis, points, cost, colors, families, numbers)
+    draw_legend(axes[2], colors, numbers)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
-    words = [parsed.study]
-    words += ["--differences", str(parsed.differences)] if parsed.differences != 2 else []
+    words = [parsed.study] + (["--differences", "1"] if parsed.differences == 1 else [])
     words += ["--only", *parsed.only] if parsed.only else []
     words += ["--without", *parsed.without] if parsed.without else []
-    command = r"\$ " + studies.command_of(__file__, *words)
-    figure.supxlabel(f"{command}\nerror: {scene.error.get('text', '')}" + scene.against(), x=0.01, ha="left",
-                     fontsize=7.5)
+    against = f", against {scene.error['curve'] if parsed.curves else 'a finer run'}" if "curve" in scene.error else ""
+    figure.supxlabel(rf"\$ {studies.command_of(__file__, *words)}" f"\nerror: {scene.error.get('text', '')}{against}",
+                     x=0.01, ha="left", fontsize=7.5)
     studies.write_table(parsed.output / f"{scene.name}.csv",
                         [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")

@@ -11,27 +11,65 @@ unstable wave, so the shortest that elements carry grows fastest, about two elem
 """
 
 import argparse
+import pathlib
 
-from package import answer, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, numpy, plt, studies, style
 import waves
 
-DECK = "inputs/shear_neo_hookean.yaml"
 QUIET = 1e-3  # share of the load's power in waves below which there are none
 
 
-def outcome(study, n, modulus, parsed):
-    return study.run(DECK,
-                     {"Surface/elements per side": n, "Membrane/capillary number": parsed.ca,
-                      "Membrane/bending modulus": modulus / parsed.ca, "Particle/orientation": "[20.0, 35.0, 50.0]",
-                      "Time/final time": parsed.time, "Output/interval": 0.5, "Time/tolerance": 3e-4})
+def measured(study, n, modulus, parsed):
+    """Returns the outcome of a run, its mean spectrum over the last two time units, and mean and range of D there."""
+    one = study.run(SHEAR, {SIDE: n, "Membrane/capillary number": parsed.ca, "Time/final time": parsed.time,
+                            "Membrane/bending modulus": modulus / parsed.ca, "Output/interval": 0.5,
+                            "Time/tolerance": 3e-4, "Particle/orientation": "[20.0, 35.0, 50.0]"})
+    if not one.done:
+        return one, None, numpy.nan, numpy.nan
+    found = [waves.Spectrum(shot) for shot in one.run.snapshots() if shot.time >= parsed.time - 2]
+    found[0].power = sum(each.power / each.power.sum() for each in found) / len(found)
+    t, d = one.series["time"], one.series["taylor_inertia"]
+    t, d = t[t >= parsed.time - 2], d[t >= parsed.time - 2]
+    return one, found[0], numpy.trapz(d, t) / (t[-1] - t[0]), numpy.ptp(d)
 
 
-def spectra(one, start):
-    """Mean power by degree over the snapshots from a time on."""
-    found = [waves.Spectrum(shot) for shot in one.run.snapshots() if shot.time >= start]
-    mean = found[0]
-    mean.power = sum(each.power / each.power.sum() for each in found) / len(found)
-    return mean
+def element_size(n):
+    """Returns the mean size of an element on the unit sphere."""
+    return (4 * numpy.pi / (6 * n * n)) ** 0.5
+
+
+def draw_row(study, axes, modulus, parsed):
+    """Draws spectra, D over time and wavelengths of one modulus, and returns rows of the table."""
+    left, middle, right = axes
+    rows, lengths = [], []
+    for n, color in zip(parsed.meshes, style.RUNS):
+        one, spectrum, mean, reach = measured(study, n, modulus, parsed)
+        if spectrum is None:
+            print(f"n = {n}: {one.message}")
+            continue
+        # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
+        wave, size = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax()), element_size(n)
+        waved, length = spectrum.short > QUIET, spectrum.wavelength(wave)
+        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.mean_degree,
+                     spectrum.short, mean, reach, one.seconds))
+        words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
+        print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; "
+              f"D = {mean:.5f}, range {reach:.1e}; {one.seconds:.0f} s", flush=True)
+        left.semilogy(spectrum.degrees[1::2], spectrum.power[1::2], "-", color=color, label=f"n = {n}")
+        middle.plot(one.series["time"], one.series["taylor_inertia"], color=color)
+        if waved:
+            lengths.append((1 / size, length))
+            left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
+    left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
+             ylabel="power of the load", ylim=(1e-9, 2))
+    middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][7], 1.1 * rows[-1][7]))
+    sizes = numpy.array([element_size(n) for n in parsed.meshes])
+    right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
+    right.plot(1 / sizes, 2.25 * sizes, color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
+    right.set(xlabel="elements a radius", ylabel="wavelength over R", ylim=(0, 0.9))
+    for axis in left, right:
+        axis.legend(loc="best")
+    return rows
 
 
 def main():
@@ -41,74 +79,18 @@ def main():
     parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.0005, 0.005],
                         help="bending moduli over R^2 G_s (default: 0, 0.0005, 0.005)")
     parser.add_argument("--ca", type=float, default=0.1, help="default: %(default)s")
-    parser.add_argument("--time", type=float, default=5.0,
-                        help="end of the runs (default: %(default)s); spectra are means over their last two time units")
-    studies.arguments(parser, "results/wrinkles")
+    parser.add_argument("--time", type=float, default=5.0, help="end of the runs (default: %(default)s)")
+    studies.arguments(parser, pathlib.Path("results/wrinkles"))
     parsed = parser.parse_args()
-    study = studies.study(parsed)
-
-    figure, grid = plt.subplots(len(parsed.modulus), 3, figsize=(10.8, 3.4 * len(parsed.modulus)), squeeze=False)
-    rows = []
-    for (left, middle, right), modulus in zip(grid, parsed.modulus):
-        lengths = []
-        for n, color in zip(parsed.meshes, style.RUNS):
-            one = outcome(study, n, modulus, parsed)
-            if not one.done:
-                print(f"n = {n}: {one.message}")
-                continue
-            spectrum = spectra(one, parsed.time - 2)
-            size = element_size(n)
-            # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point
-            # symmetric
-            wave = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax())
-            t, d = one.series["time"], one.series["taylor_inertia"]
-            late = t >= parsed.time - 2
-            mean = numpy.trapz(d[late], t[late]) / (t[late][-1] - t[late][0])
-            waved = spectrum.short > QUIET
-            if waved:
-                lengths.append((size, spectrum.wavelength(wave)))
-            length = spectrum.wavelength(wave)
-            rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.mean_degree,
-                         spectrum.short, mean, numpy.ptp(d[late]), one.seconds))
-            words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
-            print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} "
-                  f"{spectrum.short:.1e}; D = {mean:.5f}, range {numpy.ptp(d[late]):.1e}; {one.seconds:.0f} s",
-                  flush=True)
-            odd = spectrum.degrees % 2 == 1
-            left.semilogy(spectrum.degrees[odd], spectrum.power[odd], "-", color=color, label=f"n = {n}")
-            if waved:
-                left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
-            middle.plot(t, d, color=color, label=f"n = {n}")
-        left.set_title("no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s")
-        left.set_xlabel("degree")
-        left.set_ylabel("power of the load")
-        left.set_ylim(1e-9, 2)
-        left.legend(loc="best")
-        middle.set_xlabel("time")
-        middle.set_ylabel("Taylor parameter D")
-        middle.set_ylim(0.9 * rows[-1][7], 1.1 * rows[-1][7])
-        if lengths:
-            right.plot([1 / s for s, _ in lengths], [length for _, length in lengths], "o-", color=style.RUNS[0])
-        else:
-            right.annotate("no waves", (0.5, 0.5), xycoords="axes fraction", ha="center")
-        sizes = [element_size(n) for n in parsed.meshes]
-        right.plot([1 / s for s in sizes], [2.25 * s for s in sizes], color=style.FAINT, linestyle=(0, (4, 3)),
-                   label="2.25 elements")
-        right.set_xlabel("elements a radius")
-        right.set_ylabel("wavelength over R")
-        right.set_ylim(0, 0.9)
-        right.legend(loc="best")
+    study, count = studies.study(parsed), len(parsed.modulus)
+    figure, grid = plt.subplots(count, 3, figsize=(10.8, 3.4 * count), squeeze=False)
+    rows = [row for axes, modulus in zip(grid, parsed.modulus) for row in draw_row(study, axes, modulus, parsed)]
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)
-    studies.write_table(parsed.output / "wrinkles.csv",
-                        ["modulus", "elements_per_side", "element_size", "degree", "wavelength", "mean_degree",
-                         "short_share", "taylor_inertia", "range", "seconds"], rows)
+    studies.write_table(parsed.output / "wrinkles.csv", [
+        "modulus", "elements_per_side", "element_size", "degree", "wavelength", "mean_degree", "short_share",
+        "taylor_inertia", "range", "seconds"], rows)
     style.save(figure, parsed.output / "wrinkles.png")
-
-
-def element_size(n):
-    """Mean size of an element on the unit sphere."""
-    return (4 * numpy.pi / (6 * n * n)) ** 0.5
 
 
 if __name__ == "__main__":

@@ -1,17 +1,15 @@
 #!/usr/bin/python3
-# A report is one page that needs no network; in a browser, where there is one, it turns, plays and shows values without an error.
+# A report is one page that needs no network. In a browser, if there is one, it turns, plays, and shows values and labels with units without an error.
 import base64
 import gzip
+import html
 import json
-import os
 import pathlib
 import re
-import shutil
-import subprocess
 
 import numpy
 
-from harness import PROGRAM, SOURCE, check, close, deck, main, run
+from harness import check, close, deck, main, package, run, shown
 
 DECK = """
 Tanktread:
@@ -27,7 +25,7 @@ addEventListener("error", event => { document.body.dataset.error = event.message
 const wait = seconds => new Promise(done => setTimeout(done, 1000 * seconds));
 (async () => {
   while (!window.report) await wait(0.05);
-  const told = {}, canvas = document.getElementById("shape"), plot = report.plots[0];
+  const told = { texts: [] }, write = CanvasRenderingContext2D.prototype.fillText, canvas = document.getElementById("shape"), plot = report.plots[0];
   const drag = (kind, x, y) => canvas.dispatchEvent(new PointerEvent(kind, { clientX: x, clientY: y, offsetX: x, pointerId: 1 }));
   if (canvas) {
     canvas.setPointerCapture = () => {};
@@ -40,14 +38,19 @@ const wait = seconds => new Promise(done => setTimeout(done, 1000 * seconds));
     document.getElementById("play").click(); await wait(0.5); document.getElementById("play").click();
     told.played = report.surface.frame !== frame;
   }
-  plot.pointer = [plot.canvas.clientWidth / 2, 60]; plot.draw(); told.value = plot.said;
+  CanvasRenderingContext2D.prototype.fillText = function (text, ...place) { told.texts.push(text); write.call(this, text, ...place); };
+  for (const one of report.plots) one.draw();
+  if (plot) { plot.pointer = [plot.canvas.clientWidth / 2, 60]; plot.draw(); told.value = plot.said; }
+  told.pictures = [...document.images].map(image => image.naturalWidth);
+  told.cells = [...document.querySelectorAll("td")].map(cell => cell.textContent);
+  told.numbers = [0, 7, 1234567, 0.00000564287, -0.0123456, 98765432.1].map(value => number(value, 2));
   document.body.dataset.told = JSON.stringify(told);
 })();
 </script>"""
 
 
 def _script(name, *arguments, code=0):
-    result = subprocess.run([SOURCE / f"postproc/tanktread-{name}", *arguments], capture_output=True, text=True, env=os.environ | {"TANKTREAD": str(PROGRAM)})
+    result = package(name, *arguments)
     check(result.returncode == code and "Traceback" not in result.stderr, name, result.stdout, result.stderr)
     return result.stdout + result.stderr
 
@@ -59,20 +62,18 @@ def _content(path):
 
 
 def _used(path):
-    """What the page does in a browser; None where there is none."""
-    browser = shutil.which("chromium")
-    if not browser:
-        return None
+    """Returns what the page does in a browser; None where there is none."""
     page = pathlib.Path("used.html")
     page.write_text(pathlib.Path(path).read_text().replace("</body>", USE + "</body>"))
-    words = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--virtual-time-budget=20000", "--dump-dom",
-             f"--user-data-dir={pathlib.Path('profile').resolve()}", "--enable-logging=stderr"]
-    result = subprocess.run([browser, *words, page.resolve().as_uri()], capture_output=True, text=True, timeout=120)
-    errors = [line for line in result.stderr.splitlines() if "CONSOLE" in line and "GL Driver Message" not in line]
-    check(not errors and "data-error" not in result.stdout, errors, re.findall('data-error="[^"]*"', result.stdout))
-    told = re.search('data-told="([^"]*)"', result.stdout)
-    check(told, "the page did not get through", result.stdout[-500:])
-    return json.loads(told[1].replace("&quot;", '"'))
+    document, errors = shown(page.resolve().as_uri())
+    if document is None:
+        return None
+    check(not errors and "data-error" not in document, errors, re.findall('data-error="[^"]*"', document))
+    told = re.search('data-told="([^"]*)"', document)
+    check(told, "the page did not get through", document[-500:])
+    told = json.loads(html.unescape(told[1]))
+    check(told["numbers"] == ["0", "7", "1234567", "5.6e-6", "-0.012", "9.9e7"], told["numbers"])
+    return told
 
 
 def a_run_is_one_page_with_its_shapes_and_curves():
@@ -92,6 +93,18 @@ def a_run_is_one_page_with_its_shapes_and_curves():
     check([row[0] for row in expected[1:]] == ["✓", "✗"], expected)
     told = _used("results/report.html")
     check(told is None or (told["turned"] and told["played"] and told["value"]), told)
+    check(told is None or {"time · shear rate", "taylor_inertia"} <= set(told["texts"]), told)
+
+
+def axes_have_the_units_of_the_deck():
+    deck(DECK.replace("  Flow:", "  Units: { length: 1 um, time: 1 ms, force: 1 nN }\n  Flow:").replace("capillary number: 0.3", "shear modulus: 1")
+         .replace("simple shear", "quiescent").replace("  Membrane:", "  Particle: { initial shape: { stretch: [1.2, 1, 0.9] } }\n  Membrane:"))
+    run("deck.yaml", "--output", "results", "--quiet", code=1)
+    _script("report", "results")
+    curves = _content("results/report.html")["curves"]
+    check(curves["label"] == "time, ms" and curves["labels"]["volume"] == "volume, µm³", curves["label"], curves["labels"]["volume"])
+    told = _used("results/report.html")
+    check(told is None or {"time, ms", "taylor_inertia"} <= set(told["texts"]), told)
 
 
 def a_run_that_is_not_finished_says_so():
@@ -104,13 +117,26 @@ def a_run_that_is_not_finished_says_so():
 
 def a_sweep_is_a_table_and_a_plot():
     deck(DECK)
-    deck("deck: deck.yaml\ngrid: {Membrane/capillary number: [0.1, 0.2]}\nrecord: {D: taylor_inertia}\n", "study.yaml")
+    deck("deck: deck.yaml\ngrid: {Membrane/capillary number: [0.1, 0.2, -1]}\nrecord: {A: area, D: taylor_inertia}\n", "study.yaml")
     _script("sweep", "study.yaml")
     _script("report", "results/study", "-o", "page.html")
     content = _content("page.html")
-    check(content["scatter"]["keys"] == ["Membrane/capillary number"] and len(content["scatter"]["values"]["D"]) == 2, content["scatter"])
+    check(content["scatter"]["keys"] == ["Membrane/capillary number"] and len(content["scatter"]["values"]["D"]) == 3, content["scatter"])
     told = _used("page.html")
-    check(told is None or told["value"].startswith("0."), told)
+    check(told is None or {"Membrane/capillary number", "A, length²"} <= set(told["texts"]), told)
+    check(told is None or told["value"].count(", ") == 1, told)
+
+
+def a_fit_is_a_picture_and_a_table():
+    deck(DECK)
+    pathlib.Path("curve.csv").write_text("0.5,0.2\n0.75,0.25\n1,0.3\n")
+    deck("deck: deck.yaml\nunknown: {Membrane/capillary number: {start: 0.3}}\n"
+         "experiments: {one: {data: [{series: taylor_inertia, curve: curve.csv, error: 0.01}]}}\n", "experiment.yaml")
+    _script("fit", "experiment.yaml", "--jobs", "1")
+    _script("report", "results/experiment", "-o", "page.html")
+    check(_content("page.html")["sections"][1][2][1][1] == "Membrane/capillary number", "the unknown")
+    told = _used("page.html")
+    check(told is None or (told["pictures"][0] > 300 and "Membrane/capillary number" in told["cells"]), told)
 
 
 def what_is_no_result_is_said():

@@ -156,7 +156,7 @@ def tables_reports_and_bands_have_errors():
     deck(DROP + "  Accuracy: {requests: 'taylor_inertia=1%'}\n")
     deck("deck: deck.yaml\ngrid: {Particle/viscosity ratio: [1.0, 2.0]}\nrecord: {D: taylor_inertia}\n", "study.yaml")
     made = sweep.run("study.yaml", "table", jobs=1)
-    columns, _ = sweep.table(pathlib.Path("table"))
+    columns, *_ = sweep.table(pathlib.Path("table"))
     check((columns["D error"] > 0).all() and (columns["D error"] < 0.01 * columns["D"]).all(), columns)
     one = made.outcomes[0].run
     low, high = one.band("taylor_inertia")

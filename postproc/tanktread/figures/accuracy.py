@@ -98,8 +98,6 @@ def work(run, axes=None, *, parts: bool = True):
         axis.axhline(request["allowed"], color=color, linewidth=0.8, linestyle=(0, (4, 3)))
         changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
         log.info(words + (f"; change by refinement of {changes}" if changes else ""))
-    axis.set_xlabel("seconds of the level")
-    axis.set_ylabel("estimated error")
-    axis.set_title("dashed: requested accuracy")
+    axis.set(xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
     axis.legend(loc="best")
     return figure

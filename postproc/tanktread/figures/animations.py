@@ -67,7 +67,6 @@ class Film:
         upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
         self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
         self.shown = shown(run)
-        run.require(*(name for names in self.shown.values() for name in names))
         self.marks = self.draw_series()
 
     def draw_series(self):
@@ -85,8 +84,7 @@ class Film:
             if len(values) and values.min() >= 0:
                 axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
         self.panels[0].tick_params(labelbottom=False)
-        self.panels[1].set_xlabel(self.run.time_label)
-        self.panels[1].set_xlim(self.run.time[0], self.run.time[-1])
+        self.panels[1].set(xlabel=self.run.time_label, xlim=(self.run.time[0], self.run.time[-1]))
         return marks
 
     def show(self, shot):
@@ -97,8 +95,7 @@ class Film:
         room = 0.11 * (self.window[1] - self.window[0])[0]
         (left, low), (right, high) = self.window + middle_seen
         draw_triad(self.surface, view_axes(*self.view), numpy.array([left, right, low, high]))
-        self.surface.set_xlim(left - room, right + room)
-        self.surface.set_ylim(low - room, high + room)
+        self.surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room))
         # of this saved step, the last one if none came after
         row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))
         row = min(row, len(self.run.time) - 1)

@@ -20,8 +20,6 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
 
     series: what is drawn against the parameter
     exact: a known point, as parameter and value (repeatable)"""
-    for run in runs:
-        run.require("parameter", "fold", series)
     rated = all("leading_rate" in run.series for run in runs)
     figure, axes = style.panels(axes, 1 + rated, 1, 5.2, 3.4 + 1.8 * rated, sharex=True,
                                 height_ratios=[3, 1.6][: 1 + rated])
@@ -70,10 +68,9 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     figure, (upper, lower) = style.panels(axes, 2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
     names, reached = set(), []
     for run, color in zip(runs, style.RUNS * len(runs)):
-        run.require("parameter", "second_parameter", "fold", series)
+        found = numpy.flatnonzero(run.series["fold"] > 0)
         continuation = run.deck["Continuation"]
         names.add((continuation["second parameter"], continuation["parameter"]))
-        found = numpy.flatnonzero(run.series["fold"] > 0)
         found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
         second, parameter, value = (run.series[name][found] for name in ("second_parameter", "parameter", series))
         reached += list(second)
@@ -93,8 +90,7 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set_ylabel("Taylor parameter D there" if series.startswith("taylor") else series + " there")
-    lower.set_xlabel(second)
+    lower.set(ylabel="Taylor parameter D there" if series.startswith("taylor") else series + " there", xlabel=second)
     return figure
 
 
@@ -109,7 +105,6 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     series: series whose difference is taken
     amplitude: of the mode, over R_C
     length: of the runs, in times of the rate"""
-    run.require("leading_rate", series)
     study = Study(directory="results/growth_rates")
     deck = deck_in_time(run, study.directory)
     path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
@@ -123,8 +118,7 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     draw(axis, parameter, rate, unstable(run), style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
-    axis.set_xlabel(path)
-    axis.set_ylabel("rate of the leading mode")
+    axis.set(xlabel=path, ylabel="rate of the leading mode")
     axis.legend()
     return figure
 
@@ -152,10 +146,8 @@ def in_time(study, deck, run, k, path, series, amplitude, length):
     settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
                 "Particle/initial shape/mode": number,
                 "Particle/initial shape/run": pathlib.Path(run.snapshots()[k].path).resolve()}
-    settings |= {key: run.series[name][k] for key, name in ((path, "parameter"),
-                                                            (run.value("Continuation/second parameter"),
-                                                             "second_parameter"))
-                 if name in run.series}
+    keys = {"parameter": path, "second_parameter": run.value("Continuation/second parameter")}
+    settings |= {key: run.series[name][k] for name, key in keys.items() if name in run.series}
     times = numpy.linspace(end / 2, end, 11)
     for sign in 1, -1:
         outcome = study.run(deck, settings | {"Particle/initial shape/mode amplitude": sign * amplitude})

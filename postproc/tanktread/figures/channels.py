@@ -38,7 +38,7 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
 
 def channel_of(run):
     """Returns the arrays of channel.h5 by name: centre (n, 3), s (n,), wall (4, n, 3) and others."""
-    return arrays_of(run.directory / "channel.h5", "give the directory of a run in a channel")
+    return arrays_of(run.directory / "channel.h5")
 
 
 def centroid(run):
@@ -128,7 +128,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
 
     elements: elements of the membrane, from pole to pole"""
     first = runs[0]
-    first.require("channel_pressure_drop")
     needed = {"Channel/profile": "constriction", "Channel/section": "circle", "Membrane/law": "neo-Hookean",
               "Particle/shape": "sphere"}
     for key, wanted in needed.items():
@@ -150,11 +149,8 @@ def stuck(runs, axes=None, *, elements: int = 160):
         lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
         log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
                  f"smallest film {run.series['gap'].min():.4g}")
-    upper.set_ylim(0, None)
-    upper.set_ylabel("Ca")
+    upper.set(ylim=(0, None), ylabel="Ca")
     upper.legend()
-    lower.set_yscale("log")
-    lower.set_ylabel("velocity / V")
-    lower.set_xlabel("centroid $x_1$")
+    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$")
     lower.legend()
     return figure

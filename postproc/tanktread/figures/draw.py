@@ -36,9 +36,8 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
     """Draws the visible part of the surface with the edges of its elements, and the directions of the axes."""
     view = view_axes(azimuth, elevation)
     values = shot.fields[field]
-    image, extent = render.picture(
-    shot, magnitude(values), view, lambda seen: plt.get_cmap(colours)(
-        norm(seen)), pixels)
+    paint = plt.get_cmap(colours)
+    image, extent = render.picture(shot, magnitude(values), view, lambda seen: paint(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
     if shot.cell is not None:
         draw_cell(axis, shot.frame @ view.T)
@@ -66,16 +65,8 @@ def draw_triad(axis, view, extent):
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     for k, arm in enumerate(view[:2].T * length):
-        axis.annotate(
-    "",
-    foot + arm,
-    foot,
-    arrowprops={
-        "arrowstyle": "->",
-        "color": style.INK,
-        "lw": 0.9,
-        "shrinkA": 0,
-         "shrinkB": 0})
+        axis.annotate("", foot + arm, foot, arrowprops={"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0,
+                                                        "shrinkB": 0})
         axis.annotate(f"x{'₁₂₃'[k]}", foot + 1.35 * arm, ha="center", va="center", fontsize=8.5)
     axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters
 
@@ -134,9 +125,7 @@ def draw_sections(axis, runs, shots):
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
-    axis.set_xlabel("x₁ / R$_C$")
-    axis.set_ylabel("x₃ / R$_C$")
-    axis.set_title("section in the x₁x₃ plane")
+    axis.set(xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 
 
@@ -145,8 +134,7 @@ def share_window(axes):
     limits = numpy.array([[axis.get_xlim(), axis.get_ylim()] for axis in axes])
     middles, half = limits.mean(2), numpy.ptp(limits, axis=2).max(0) / 2
     for axis, middle in zip(axes, middles):
-        axis.set_xlim(middle[0] - half[0], middle[0] + half[0])
-        axis.set_ylim(middle[1] - half[1], middle[1] + half[1])
+        axis.set(xlim=(middle[0] - half[0], middle[0] + half[0]), ylim=(middle[1] - half[1], middle[1] + half[1]))
         axis.set_anchor("C")
 
 
@@ -158,6 +146,15 @@ def field_cut(shot, field):
     middle = (shot.points.min(0) + shot.points.max(0)) / 2
     grid = numpy.concatenate([shot.sampled(shot.points, GRID) - middle, shot.sampled(values, GRID)], axis=-1)
     return cut(grid, 1, 0)
+
+
+def near_tip(shot, field):
+    """Returns x1 (n,), x3 (n,) and the magnitude of a field (n,) along the half of the section where x1 is above the
+    middle, by x3; positions from the middle."""
+    place = field_cut(shot, field).mean(axis=1)
+    place = place[place[:, 0] > 0]
+    place = place[numpy.argsort(place[:, 2])]
+    return place[:, 0], place[:, 2], numpy.linalg.norm(place[:, 3:], axis=1)
 
 
 def on_section(shot, field):

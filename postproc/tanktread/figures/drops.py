@@ -23,7 +23,6 @@ def surfactant(runs, axes=None):
         last = run.snapshot_at(None)
         pieces = section(last, last.points[:, 1].mean()) / run.radius
         cut.add_collection(LineCollection(pieces, colors=color, linewidths=1.4, capstyle="round"))
-        run.require("taylor_inertia")
         deformation.plot(run.time, run.series["taylor_inertia"], color=color, label=run.name)
         line = f"{run.name}: D = {run.series['taylor_inertia'][-1]:.6f}"
         if "surfactant_mass" in run.series:
@@ -38,11 +37,8 @@ def surfactant(runs, axes=None):
                      f"mass kept to {abs(mass / mass[0] - 1).max():.1e}")
         log.info(line)
     cut.autoscale()
-    cut.set_aspect("equal")
-    cut.set_xlabel("$x_1$ / R$_C$")
-    cut.set_ylabel("$x_3$ / R$_C$")
-    along.set_xlabel("$x_3$ / R$_C$")
-    along.set_ylabel("concentration / initial one")
+    cut.set(aspect="equal", xlabel="$x_1$ / R$_C$", ylabel="$x_3$ / R$_C$")
+    along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
     deformation.set_ylabel("D")
     deformation.legend()
     extremes.set_ylabel("largest, smallest concentration")
@@ -62,7 +58,6 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
     meshes: elements per side of further runs"""
     run = run_of(deck)
-    run.require("energy", "length_x1", "length_x2", "length_x3")
     series = run.series
     outline, energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])
     log.info(f"{run.name}: energy {series['energy'][-1]:.9g}, relative error {series['energy'][-1] / energy - 1:.1e}")

@@ -46,8 +46,7 @@ def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pa
         path.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
     path.set_ylabel("dz / R$_C$")
     path.legend()
-    gap.set_ylabel("smallest gap / R$_C$")
-    gap.set_ylim(bottom=0)
+    gap.set(ylabel="smallest gap / R$_C$", ylim=(0, None))
     deformation.set_ylabel("D")
     if deformation.lines:
         deformation.legend()
@@ -65,9 +64,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
     gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
     for k, (run, color) in enumerate(zip(runs, style.RUNS * len(runs))):
-        run.require("gap")
-        sections(figure.add_subplot(grid[k, :]), run, times)
         film = run.series["gap"] / run.radius
+        sections(figure.add_subplot(grid[k, :]), run, times)
         gap.plot(run.time, film, color=color, label=run.name)
         away, along = velocities(run)
         speed.plot(run.time, away, color=color, label="away" if k == 0 else None)
@@ -77,8 +75,7 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     if curve:
         known = table(curve)
         gap.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.INK, markersize=3, label="exact")
-    gap.set_yscale("log")
-    gap.set_ylabel("gap / R$_C$")
+    gap.set(yscale="log", ylabel="gap / R$_C$")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
     speed.set_ylabel(runs[0].label("velocity", "centroid's {}"))
     for axis in gap, speed:
@@ -120,9 +117,6 @@ def sections(axis, run, moments):
         axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
     axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
     axis.autoscale_view()
-    axis.set_ylim(bottom=-0.15)
-    axis.set_aspect("equal")
-    axis.set_title(f"{run.name}: section across the wall at several times")
-    axis.set_xlabel("along the wall / R$_C$")
-    axis.set_ylabel("above it / R$_C$")
+    axis.set(ylim=(-0.15, None), aspect="equal", title=f"{run.name}: section across the wall at several times",
+             xlabel="along the wall / R$_C$", ylabel="above it / R$_C$")
     axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))

@@ -7,7 +7,7 @@ import scipy.interpolate
 
 from ..files import table
 from ..interpolation import difference
-from ..mistakes import Mistake, expect, log
+from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study, deck_at, settings_of
 from . import style
@@ -44,8 +44,8 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     series: which series, and column of the curve"""
     expect(curve, "give the reference: --curve FILE")
     known = table(curve, ("t", series))
-    for run in runs:
-        run.require(series)
+    expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
+                                                 or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
     found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
     families = sorted({one.family for one in found})
     color = dict(zip(families, style.RUNS * len(families)))
@@ -57,8 +57,7 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
             members = [one for one in found if one.family == family]
             axis.loglog([getattr(one, cost) for one in members], [one.largest for one in members], "o-",
                         color=color[family], ms=4, label=family)
-        axis.set_xlabel(label)
-        axis.set_ylabel(f"largest error of {series}")
+        axis.set(xlabel=label, ylabel=f"largest error of {series}")
     draw_order(axes[1], found)
     axes[1].legend(loc="lower left")
     report(found, families)
@@ -141,9 +140,8 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
         axis.plot(*curve.T, style.MARKS[k], color=style.FAINT, markersize=3, label=f"published, {names[k]}")
         log.info(f"along {names[k]}: {off[at]:+.4f} off the curve at most, at {inside[at, 0]:.3f}; "
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
-    axis.set_xlabel("centroid $x_1$")
-    axis.set_ylabel("extent over 2a")
-    axis.set_title(f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
+    axis.set(xlabel="centroid $x_1$", ylabel="extent over 2a",
+             title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
     axis.legend()
     return figure
 
@@ -171,8 +169,8 @@ def extents(outcome, x):
            f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
     expect(way[0] <= x[0] and x[-1] <= way[-1],
            f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
-    return scipy.interpolate.CubicSpline(way, numpy.transpose([series[f"length_x{k}"]
-                                                               for k in (1, 2, 3)]))(x).T / (2 * a)
+    lengths = numpy.transpose([series[f"length_x{k}"] for k in (1, 2, 3)])
+    return scipy.interpolate.CubicSpline(way, lengths)(x).T / (2 * a)
 
 
 def of_radius(runs, deck, words, finer, radius, x):
@@ -190,10 +188,7 @@ def of_radius(runs, deck, words, finer, radius, x):
 
 def curve_of(path, between):
     """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
-    try:
-        curve = numpy.loadtxt(path, delimiter=",", ndmin=2)
-    except (OSError, ValueError) as error:
-        raise Mistake(f"{path} is no curve: {error}") from error
-    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])] if curve.shape[1] == 2 else []
-    expect(len(inside), "{} has no rows of two numbers with the first between {:g} and {:g}".format(path, *between))
+    curve = table(path)[:, :2]
+    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])]
+    expect(len(inside), "{} has no row between {:g} and {:g}".format(path, *between))
     return curve, inside

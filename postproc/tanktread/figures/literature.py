@@ -7,6 +7,7 @@ import re
 
 import numpy
 
+from ..files import table
 from ..interpolation import difference, interpolated
 
 __all__ = ["Curve", "curves", "difference", "interpolated"]
@@ -57,7 +58,7 @@ def _spectral(folder, ca):
     found = []
     for path in sorted(folder.glob("nh_shear_ca*_spectral.csv")):
         if math.isclose(float(re.search(r"_ca([\d.]+)_", path.name)[1]), ca):
-            data = numpy.genfromtxt(path, delimiter=",", names=True)
+            data = table(path, ("t", "taylor_inertia", "inclination_degrees"))
             found.append(Curve("spectral reference", data["t"], data["taylor_inertia"], data["inclination_degrees"],
                                exact=True))
     return found
@@ -71,9 +72,8 @@ def _digitised(folder, ca):
             if not number or not math.isclose(3 * float(number[1]), ca):
                 continue
             if number[2] == "csv":
-                t, d = numpy.loadtxt(path, delimiter=",", unpack=True)
-                found.append(Curve(label, t, d))
+                found.append(Curve(label, *table(path)[:, :2].T))
             else:  # columns t, shortest, longest, D, angle in radians
-                t, _, _, d, angle = numpy.loadtxt(path, unpack=True)
+                t, _, _, d, angle = table(path, columns=5, delimiter=None)[:, :5].T
                 found.append(Curve(label, t, d, numpy.degrees(angle)))
     return found

@@ -8,15 +8,15 @@ BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and 
 
 
 def capillary_number(run):
-    told = run.value("Membrane/capillary number")
-    return told if told else run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity",
-                                                                          1.0) / run.value("Membrane/shear modulus")
+    told, viscosity, velocity = (run.value(key) for key in ("Membrane/capillary number", "Flow/viscosity",
+                                                            "Flow/mean velocity"))
+    return told or (viscosity or 1.0) * (velocity or 1.0) / run.value("Membrane/shear modulus")
 
 
 def drop_of_velocity(run):
     """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
-    return run.series["channel_pressure_drop"][0] / (run.value("Flow/viscosity",
-                                                               1.0) * run.value("Flow/mean velocity", 1.0))
+    viscosity, velocity = run.value("Flow/viscosity", 1.0), run.value("Flow/mean velocity", 1.0)
+    return run.series["channel_pressure_drop"][0] / (viscosity * velocity)
 
 
 def highest(way, pressure):
@@ -32,9 +32,8 @@ class Pushed:
     modulus."""
 
     def __init__(self, run, n, radius=None):
-        self.mouth, self.depth, self.width = run.value("Channel/radius",
-                                                       1.0), run.value("Channel/depth",
-                                                                       0.5), run.value("Channel/half length")
+        self.mouth, self.depth = run.value("Channel/radius", 1.0), run.value("Channel/depth", 0.5)
+        self.width = run.value("Channel/half length")
         self.radius = radius or run.value("Particle/radius", 1.0)
         unstressed = self.radius / (1 + run.value("Membrane/pre-inflation", 0.0))
         angle = numpy.linspace(0, numpy.pi, n + 1)

@@ -50,8 +50,7 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, radius: float =
         if name is None:
             draw_outlines(outlines, runs, radius)
     draw_measured(plot)
-    plot.set_xlabel("force / pN")
-    plot.set_ylabel("diameter / µm")
+    plot.set(xlabel="force / pN", ylabel="diameter / µm")
     plot.legend()
     return figure
 
@@ -80,9 +79,7 @@ def draw_outlines(plot, runs, radius):
         directions = numpy.stack([numpy.cos(around), numpy.sin(around)])
         outline = points[(points @ directions).argmax(axis=0)]
         plot.plot(*outline.T, color=plt.get_cmap(style.TIME)(shade), linewidth=1.1, label=f"{pn} pN")
-    plot.set_aspect("equal")
-    plot.set_xlabel("x$_1$ / µm")
-    plot.set_ylabel("x$_2$ / µm")
+    plot.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
     plot.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
 
 
@@ -150,8 +147,7 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, force: float = 
                  f"from a length over width of {found[0]:.3f}")
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
     plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
-    plot.set_xlabel("time / s")
-    plot.set_ylabel("length over width")
+    plot.set(xlabel="time / s", ylabel="length over width")
     plot.legend()
     return figure
 

@@ -10,6 +10,7 @@ import textwrap
 import typing
 
 from ..mistakes import expect
+from ..results import Run
 from ..runs import run as run_of
 from ..runs import SOURCE, runs_of, settings_of
 from .style import draw, save
@@ -31,7 +32,10 @@ def figure(function):
     @functools.wraps(function)
     def drawn(given=inspect.signature(function).parameters[first].default, axes=None, **options):
         expect(given is not inspect.Parameter.empty, f"{function.__name__} needs {first}")
-        return draw(functools.partial(function, **options), convert(given), axes)
+        given = convert(given)
+        for run in given if isinstance(given, list) else [given]:
+            expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
+        return draw(functools.partial(function, **options), given, axes)
 
     FIGURES[function.__name__] = drawn
     return drawn
@@ -105,9 +109,8 @@ def parser_of(name, program="tanktread-figure"):
 def measurements():
     """Returns {name: caption} of the scripts of the source directory that measure the program and draw a figure."""
     texts = {path.stem: path.read_text(encoding="utf-8") for path in BENCHMARK.glob("*.py")}
-    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split()) for name,
-            text in texts.items()
-            if "style.save(" in text and text.startswith("#!")}
+    return {name.replace("_", "-"): " ".join(text.split('"""')[1].split("\n\n")[0].split())
+            for name, text in texts.items() if "style.save(" in text and text.startswith("#!")}
 
 
 def command():

@@ -90,8 +90,7 @@ def _normals(grid):
     lengths of its sides along t and along s."""
     t, s = numpy.gradient(grid, axis=(1, 2))
     normal = numpy.cross(s, t)
-    area, length_t, length_s = (numpy.maximum(numpy.sqrt(numpy.einsum("...i,...i", x, x)),
-                                              1e-12) for x in (normal, t, s))
+    area, length_t, length_s = (numpy.maximum(numpy.linalg.norm(x, axis=-1), 1e-12) for x in (normal, t, s))
     return normal[..., 2] / area, area, length_t, length_s
 
 

@@ -22,9 +22,6 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
 
     curves: folder of literature curves, named as figures/literature.py says
     deformation: which Taylor parameter"""
-    for run in runs:
-        if not run.several:
-            run.require("taylor_inertia", "taylor_surface", "inclination")
     inclined = any(has_inclination(run) for run in runs)
     width = 6.4 if len(runs) == 1 else 9.8
     if inclined:
@@ -42,9 +39,8 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
             draw_run(upper, lower, run, deformation, color)
             report(run, found)
     draw_literature(upper, lower, known, end=max(run.time[-1] for run in runs))
-    upper.set_ylabel("Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""))
-    upper.set_ylim(bottom=0)
-    upper.set_title(title(runs))
+    upper.set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""), ylim=(0, None),
+              title=title(runs))
     if len(runs) == 1:
         upper.legend(loc="lower right")
     else:
@@ -52,8 +48,7 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
     if inclined:
         lower.set_ylabel("inclination, degrees")
     bottom = lower if inclined else upper
-    bottom.set_xlabel(time_label(runs))
-    bottom.set_xlim(left=0)
+    bottom.set(xlabel=time_label(runs), xlim=(0, None))
     return figure
 
 
@@ -151,8 +146,6 @@ def refinement(runs, axes=None, *, steady: list[float] | None = None, deformatio
 
     steady: steady values of D in the literature, drawn at the right
     deformation: which Taylor parameter"""
-    for run in runs:
-        run.require("taylor_inertia", "taylor_surface")
     compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
     heights = [3, 1.5, 1.8] if compares else [3, 1.8]
     figure, axes = style.panels(axes, len(heights), 1, 6.4, 1.25 * sum(heights), sharex=True, height_ratios=heights)
@@ -178,12 +171,9 @@ def refinement(runs, axes=None, *, steady: list[float] | None = None, deformatio
     if compares:
         axes[1].axhline(0, color=style.RUNS[0])
         axes[1].set_ylabel("10³ (D − D of\nthe first)")
-    upper.set_ylabel("Taylor parameter D")
-    upper.set_ylim(bottom=0)
+    upper.set(ylabel="Taylor parameter D", ylim=(0, None))
     upper.legend(loc="lower right")
-    lower.set_ylabel("control points")
-    lower.set_ylim(bottom=0)
-    lower.set_xlabel(time_label(runs))
+    lower.set(ylabel="control points", ylim=(0, None), xlabel=time_label(runs))
     return figure
 
 

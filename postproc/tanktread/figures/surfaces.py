@@ -21,8 +21,7 @@ def field_of(shots, field):
 
 
 @figure
-def shape(runs, axes=None, *, time: float | None = None, field: str = "traction",
-          view: tuple[float, float] = VIEW):
+def shape(runs, axes=None, *, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
     """The deformed surface coloured by its traction, and its section in the x1 x3 plane with the axis of inertia.
 
     time: simulated time of the snapshot (default: the last one)

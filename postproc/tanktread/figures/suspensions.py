@@ -33,8 +33,7 @@ def rheology(runs, axes=None):
     upper.set_ylabel("intrinsic viscosity [η]")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set_ylabel("normal stress differences / (μ γ̇ φ)")
-    lower.set_xlabel(time_label(runs))
+    lower.set(ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
     lower.legend()
     return figure
 
@@ -43,7 +42,6 @@ def stresses(run):
     """Returns [η], N1 and N2 over time (rows,), without a unit."""
     flow = run.value("Flow/type")
     expect(flow == "simple shear", f"{run.directory}: intrinsic viscosity is of simple shear, and this is {flow}")
-    run.require("stresslet_13")
     volume = run.series["volume"][0] if "volume" in run.series else run.snapshots()[0].volume()
     unit = run.value("Flow/viscosity", 1) * run.rate[0] * volume
     s11, s22, s33, s13 = (run.series[f"stresslet_{k}"] / unit for k in ("11", "22", "33", "13"))
@@ -61,7 +59,6 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     blocks: number of parts of an average"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in zip(runs, style.RUNS * len(runs)):
-        run.require(*SERIES)
         strain, words = run.time, []
         label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for name, symbol in SERIES.items():
@@ -77,8 +74,7 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     upper.set_ylabel("effective viscosity μ_eff/μ")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set_ylabel("normal stress differences")
-    lower.set_xlabel("strain")
+    lower.set(ylabel="normal stress differences", xlabel="strain")
     lower.legend()
     return figure
 
@@ -124,16 +120,13 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
         fraction, mean, error = numpy.array(sorted(found)).T
         draw_viscosity(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
-        log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m,
-                                              e in zip(fraction, mean, error)))
+        log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
             slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
             log.info(f"  per volume fraction, extrapolated to 0: {slope:.3f} ± {off:.3f}; one capsule: {alone:.4f}")
     upper.set_ylabel("relative viscosity μ_eff/μ")
     upper.legend()
-    lower.set_ylabel("(μ_eff/μ − 1)/φ; at 0: one capsule")
-    lower.set_xlabel("volume fraction φ")
-    lower.set_xlim(left=-0.005)
+    lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
     return figure
 
 
@@ -186,7 +179,6 @@ def drift(run, axes=None, *, from_: int = 10):
 
     from_: first turn of the straight line"""
     expect(from_ >= 0, f"--from needs a turn, but is given {from_}")
-    run.require("phase", *DRIFTS)
     stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]

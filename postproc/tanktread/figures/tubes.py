@@ -35,8 +35,7 @@ def duct(runs, axes=None, *, no_path: bool = False):
         filled = draw_section(axis, d, levels)
         if not no_path:
             draw_path(axis, run, d["radius"])
-        axis.set_xlim(low[0], high[0])
-        axis.set_ylim(low[1], high[1])
+        axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
     axes[0].set_ylabel("x₃ / R$_T$")
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
@@ -47,7 +46,7 @@ def duct(runs, axes=None, *, no_path: bool = False):
 
 def duct_of(run):
     """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
-    arrays = arrays_of(run.directory / "duct.h5", "give the directory of a run in a tube")
+    arrays = arrays_of(run.directory / "duct.h5")
     for name in "outline", "x2", "x3":
         arrays[name] = arrays[name] / arrays["radius"]
     arrays["maximum"][:2] /= arrays["radius"]
@@ -103,7 +102,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
 
     times: simulated times of the shapes"""
-    ducts = [in_tube(run) for run in runs]
+    ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
     for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
         shots = shots_of(run, times)
@@ -123,12 +122,6 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=rows,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
-
-
-def in_tube(run):
-    """Returns the arrays of the duct of a run, after a check that the run follows a particle."""
-    run.require("centroid_x1")
-    return duct_of(run)
 
 
 def shots_of(run, times):
@@ -161,8 +154,7 @@ def along(axis, run, d, shots, colours):
     axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
     axis.set_aspect("equal")
     axis.autoscale_view()
-    axis.set_xlabel("x₁, flow to the right")
-    axis.set_ylabel("x₃ / R$_T$")
+    axis.set(xlabel="x₁, flow to the right", ylabel="x₃ / R$_T$")
     axis.set_xticks([])
     axis.grid(False)
     axis.set_title("section x₂ = centroid")
@@ -186,15 +178,13 @@ def across(axis, run, d, shots, colours):
     axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.set_xlabel("x₂ / R$_T$")
-    axis.set_ylabel("x₃ / R$_T$")
-    axis.set_title("section x₁ = centroid")
+    axis.set(xlabel="x₂ / R$_T$", ylabel="x₃ / R$_T$", title="section x₁ = centroid")
 
 
 @figure
 def tube_motion(runs, axes=None):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
-    ducts = [in_tube(run) for run in runs]
+    ducts = [duct_of(run) for run in runs]
     figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
     for run, d, colour in zip(runs, ducts, style.RUNS):
         speed, radius = d["mean_velocity"], d["radius"]
@@ -211,12 +201,9 @@ def tube_motion(runs, axes=None):
             scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed
             axis.plot(time[1:], s[name][1:] / scale, color=colour)
             axis.set_title(label)
-    axes[0].set_aspect("equal")
-    axes[0].set_title("paths of the centroid; + largest velocity")
-    axes[0].set_xlabel("x₂ / R$_T$")
-    axes[0].set_ylabel("x₃ / R$_T$")
-    axes[1].set_ylim(bottom=FLOOR)
-    axes[1].set_title("distance from the largest velocity / R$_T$")
+    axes[0].set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel="x₂ / R$_T$",
+                ylabel="x₃ / R$_T$")
+    axes[1].set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$")
     for axis in axes[1:]:
         axis.set_xlabel("t vₘ / R$_T$")
     for axis in axes[2:]:

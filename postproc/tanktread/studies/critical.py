@@ -37,8 +37,8 @@ def stays(time, way, radius, speed):
     wanders = numpy.std(places - numpy.polyval(numpy.polyfit(at - at[-1], places, 2), at - at[-1]))
     first, second = 2 * numpy.diff(places[[0, SAMPLES // 2, -1]]) / last
     by_chance = 6**0.5 * wanders * 2 / last  # of the end less the middle twice and the beginning
-    return True if abs(first
-                       + second) / 2 < SLOW * speed and second - first < NOISE * SLOW * speed + by_chance else None
+    slow, steady = abs(first + second) / 2 < SLOW * speed, second - first < NOISE * SLOW * speed + by_chance
+    return True if slow and steady else None
 
 
 class Search:
@@ -62,14 +62,13 @@ class Search:
         expect(outcome.done, f"{self.parsed.key}={value:.6g}: {outcome.message}")
         run, series = outcome.run, outcome.series
         speed = run.value("Flow/mean velocity", 1.0)
-        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"],
-                                                         run.value("Channel/radius", 1.0), speed)
+        radius = run.value("Channel/radius", 1.0)
+        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"], radius, speed)
         said = {True: "stays", False: "passes", None: f"neither passes nor stays by {series['time'][-1]:g}"}[held]
         log.info(f"{self.parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
-                 f"{series['velocity_x1'][-1] / speed:.2g} of the mean "
-              f"velocity; smallest film {series['gap'].min():.3g}, largest error of the volume "
-              f"{numpy.abs(series['volume_error']).max():.1g}; "
-              f"{outcome.processor_seconds:.0f} processor seconds")
+                 f"{series['velocity_x1'][-1] / speed:.2g} of the mean velocity; smallest film "
+                 f"{series['gap'].min():.3g}, largest error of the volume {abs(series['volume_error']).max():.1g}; "
+                 f"{outcome.processor_seconds:.0f} processor seconds")
         return run, held
 
 

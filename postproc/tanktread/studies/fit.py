@@ -56,8 +56,8 @@ def load(path, study):
     decks = decks_of(text, path)
     study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
     expect(keys_of(text.get("experiments"), f"{path}: experiments"), f"{path} has no experiments")
-    laws = {law: keys_of(settings, f"{path}: the law {law}") for law,
-            settings in keys_of(text.get("laws"), f"{path}: laws").items()}
+    laws = {law: keys_of(settings, f"{path}: the law {law}")
+            for law, settings in keys_of(text.get("laws"), f"{path}: laws").items()}
     lists = [text, *text["experiments"].values(), *laws.values()]
     expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
     unknowns = [Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()]
@@ -67,8 +67,8 @@ def load(path, study):
     fixed, fits = keys_of(text.get("set"), f"{path}: set"), []
     for law, settings in (laws or {"the deck's law": {}}).items():
         settings = fixed | settings
-        own = {key: Unknown(key, given) for key, given in keys_of(settings.pop("unknown", None),
-                                                                  f"{path}: {law}, unknown").items()}
+        more = keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
+        own = {key: Unknown(key, given) for key, given in more.items()}
         fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments,
                         Runs(study, decks, law)))
     return fits, text
@@ -94,10 +94,11 @@ def run(path, directory=None, jobs=None, laws=None):
     progress("")
     log.info(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
-    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
-                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
-                                                            for name, (value, error) in fit.values.items()}}
-              for fit in fits}
+    record = {}
+    for fit in fits:
+        unknown = {name: {"value": value, "error": float(error)} for name, (value, error) in fit.values.items()}
+        record[fit.law] = {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
+                           "runs": fit.runs.count, "unknown": unknown}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits

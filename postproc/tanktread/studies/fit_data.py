@@ -2,26 +2,15 @@
 
 import numpy
 
+from ..files import table
 from ..interpolation import interpolated
-from ..mistakes import Mistake, expect
+from ..mistakes import expect
 from . import silhouette
 from .reading import keys_of, number
 
 # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 FAR = numpy.log(1000)
 GAP = 0.1  # of an outline's length, from its last point to the first, at which it does not close
-
-
-def numbers_of(path, least):
-    """Returns a CSV file with `least` columns or more as (rows, columns), without a first row of names."""
-    try:
-        values = numpy.genfromtxt(path, delimiter=",", comments="#")
-    except (OSError, ValueError) as error:
-        raise Mistake(f"{path} cannot be read: {error}") from None
-    values = values[1:] if values.ndim == 2 and not numpy.isfinite(values[0]).any() else values
-    expect(values.ndim == 2 and values.shape[1] >= least and numpy.isfinite(values[:, :least]).all(),
-           f"{path} must have {least} columns of numbers")
-    return values
 
 
 class Unknown:
@@ -41,8 +30,8 @@ class Unknown:
         start = self.number(self.start_value)
         for word in {"known", "error", "from", "to"} & set(given):
             number(given[word], f"{self.name}: {word}")
-        self.bounds = tuple(self.number(given[word]) if word in given else start + far for word,
-                            far in (("from", -FAR), ("to", FAR)))
+        self.bounds = tuple(self.number(given[word]) if word in given else start + far
+                            for word, far in (("from", -FAR), ("to", FAR)))
         self.known, self.error = given.get("known"), given.get("error")
 
     def number(self, value):
@@ -68,10 +57,10 @@ class OutlineData:
         plane = given.get("plane", ["x1", "x3"])
         expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        table = numbers_of(folder / str(given["outline"]), 2)
-        self.points = table[:, :2][:, numpy.argsort(plane)]
-        if self.error is None and table.shape[1] > 2:
-            self.error = float(numpy.sqrt((table[:, 2] ** 2).mean()))
+        rows = table(folder / str(given["outline"]))
+        self.points = rows[:, :2][:, numpy.argsort(plane)]
+        if self.error is None and rows.shape[1] > 2:
+            self.error = float(numpy.sqrt((rows[:, 2] ** 2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
@@ -117,15 +106,15 @@ class SeriesData:
                f"{name}: a series has value or curve, and error, at, over, origin")
         for word in {"value", "error"} & set(given):
             number(given[word], f"{name}: {word}")
-        self.name, self.series, self.error = name, [given["series"],
-                                                    *([given["over"]] if "over" in given else [])], given.get("error")
+        self.name, self.error = name, given.get("error")
+        self.series = [given[word] for word in ("series", "over") if word in given]
         self.places = int("origin" in given)
         expect(not self.places or given["origin"] == "free" and "curve" in given,
                f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
-            table = numbers_of(folder / str(given["curve"]), 2)
-            self.times, self.values = table[:, 0], table[:, 1]
-            self.error = table[:, 2] if self.error is None and table.shape[1] > 2 else self.error
+            rows = table(folder / str(given["curve"]))
+            self.times, self.values = rows[:, 0], rows[:, 1]
+            self.error = rows[:, 2] if self.error is None and rows.shape[1] > 2 else self.error
             self.span = float(numpy.ptp(self.times))  # which the place is told in
         else:
             self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
@@ -143,9 +132,6 @@ class SeriesData:
         return (times[[nearest]] - self.times[0]) / self.span
 
     def prediction(self, run):
-        for name in self.series:
-            expect(name in run.series,
-                   f"{self.name}: there is no series {name}; there are: {', '.join(sorted(run.series))}")
         values, times = run.series[self.series[0]], run.series["time"]
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9),
@@ -185,14 +171,11 @@ class Experiment:
         expect(isinstance(given, dict) and given.get("data"), f"the experiment {name} has no data")
         expect(set(given) <= {"set", "unknown", "data"}, f"the experiment {name} has set, unknown and data")
         self.name, self.settings = name, keys_of(given.get("set"), f"{name}: set")
-        self.unknowns = [Unknown(key, one, name) for key,
-                         one in keys_of(given.get("unknown"), f"{name}: unknown").items()]
-        kinds = {"outline": OutlineData, "series": SeriesData}
-        self.data = []
+        unknowns = keys_of(given.get("unknown"), f"{name}: unknown")
+        self.unknowns, self.data = [Unknown(key, one, name) for key, one in unknowns.items()], []
         expect(isinstance(given["data"], list), f"{name}: data must be a list of outlines and series")
-        for k, one in enumerate(given["data"]):
+        for one in given["data"]:
             one = keys_of(one, f"{name}: a datum")
-            kind = next((kind for word, kind in kinds.items() if word in one), None)
-            expect(kind, f"{name}: a datum is an outline or a series")
-            self.data.append(kind(one, f"{name}: {one.get('outline') or one['series']}" if k
-                                  or len(given["data"]) > 1 else f"{name}: data", folder))
+            expect("outline" in one or "series" in one, f"{name}: a datum is an outline or a series")
+            label = one.get("outline") or one["series"] if len(given["data"]) > 1 else "data"
+            self.data.append((OutlineData if "outline" in one else SeriesData)(one, f"{name}: {label}", folder))

@@ -50,8 +50,8 @@ class Runs:
         return self._run.in_units(self.study.dimension(key)) if self._run else ""
 
     def _predicted(self, experiment, outcome):
+        self._run = outcome.run
         try:
-            self._run = outcome.run
             return [datum.prediction(outcome.run) for datum in experiment.data]
         except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
             self.messages.append(str(error))
@@ -94,8 +94,8 @@ class Fit:
         for datum, prediction in zip(self.data, predictions):
             parts.append(datum.residuals(prediction, places[start:start + datum.places]))
             start += datum.places
-        known = [(one.value(x) - one.known) / one.error for one,
-                 x in zip(self.unknowns, numbers) if one.known is not None]
+        known = [(one.value(x) - one.known) / one.error for one, x in zip(self.unknowns, numbers)
+                 if one.known is not None]
         return numpy.concatenate([*parts, known])
 
     def length(self):

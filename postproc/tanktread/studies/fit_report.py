@@ -56,8 +56,8 @@ def _alone(fit, candidate):
     predictions = one.predictions(one.x)
     if predictions is None:
         return None
-    one.x = numpy.concatenate([one.x, *(datum.start(prediction) for datum,
-                                        prediction in zip(candidate.data, predictions))])
+    starts = [datum.start(prediction) for datum, prediction in zip(candidate.data, predictions)]
+    one.x = numpy.concatenate([one.x, *starts])
     numbers, places = one.split(one.x)
     if len(places):
         placed = scipy.optimize.least_squares(lambda p: one.residuals(predictions, numbers, p), places)
@@ -76,8 +76,8 @@ def _errors_with(fit, candidate):
     both[numpy.ix_(index, index)] += one.information()
     errors = numpy.sqrt(numpy.diag(numpy.linalg.pinv(both)))
     errors = numpy.where((errors > 0) & (errors < 1), errors, numpy.inf)  # as in Fit.errors: others stay undetermined
-    return {unknown.name: unknown.error_of(unknown.value(x), error) for unknown, x,
-            error in zip(fit.unknowns, fit.x, errors)}
+    return {unknown.name: unknown.error_of(unknown.value(x), error)
+            for unknown, x, error in zip(fit.unknowns, fit.x, errors)}
 
 
 def _rise(fit, candidate):
@@ -102,8 +102,8 @@ def told(fits, rows):
             lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing "
                       "about the law"]
         if fit.stated and len(fit.data) > 1:
-            lines.append("  of it: " + ", ".join(f"{name} {square:.3g} of {count}" for name,
-                                                 (square, count) in fit.squares.items()))
+            parts = [f"{name} {square:.3g} of {count}" for name, (square, count) in fit.squares.items()]
+            lines.append("  of it: " + ", ".join(parts))
         larger = numpy.sqrt(fit.square / fit.freedom) if fit.missed else 1
         if fit.missed:
             lines.append(f"  the residuals are {larger:.3g} times what the errors of the data say: a finer mesh, a "
@@ -125,14 +125,12 @@ def told(fits, rows):
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
-            lines.append(f"  signs of the residuals along the data: {meaning} "
-                         f"({z:.1f} standard deviations)")
+            lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
     if len(fits) > 1:
         gap = [fit.aic - fits[0].aic for fit in fits]
         total = sum(numpy.exp(-one / 2) for one in gap)
-        lines.append("laws, best first: "
-                     + ", ".join(f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit,
-                                 one in zip(fits, gap)))
+        lines.append("laws, best first: " + ", ".join(
+            f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit, one in zip(fits, gap)))
         said = "do not tell these laws apart (a difference in AIC below 10)"
         said = f"tell {fits[0].law} from the others" if gap[1] > 10 else said
         lines.append(f"the data {said}{', but none of them describes the data' if fits[0].missed else ''}")
@@ -141,8 +139,9 @@ def told(fits, rows):
         if errors is None:
             lines.append(f"a further experiment, {name}: its run fails")
             continue
-        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined" for key,
-                error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
+                for key, error in errors.items()]
+        said += [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
         lines.append(f"a further experiment, {name}: " + ", ".join(said))
     return "\n".join(lines)
 
@@ -187,24 +186,20 @@ def draw(fits, axes=None):
     if series:
         data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series)))
     data.set_title(f"data and {best.law}")
-    residual.set_title("residuals over their errors")
-    residual.set_xlabel("number of the datum")
+    residual.set(title="residuals over their errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
     names = [one for one, yes in zip(best.unknowns, best.told) if yes]
     for axis, (i, j) in zip(axes[2:], pairs):
         angle = numpy.linspace(0, 2 * numpy.pi, 200)
         values, vectors = numpy.linalg.eigh(best.covariance[numpy.ix_([i, j], [i, j])])
+        pair = [(names[k], best.x[best.unknowns.index(names[k])]) for k in (i, j)]
         for share, line in (0.683, "-"), (0.954, "--"):
-            circle = numpy.sqrt(scipy.stats.chi2.ppf(share,
-                                                     2)) * (vectors
-                                                            * numpy.sqrt(values)) @ [numpy.cos(angle), numpy.sin(angle)]
-            index = [best.unknowns.index(names[k]) for k in (i, j)]
-            x, y = ([names[k].value(best.x[at] + one) for one in circle[m]] for m,
-                    (k, at) in enumerate(zip((i, j), index)))
+            size = numpy.sqrt(scipy.stats.chi2.ppf(share, 2) * values)
+            circle = (vectors * size) @ [numpy.cos(angle), numpy.sin(angle)]
+            x, y = ([unknown.value(at + one) for one in row] for (unknown, at), row in zip(pair, circle))
             axis.plot(x, y, line, color=style.RUNS[0], label=f"{share:.1%}")
-        axis.plot(*(names[k].value(best.x[best.unknowns.index(names[k])]) for k in (i, j)), "+", color=style.INK)
-        axis.set_xlabel(names[i].name + best.runs.unit(names[i].key))
-        axis.set_ylabel(names[j].name + best.runs.unit(names[j].key))
+        axis.plot(*(unknown.value(at) for unknown, at in pair), "+", color=style.INK)
+        axis.set(**{word: one.name + best.runs.unit(one.key) for word, (one, _) in zip(("xlabel", "ylabel"), pair)})
         axis.legend()
     return figure

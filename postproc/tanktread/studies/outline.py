@@ -131,6 +131,7 @@ def main():
     arguments = parser.parse_args()
     expect(arguments.points >= 8, "--points must be at least 8")
     picture = grey(arguments.picture)
+    expect(numpy.ptp(picture) > 0, f"{arguments.picture}: its brightness is the same everywhere")
     points, error = edge(picture, body(picture, arguments.picture), arguments.points)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])

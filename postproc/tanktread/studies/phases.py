@@ -90,16 +90,15 @@ class Diagram:
                                                   for name in ("along", "across", "curves", "literature"))
         expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
         self.along |= {name: number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
-        expect(0 < self.along["from"] < self.along["to"] and self.along["within"] > 1,
-                     f"{path}: along needs positive values that ascend and a factor above 1, but is from "
-                     f"{self.along['from']} to {self.along['to']} within "
-                     f"{self.along['within']}")
+        low, high, within = (self.along[name] for name in ("from", "to", "within"))
+        expect(0 < low < high and within > 1, f"{path}: along needs positive values that ascend and a factor above 1, "
+                                              f"but is from {low} to {high} within {within}")
         expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
         self.across, self.begin = next(iter(across)), number(text.get("begin", 0.4), f"{path}: begin")
         expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
         self.literature = {name: self.known(name, rows) for name, rows in literature.items()}
-        self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}")) for name,
-                     keys in curves.items()}
+        self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}"))
+                     for name, keys in curves.items()}
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
 
     @staticmethod
@@ -134,12 +133,11 @@ class Diagram:
         outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
         said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
         if outcome.done:
-            outcome.run.require(*self.kind.series)
             said, *measures = self.kind.tell(outcome.series, self.begin)
         said = said or "neither"
         told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
         log.info(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} ({told}; "
-              f"{outcome.processor_seconds:.0f} processor seconds)")
+                 f"{outcome.processor_seconds:.0f} processor seconds)")
         return said, *measures, outcome.processor_seconds, outcome.directory.name
 
     def border(self, name, row, last):
@@ -152,8 +150,7 @@ class Diagram:
 
         if last:
             found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
-            if how == "edge" or (how == "fails from here"
-                                 and found == low) or (how == "holds to here" and found == high):
+            if how == "edge" or found == {"fails from here": low, "holds to here": high}[how]:
                 return found, how
             low, high = (low, found) if how == "fails from here" else (found, high)
         return common.edge(holds, low, high, factor)
@@ -174,13 +171,12 @@ class Diagram:
             last = low if how == "edge" else last
 
     def write(self, directory):
-        common.write_table(directory / "borders.csv",
-                           ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"],
-                          [(name, *row) for name, rows in self.borders.items() for row in rows])
-        common.write_table(directory / "runs.csv", ["curve", self.across, self.along["key"], "motion",
-                                                    *self.kind.measures,
-                                                   "processor seconds", "directory"],
-                           [(*key, *run) for key, run in self.made.items()])
+        head = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
+        rows = [(name, *row) for name, rows in self.borders.items() for row in rows]
+        common.write_table(directory / "borders.csv", head, rows)
+        head = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
+                "directory"]
+        common.write_table(directory / "runs.csv", head, [(*key, *run) for key, run in self.made.items()])
 
     @property
     def found(self):

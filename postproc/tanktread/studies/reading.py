@@ -3,8 +3,8 @@
 import pathlib
 
 import numpy
-import yaml
 
+from ..files import parsed
 from ..mistakes import Mistake, expect
 from ..runs import shared
 
@@ -32,12 +32,7 @@ def keys_of(given, name):
 
 def yaml_of(path, known):
     """Returns the content of a YAML file with these sections only."""
-    try:
-        text = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise Mistake(f"{path} cannot be read: {error.strerror}") from None
-    except yaml.YAMLError as error:
-        raise Mistake(f"{path} is not YAML: {' '.join(str(error).split())}") from None
+    text = parsed(path)
     expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(sorted(known))}")
     unknown = sorted(set(text) - set(known))
     expect(not unknown, f"{path}: {unknown[0] if unknown else ''} is not known; there are: {', '.join(sorted(known))}")
@@ -67,8 +62,8 @@ def values_of(key, given):
         return [given]
     expect({"from", "to", "number"} <= set(given), f"{key}: a range has from, to and number")
     low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
-    return [float(value) for value in spaced(key, given, low,
-                                             high)(numpy.linspace(0, 1, whole(given["number"], f"{key}: number")))]
+    shares = numpy.linspace(0, 1, whole(given["number"], f"{key}: number"))
+    return [float(value) for value in spaced(key, given, low, high)(shares)]
 
 
 def spaced(key, given, low, high):

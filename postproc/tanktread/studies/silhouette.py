@@ -44,8 +44,8 @@ class Outline:
         for _ in range(6):
             off, slope, bend = self._curve(u) - points, self._curve(u, 1), self._curve(u, 2)
             curvature = (slope**2 + off * bend).sum(1)
-            u = u - (off * slope).sum(1) / numpy.where(curvature > 0.1 * (slope**2).sum(1), curvature,
-                                                       (slope**2).sum(1))
+            square = (slope**2).sum(1)
+            u = u - (off * slope).sum(1) / numpy.where(curvature > 0.1 * square, curvature, square)
         slope = self._curve(u, 1)
         normal = numpy.column_stack([slope[:, 1], -slope[:, 0]]) / numpy.linalg.norm(slope, axis=1)[:, None]
         return ((points - self._curve(u)) * normal).sum(1)
@@ -68,17 +68,19 @@ def cut(shot, axis=1, place=None, k=8):
     """Returns the Outline of the section of a snapshot's surface by the plane x_{axis+1} = place (default: its
     middle)."""
     place = (shot.points[:, axis].min() + shot.points[:, axis].max()) / 2 if place is None else place
-    return _outermost(numpy.delete(_zeros(shot, lambda cells, s,
-                                          t: shot.evaluate(shot.points[:, axis], cells, s, t) - place, k), axis,
-                                   axis=1))
+
+    def height(cells, s, t):
+        return shot.evaluate(shot.points[:, axis], cells, s, t) - place
+
+    return _outermost(numpy.delete(_zeros(shot, height, k), axis, axis=1))
 
 
 def _zeros(shot, function, k):
     """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
     parameter in every cell."""
     number = len(shot.cells)
-    cell, s, t = (array.ravel() for array in numpy.meshgrid(numpy.arange(number), numpy.arange(k + 1) / k,
-                                                            numpy.arange(k + 1) / k, indexing="ij"))
+    cell, s, t = numpy.indices((number, k + 1, k + 1)).reshape(3, -1)
+    s, t = s / k, t / k
     values = function(cell, s, t).reshape(number, k + 1, k + 1)
     tiny = ZERO * abs(values).max()
     found = [numpy.array([cell, s, t])[:, abs(values).ravel() <= tiny]]

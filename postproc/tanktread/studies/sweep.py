@@ -27,7 +27,8 @@ import time
 import h5py
 import numpy
 
-from ..mistakes import Mistake, expect, log, progress
+from ..files import opened
+from ..mistakes import expect, log, progress
 from ..runs import Study, text_of
 from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
 
@@ -92,24 +93,20 @@ def recorded(outcome, columns):
     A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
-        values = outcome.series.get(series) if outcome.done else None
-        if outcome.done and values is None:
-            raise Mistake(f"a run of this study has no series {series} (column {name}); there are: "
-                          f"{', '.join(sorted(outcome.series))}")
-        if values is None or not len(values):
-            row[name] = numpy.array([]) if take == "all" else numpy.nan
-        elif take == "all":
+        values = outcome.series[series] if outcome.done else numpy.array([])
+        if take == "all":
             row[name] = values
-        else:
-            # a series is NaN where it is undefined
-            defined = values if take == "last" else values[~numpy.isnan(values)]
-            row[name] = numpy.interp(at, outcome.series["time"],
-                                     values) if at is not None else TAKES[take](defined) if len(defined) else numpy.nan
-            row[name] = float(row[name])
-            error = outcome.run.errors.get(series)
-            if error is not None:
-                row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
-                                             else error[-1] if take == "last" else numpy.max(error))
+            continue
+        defined = values if take == "last" else values[~numpy.isnan(values)]  # a series is NaN where it is undefined
+        row[name] = numpy.nan
+        if at is not None and len(values):
+            row[name] = float(numpy.interp(at, outcome.series["time"], values))
+        elif len(defined):
+            row[name] = float(TAKES[take](defined))
+        error = outcome.run.errors.get(series) if len(values) else None
+        if error is not None:
+            row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
+                                         else error[-1] if take == "last" else numpy.max(error))
     return row
 
 
@@ -168,8 +165,8 @@ class Sweep:
                 numbers = all(isinstance(value, (int, float)) for value in values)
                 file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
             if whole:
-                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])} for values,
-                         outcome in zip(found, self.outcomes)]
+                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])}
+                         for values, outcome in zip(found, self.outcomes)]
             file.attrs["columns"] = [*single, *whole, *(["time"] if whole else [])]
             for name in file.attrs["columns"]:
                 longest = max(numpy.size(values[name]) for values in found)
@@ -177,17 +174,32 @@ class Sweep:
                                  constant_values=numpy.nan) for values in found]
                 every = name in whole or name == "time"
                 file[f"columns/{name}"] = numpy.array(one) if every else numpy.array(one)[:, 0]
+            self._write_units(file)
         for name in "table.csv", "table.h5":
             log.info(directory / name)
 
 
+    def _write_units(self, file):
+        """Writes the attribute `unit` of keys and columns, such as ", µm", as the first run that ended has it."""
+        run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
+        if run is None:
+            return
+        for key in self.keys:
+            file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
+        for name in file["columns"]:
+            series = self.columns[name.removesuffix(" error")][0] if name != "time" else name
+            file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
+
+
 def table(directory):
-    """Returns {column or key: values} of a sweep's table.h5, and the keys that vary."""
-    with h5py.File(directory / "table.h5", "r") as file:
+    """Returns of a sweep's table.h5 {column or key: values}, the keys that vary, and labels of axes by both names."""
+    with opened(directory / "table.h5") as file:
         keys = list(file.attrs["keys"])
-        found = {key: file[f"keys/{key}"] for key in keys} | {name: file[f"columns/{name}"]
-                                                              for name in file.attrs["columns"]}
-        return {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}, keys
+        found = {key: file[f"keys/{key}"] for key in keys}
+        found |= {name: file[f"columns/{name}"] for name in file.attrs["columns"]}
+        labels = {name: name + data.attrs.get("unit", "") for name, data in found.items()}
+        values = {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}
+        return values, keys, labels
 
 
 def plot(directory, column, key, axes=None):
@@ -195,32 +207,31 @@ def plot(directory, column, key, axes=None):
     combination of the other keys."""
     from ..figures import style
 
-    columns, keys = table(directory)
+    columns, keys, labels = table(directory)
     for name in column, key:
         expect(name in columns, f"the table has no {name}; there are: {', '.join(columns)}")
     expect(columns[column].ndim == columns[key].ndim,
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
     others = [name for name in keys if name != key]
-    labels = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
-              for k in range(len(columns[column]))]
+    lines = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
+             for k in range(len(columns[column]))]
     numbers = columns[key].dtype.kind in "fi"
-    for k, label in enumerate(dict.fromkeys(labels)):
-        chosen = [i for i, one in enumerate(labels) if one == label]
+    for k, label in enumerate(dict.fromkeys(lines)):
+        chosen = [i for i, one in enumerate(lines) if one == label]
         x, y = columns[key][chosen], columns[column][chosen]
         if y.ndim > 1:
             for i, (along, values) in enumerate(zip(x, y)):
                 axis.plot(along, values, color=style.RUNS[k % len(style.RUNS)], label=label if i == 0 else None)
             continue
         order = numpy.argsort(x)
-        few = len(set(labels)) <= 12
+        few = len(set(lines)) <= 12
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
         axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5,
                   color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
     if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
         axis.set_xscale("log")
-    axis.set_xlabel(key)
-    axis.set_ylabel(column)
+    axis.set(xlabel=labels[key], ylabel=labels[column])
     if axis.get_legend_handles_labels()[1] and others:
         axis.legend(fontsize=7.5)
     return figure

@@ -1,0 +1,92 @@
+#!/usr/bin/python3
+"""Shapes at rest: what they cost, by which solver, and what runs in time find.
+
+    tests/benchmark/steady.py solvers   # Newton's method by three Krylov solvers, preconditioners and two line searches
+    tests/benchmark/steady.py states    # the same states by Steady and by runs in time
+    tests/benchmark/steady.py branch    # a point on a branch around the fold of a drop
+
+Each prints a table of velocity evaluations; runs are kept under results/steady.
+
+`states`: on the deck's first mesh. A run in time goes on until `shape_velocity` is 1e-6, with the deck's time tolerance
+and with 1e-7, which the value is of. Where membranes tread or labels turn, the mesh lies elsewhere by then; `Steady`
+that starts from the end of the run has the same labels. `branch`: the branch of inputs/drop_branch.yaml, collocated and
+without its spectrum, from Ca = 0.1 up to the fold and back.
+"""
+
+import argparse
+import itertools
+
+from package import SIDE, answer, changed, expect, table, tanktread, yaml
+
+FOLDER, KRYLOV = "results/steady", ["GMRES", "BICGSTAB", "TFQMR"]
+SEARCHED = ["drop_steady", "capsule_steady"]
+STATES = {"capsule_in_tube": "velocity_x1"} | dict.fromkeys(  # deck: series that is compared
+    ("drop_uniaxial", "drop_four_roll", "uniaxial_extension", "hyperbolic_skalak", "hyperbolic_skalak_ca0.45",
+     "hyperbolic_skalak_ca0.8", "shear_neo_hookean"), "taylor_surface")
+
+
+def solvers(study):
+    def evaluations(scene, settings):
+        outcome = study.run(changed(scene, FOLDER, ("Spectrum", "Expect")), settings | {
+            SIDE: 6, "Quadrature/tolerance": 1e-7, "Steady/iterations": 40})
+        return outcome.counts["evaluations"] if outcome.done else "-"
+
+    def newton(scene, preconditioner, search, krylov):
+        return evaluations(scene, {"Steady/method": "newton-krylov", "Solvers/steady/iterative solver": krylov,
+                                   "Solvers/steady/preconditioner": preconditioner,
+                                   "Solvers/NOX/Line Search/Method": search})
+
+    cases = itertools.product(SEARCHED, ("none", "own", "recycled"), ("Full Step", "Backtrack"))
+    table(["scene", "preconditioner", "line search", *KRYLOV], itertools.chain(
+        ([*case, *(newton(*case, krylov) for krylov in KRYLOV)] for case in cases),
+        ([name, "Anderson's method", "", evaluations(name, {"Steady/method": "anderson"}), "", ""]
+         for name in SEARCHED)))
+
+
+def states(study):
+    search, until = {"Steady": {"tolerance": 1e-8}}, {"final time": 100.0, "steady tolerance": 1e-6}
+
+    def row(name, series):
+        deck = yaml.safe_load(tanktread.deck_at(f"inputs/{name}.yaml").read_text())["Tanktread"]
+        time, without = deck.get("Time", {}) | until, ("Expect", "Output", "Adaptation", "Time")
+        plain, tight = (study.run(changed(name, FOLDER, without, Time=one), {})
+                        for one in (time, time | {"tolerance": 1e-7}))
+        begun = deck.get("Particle", {}) | {"initial shape": {"run": str(tight.directory.resolve())}}
+        rest, after = (study.run(changed(name, FOLDER, without, **more), {})
+                       for more in (search, search | {"Particle": begun}))
+        lost = [one.message for one in (rest, plain, tight, after) if not one.done]
+        if lost:
+            return [f"`{name}`", lost[0], *[""] * 6]
+        value = tight.final[series]
+        counts = [one.counts["evaluations"] for one in (rest, plain, tight)]
+        return [f"`{name}`, {series}", f"{rest.final[series]:.7f}", f"{abs(rest.final[series] - value):.1e}",
+                f"{abs(after.final[series] - value):.1e}", *counts, f"{counts[1] / counts[0]:.1f}"]
+
+    table(["deck, series", "`Steady`", "in time, off by", "the same labels", "evaluations", "in time", "in time, 1e-7",
+           "ratio of the first two"], itertools.starmap(row, STATES.items()))
+
+
+def branch(study):
+    deck = changed("drop_branch", FOLDER, ("Spectrum", "Expect", "Solvers"))
+
+    def row(n):
+        outcome = study.run(deck, {"Membrane/capillary number": 0.1, SIDE: n})
+        expect(outcome.done, f"the branch of n = {n} was not found: {outcome.message}")
+        points = len(outcome.series["time"])
+        return [6 * n * n + 2, points, f"{outcome.counts['evaluations'] / points:.0f}",
+                f"{outcome.processor_seconds / points:.1f}",
+                f"{outcome.run.summary['memory']['largest of a rank'] / 2**20:.0f} MB"]
+
+    table(["control points", "points on the branch", "evaluations a point", "processor seconds a point", "memory"],
+          map(row, (6, 12)))
+
+
+def main():
+    tables = {one.__name__: one for one in (solvers, states, branch)}
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=tables)
+    tables[parser.parse_args().table](tanktread.Study(directory=FOLDER))
+
+
+if __name__ == "__main__":
+    answer(main)
