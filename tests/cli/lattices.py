@@ -214,9 +214,9 @@ Tanktread:
 
 def what_no_lattice_can_do_is_refused():
     for lists, words in (
-        ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "from cell to cell"]),
+        ({"Flow": "{type: parabolic, half width: 3.0}"}, ["Domain", "parabolic", "same in every cell"]),
         ({"Flow": "{type: parabolic, profile: plane, half width: 3.0, history: {times: [0, 1], angles: [0, 9], axis: x2}}",
-          "Domain": "{periodic: x1, side lengths: [2.8, 1, 1]}"}, ["Domain", "parabolic", "from cell to cell"]),
+          "Domain": "{periodic: x1, side lengths: [2.8, 1, 1]}"}, ["Domain", "parabolic", "same in every cell"]),
         ({"Domain": "{side lengths: [1.9, 2.8, 2.8]}"}, ["Domain", "smaller", "Particles/one", "image"]),
         ({"Domain": "{lattice vectors: [2.8, 0, 0, 0, 2.8, 0, 2.8, 2.8, 0]}"}, ["Domain/lattice vectors", "no volume"]),
         ({"Domain": "{periodic: x1}"}, ["Domain", "side lengths"]),

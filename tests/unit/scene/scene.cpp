@@ -74,7 +74,7 @@ TEST(Scenes, CountTheFactorsOfTheWallOnEveryRank) {
   const std::string tube = "  Flow: {type: duct}\n  Tube: {azimuthal elements: 100, axial elements: ";
   const bool one_rank = coupling::Ranks().size() == 1;
   EXPECT_EQ(refusal(tube + "240}\n").empty(), one_rank);                        // 43 GB per rank
-  EXPECT_NE(refusal(tube + "300}\n").find("more than 64"), std::string::npos);  // 66 GB per rank
+  EXPECT_NE(refusal(tube + "300}\n").find("more than the limit of 64 GB"), std::string::npos);  // 66 GB per rank
 }
 
 TEST(Scenes, HaveLengthsOfRefinementThatGoWithTheirSize) {
