@@ -37,6 +37,10 @@ class Setter {
   void scale(const std::string& path, double factor) {
     if (has(path)) set(path, number(path, 0) * factor);
   }
+  /// Multiplies a whole number that the deck has.
+  void scale_whole(const std::string& path, double factor, double least, double most) {
+    if (has(path)) set_whole(path, number(path, 0) * factor, least, most);
+  }
   /// Lowers a tolerance that is above `most`.
   void lower(const std::string& path, double most) {
     if (has(path) && number(path, 0) > most) set(path, most);
@@ -105,16 +109,15 @@ void set_mesh(Setter& to, const std::string& prefix, double ratio, int level) {
 void set_post(Setter& to, const std::string& surface, int level) {
   const double finer = elements_per_side(level) / 6.;
   to.set_whole(surface + "azimuthal elements", to.number(surface + "azimuthal elements", 24) * finer, 8, 400);
-  if (to.has(surface + "axial elements")) to.set_whole(surface + "axial elements", to.number(surface + "axial elements", 0) * finer, 4, 400);
+  to.scale_whole(surface + "axial elements", finer, 4, 400);
 }
 
 void set_wall(Setter& to, const std::string& list, int level) {
   if (!to.has(list + "/azimuthal elements")) return;
   const double n = elements_per_side(level), around = to.number(list + "/azimuthal elements", 24) / 24;
   to.set_whole(list + "/azimuthal elements", 4 * n * around, 8, 400);
-  if (to.has(list + "/axial elements"))
-    to.set_whole(list + "/axial elements", to.number(list + "/axial elements", 0) * n / 6, 8, 400);
-  else if (list == "Tube" && !to.has("Tube/periodic length") && !to.has("Domain/periodic"))
+  to.scale_whole(list + "/axial elements", n / 6, 8, 400);
+  if (list == "Tube" && !to.has("Tube/axial elements") && !to.has("Tube/periodic length") && !to.has("Domain/periodic"))
     to.set_whole(list + "/axial elements", surface::TubeOptions::default_axial_elements * n / 6, 8, 400);
   to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
 }
@@ -171,7 +174,7 @@ std::vector<std::string> settings(const Values& deck, const Level& level) {
   for (const std::string& prefix : all)
     if (finest > 0) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
   for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
-  to.scale("Wall/elements per period", elements_per_side(level.mesh) / 6.);
+  to.scale_whole("Wall/elements per period", elements_per_side(level.mesh) / 6., 4, 200);
   set_time(to, level.time);
   set_quadrature(to, level.quadrature);
   return to.all;

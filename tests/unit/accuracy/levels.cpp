@@ -72,6 +72,8 @@ TEST(Levels, RefinePlatesAndPosts) {
                             "Particles/ball/Surface/elements per side=12"})
     EXPECT_TRUE(sets(posts, {5, 5, 5}, finer)) << finer;
   EXPECT_FALSE(sets(posts, {5, 5, 5}, "Particles/post/Surface/elements per side=12"));
+  EXPECT_TRUE(sets(with(posts, {{"Wall/elements per period", "10"}}), {1, 1, 1}, "Wall/elements per period=7"));  // a whole number
+  EXPECT_TRUE(sets(with(posts, {{"Wall/elements per period", "6"}}), {0, 0, 0}, "Wall/elements per period=4"));   // the smallest that the key allows
   EXPECT_THROW(check_levels(with(plain, {{"Wall/normal", "[0, 0, 1]"}, {"Domain/side lengths", "[4, 4, 4]"}})), UserError);  // default not known
 }
 
