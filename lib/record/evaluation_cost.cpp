@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -84,6 +83,7 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
     if (seconds > longest)
       return {{"evaluation", formatted("not timed, because one velocity evaluation would take some %.0f s, by %.2g s on %.0f elements", seconds,
                                        cost.seconds, cost.elements)}};
+    break;
   }
   const Cost cost = measured(scene);
   return {{"evaluation", formatted("%.3g kernel evaluations and %.2g s for one velocity, after %.2g s of setup", cost.kernel_evaluations,
