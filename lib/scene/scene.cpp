@@ -180,13 +180,12 @@ void check_motion(const Scene& scene) {
 
 /// Throws UserError if the first-kind equation for rigid bodies does not apply to the scene.
 void check_first_kind(const Scene& scene) {
-  const std::string word = "Solvers/rigid bodies `first kind`";
   double n_points = 0;
-  for (const Scene& one : scene.alone()) {
-    if (!one.particle.rigid())
-      throw UserError(word + " is for rigid bodies only, but " + (one.name.empty() ? "Particle" : "Particles/" + one.name) + " deforms.");
-    n_points += points(one);
-  }
+  for (const Scene& one : scene.alone())
+    if (one.particle.rigid()) n_points += points(one);
+  if (n_points == 0)
+    throw UserError(std::string("Solvers/rigid bodies `first kind` is for rigid bodies, but ") +
+                    (scene.particles.empty() ? "Particle deforms." : "all Particles deform."));
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
@@ -294,18 +293,19 @@ std::vector<Scene> Scene::alone() const {
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto") return solvers.rigid_bodies == "first kind";
-  if (!runs_in_time() || output.power_balance || particles.size() < 2) return false;
+  if (!runs_in_time() || particles.size() < 2) return false;
   double unknowns = 0;
   for (const ParticleKind& kind : particles) {
-    if (!kind.particle.rigid() || !kind.adaptation.enabled) return false;
+    if (!kind.particle.rigid()) continue;
+    if (!kind.adaptation.enabled) return false;
     unknowns += 3 * static_cast<double>(kind.surface.n_points());
   }
-  return unknowns <= most_unknowns;
+  return unknowns > 0 && unknowns <= most_unknowns;
 }
 
 void Scene::check() const {
   quadrature.check();
-  if (solvers.rigid_bodies == "first kind") check_first_kind(*this);
+  if (solvers.rigid_bodies == "first kind" && name.empty()) check_first_kind(*this);
   Rejections found;
   reject_power(found);
   if (!particles.empty()) return check_several(*this), found.throw_if_any();
