@@ -42,7 +42,7 @@ namespace tanktread::coupling {
 ///
 /// Among other boundaries of the fluid, A includes their response to f: the images on a lattice, the wall of a tube and its pressure drop, plates and
 /// posts (2.47), and deformable particles; v_inf includes the flow that they cause without bodies. These additions are smooth, and A remains
-/// self-adjoint. The densities are then found by GMRES, together with the velocity of deformable particles (2.57), and the preconditioner is the
+/// self-adjoint. The densities are then found by GMRES, together with the velocity of deformable particles (2.52), and the preconditioner is the
 /// factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 do not respond. The pressure drop of a duct flow
 /// is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
