@@ -279,8 +279,8 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles. `responds`: whether anything around
-/// rigid bodies responds to their tractions.
+/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles. `responds`: whether anything other
+/// than rigid bodies responds to their tractions.
 Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};

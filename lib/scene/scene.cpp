@@ -183,9 +183,7 @@ void check_first_kind(const Scene& scene) {
   double n_points = 0;
   for (const Scene& one : scene.alone())
     if (one.particle.rigid()) n_points += points(one);
-  if (n_points == 0)
-    throw UserError(std::string("Solvers/rigid bodies `first kind` is for rigid bodies, but ") +
-                    (scene.particles.empty() ? "Particle deforms." : "all Particles deform."));
+  if (n_points == 0) throw UserError("Solvers/rigid bodies `first kind` is for rigid bodies, but every Particle deforms.");
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
@@ -293,8 +291,7 @@ std::vector<Scene> Scene::alone() const {
 /// iterations on the finer mesh. One body beside a drop of viscosity ratio 5 errs nearly as much by either, and takes twice the time by tractions.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
-  if (solvers.rigid_bodies != "auto") return solvers.rigid_bodies == "first kind";
-  if (!runs_in_time()) return false;
+  if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";
   double unknowns = 0;
   int bodies = 0;
   for (const ParticleKind& kind : particles) {

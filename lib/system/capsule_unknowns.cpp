@@ -118,8 +118,8 @@ Blocks Capsule::velocity_blocks() const {
   return blocks;
 }
 
-/// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). `flow`: velocity without tractions and v. Returns
-/// the velocity of all particles. e.load_: load without tractions and v; they are added.
+/// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
+/// velocity without tractions and v. The loads that depend on them are added to e.load_.
 Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow) {
   const auto clock = phases_.time("tractions");
   assemble_layers(x);

@@ -42,7 +42,7 @@ Net measured_net(std::span<const Particle> particles, const Net& unstressed, con
   return result;
 }
 
-double viscosity_contrast(const Particle& particle) { 
+double viscosity_contrast(const Particle& particle) {
   if (particle.rigid) return particle.by_traction ? 0 : -1;
   return 1 - particle.viscosity_ratio;
  }

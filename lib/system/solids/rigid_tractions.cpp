@@ -95,8 +95,8 @@ Net RigidTractions::product(const Net& y) {
   return all;
 }
 
-/// Returns the unknowns y, one column per column of `velocities`: velocities of the bodies at the sites and, in the other rows, the right-hand side of
-/// the system for the velocity of deformable particles. If nothing responds, only the force densities are found, and the other rows are unchanged.
+/// Returns the unknowns y, one column per column of `velocities`. These are velocities of the bodies at the sites and, in other rows, the right-hand
+/// side of the system for the velocity of deformable particles. If nothing responds, only the force densities are found; other rows are unchanged.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!around_.responds) return layer_.solved(velocities);
@@ -142,8 +142,8 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at the
-/// Gauss points `between_`. `flow`: v_inf at these points. `v`: velocity of all particles.
+/// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at
+/// the Gauss points `between_`. `flow`: v_inf at these points. `v`: velocity of all particles.
 Net RigidTractions::left_over(const Net& x, const Net& y, const Net& v, Net flow) {
   between_layer_.place(x, measure_);
   if (between_double_) between_double_->place(x);

@@ -71,8 +71,8 @@ class RigidTractions {
     Net flow;       ///< control values of the velocity without f and v (4.2)
     bool responds;  ///< false: velocities on the bodies depend on y only through their own single layers
 
-    /// Returns B y for unknowns y and the velocity at all collocation sites that f causes, which is empty on a lattice: in rows of bodies the velocity
-    /// that y causes at the sites, and in other rows v minus the control values of this velocity, projected onto constant volumes. Collective.
+    /// Returns B y. `caused`: velocity at all collocation sites that f causes; empty on a lattice. Rows of bodies contain the velocity that y causes
+    /// at the sites. Other rows contain v minus the control values of this velocity, projected onto constant volumes. Collective.
     std::function<Net(const Net& y, const Net& caused)> product;
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
@@ -84,8 +84,8 @@ class RigidTractions {
   };
 
   /// Solves for the densities and motions of the bodies, and the velocity of the deformable particles, with net x, for which the tube, if any, must
-  /// have been set. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions. Results are kept until the next call.
-  /// Collective.
+  /// have been set. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions. Results are kept until the next
+  /// call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow, Surroundings around);
 
   /// Returns the results for the bodies in the order of the particles.

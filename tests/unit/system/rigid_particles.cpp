@@ -248,8 +248,8 @@ TEST(RigidTractions, AnArrayResists) {
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
 }
 
-/// A drop 50 radii away changes the motion by 1e-6 at most: the force on the pair causes a strain of order 1/r^2 at the drop, and the stresslet of the
-/// drop a velocity of order 1/r^4 at the pair.
+/// A drop 50 radii away changes the motion by 1e-6 at most: the force on the pair causes a strain of order 1/r^2 at the drop, and the stresslet of
+/// the drop a velocity of order 1/r^4 at the pair.
 TEST(RigidTractions, AFarDropChangesNothing) {
   const Rigid pulled{false, {}, Vec3(6 * pi * viscosity, 0, 0), Vec3::Zero()};
   std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}};
@@ -287,7 +287,9 @@ struct BesideDrop {
 
 void expect_agreement(const BesideDrop& fine, double viscosity_ratio) {
   const BesideDrop coarse(true, 3, viscosity_ratio), finer(true, 5, viscosity_ratio);
-  const auto error = [&](const BesideDrop& of) { return (of.of_body - fine.of_body).norm() / fine.of_body.norm() + (of.of_drop - fine.of_drop).norm(); };
+  const auto error = [&](const BesideDrop& other) {
+    return (other.of_body - fine.of_body).norm() / fine.of_body.norm() + (other.of_drop - fine.of_drop).norm();
+  };
   EXPECT_LT(error(coarse), 2e-3);  // 1e-4 to 7e-4
   EXPECT_LT(error(finer), 2e-5);   // 1e-5, of which the double layers have a part
 }
