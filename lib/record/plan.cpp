@@ -279,28 +279,31 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles.
-Lines particle_lines(const Scene& one, int n_points, bool tree) {
+/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles. `responds`: whether anything other
+/// than rigid bodies responds to their tractions.
+Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
     if (one.surfactant) lines.emplace_back("surfactant", surfactant_line(one));
     lines.emplace_back("mesh", mesh_line(one));
     return lines;
   }
-  const bool first_kind = one.solvers.rigid_bodies == "first kind", around = one.tube.present || one.domain.present;
-  const char* by_traction = around ? "its traction, by GMRES preconditioned with factors of the isolated bodies, in a system"
-                                   : "its traction, in a factored system";
-  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; %s of %d unknowns per velocity %s",
-                             one.particle.motion == Motion::free ? "free" : "with prescribed motion",
-                             first_kind ? by_traction : "a double layer, in a system", 3 * n_points, first_kind ? "(2.40)" : "(2.23)")}};
+  const bool first_kind = one.solvers.rigid_bodies == "first kind";
+  const char* by_traction = responds ? "its traction, by GMRES preconditioned with factors of the bodies, for each velocity (2.40)"
+                                     : "its traction, in a factored system for each velocity (2.40)";
+  return {{"body", formatted("rigid, %s: no membrane, no moving mesh; ", one.particle.motion == Motion::free ? "free" : "with prescribed motion") +
+                       (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
 }
 
 /// Adds the lines of all particles to the plan. The lines of a single particle are added unchanged. If there are several, each particle has one line,
 /// and particles with equal lines share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
+  const bool responds = std::ranges::any_of(alone, [](const Scene& one) {
+    return one.tube.present || one.domain.present || (!one.particle.rigid() && one.has_velocity_system());
+  });
   for (const Scene& one : alone) {
-    const Lines own = particle_lines(one, n_points, tree);
+    const Lines own = particle_lines(one, n_points, tree, responds);
     if (alone.size() == 1) {
       lines.insert(lines.end(), own.begin(), own.end());
       return;

@@ -33,8 +33,6 @@ void Scene::reject_power(Rejections& to) const {
   to.pair(asked && flow.type != "duct" && !tube.present && !wall.solid && !stokes::AmbientFlow(flow).affine(), word,
           {flow.choice(), "Flow/type `parabolic`"}, "it is available in flows with a uniform gradient, in tubes and between plates");
   to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
-  to.pair(asked && solvers.rigid_bodies == "first kind", word, "Solvers/rigid bodies `first kind`",
-          "it needs a deformable particle, and `first kind` is for rigid bodies only");
 }
 
 void Scene::reject(Rejections& to) const {

@@ -9,8 +9,8 @@
 #include "base/formatted.hpp"
 #include "base/small_matrices.hpp"
 #include "system/collocation.hpp"
+#include "system/solids/rigid_tractions.hpp"
 #include "system/symmetry.hpp"
-#include "system/solvers/tube_system.hpp"
 
 namespace tanktread::coupling {
 
@@ -204,22 +204,21 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   push_bodies(x);
-  if (tractions_) return solve_tractions(e, x);
-  const bool constrained = parameters_.volume.constraint != "none";
+  const bool deforms = !tractions_ || !tractions_->alone(), constrained = deforms && parameters_.volume.constraint != "none";
   const Net b = constrained ? flux_vector(x) : Net();
   Net c = b;
-  Net f = membrane_load(e, x, constrained ? &c : nullptr);
-  rigid_.add_load(f);
+  Net f = deforms ? membrane_load(e, x, constrained ? &c : nullptr) : Net::Zero(x.rows(), 3);
+  if (!tractions_) rigid_.add_load(f);
   e.load_ = f;
   Net v = explicit_velocity(x, f, {}, &e.response_);
-  rigid_.add_lacking(v);
-  rigid_.subtract_prescribed(v);
+  if (!tractions_) rigid_.add_lacking(v), rigid_.subtract_prescribed(v);
   if (constrained) constrain(v, b, c);
   if (viscous_) viscous_->update(x, own_elements_);
-  if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
+  if (tractions_) v = solve_tractions(e, x, b, c, symmetric(v));
+  else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   e.unknowns_ = v;
-  if (viscous_) e.load_ += viscous_load(x, symmetric(v));
-  if (!rigid_.empty()) {
+  if (viscous_ && !tractions_) e.load_ += viscous_load(x, symmetric(v));
+  if (!rigid_.empty() && !tractions_) {
     e.unknowns_ = symmetric(v);
     e.load_ += rigid_.completing_load(v);
     rigid_.move(v);
@@ -229,25 +228,6 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   const auto clock = phases_.time("interface motion");
   v = interface_->velocity(x, constrained ? b : flux_vector(x), v);
   if (constrained) constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
-  return v;
-}
-
-/// Computes the velocity of a scene that contains only rigid bodies, from the tractions on them (2.40).
-Net Capsule::solve_tractions(Evaluation& e, const Net& x) {
-  const auto clock = phases_.time("tractions");
-  std::vector<Vec3> centres;
-  std::vector<Rigid> driven;
-  for (std::size_t p = 0; p < particles().size(); ++p) centres.push_back(rigid_.centre(p)), driven.push_back(rigid_.given(p));
-  tractions_->solve(x, centres, driven, flow_);
-  Net v(x.rows(), 3);
-  for (std::size_t p = 0; p < particles().size(); ++p) {
-    const RigidTractions::Body& body = tractions_->bodies()[p];
-    rigid_.move(p, body.motion, body.force, body.torque, v);
-  }
-  e.load_ = -tractions_->density();
-  e.unknowns_ = v;
-  note_tractions(v);
-  if (tube_) e.response_ = tube_->respond(e.load_, {}, tractions_->lacking_pressure());
   return v;
 }
 
@@ -335,23 +315,9 @@ Net Capsule::viscous_work(const membrane::ViscousLoad& c, const Net& v) {
   return work;
 }
 
-void Capsule::note_tractions(const Net& v) {
-  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
-}
-
-void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
-  ++work_.velocity_solves;
-  work_.velocity_iterations += report.iterations;
-  work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
-  const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
-  const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
-  const std::string system = rigid_.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
-  if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
-}
-
-/// Returns rows of the double layer D (4.2) on every rank. Each row is provided by the rank that owns its point. `assembled`: true if the rank-owned
-/// rows have been assembled before.
-stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets, bool assembled) {
+/// Returns rows of the double layer D (4.2) on every rank. Each row is provided by the rank that owns its point.
+stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> targets) {
+  const bool assembled = double_rows_.cols() > 0;
   std::vector<int> own;
   std::ranges::copy_if(targets, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(own_points_, i); });
   stokes::Rows<double> made;
@@ -368,94 +334,9 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
   return rows;
 }
 
-/// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. P is the projection (2.8) that removes changes of the volumes, given by the vectors b and c;
-/// if b and c are empty, the volumes are free and P = 1. In a tube, B either includes the response of the wall to v (option `schur`), or
-/// solve_blocks() solves for v and the wall tractions together. The iteration starts from `guess`, or without one or with rigid bodies from rhs.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
-  const auto clock = phases_.time("velocity system");
-  const Eigen::Index n = x.rows();
-  // Thin films between rigid bodies take many iterations, for which it is faster to assemble the matrix (72 n^2 bytes), if it takes less than 1 GB.
-  const bool many_iterations = !rigid_.empty() && 72. * static_cast<double>(n * n) < 1e9;
-  const bool assembled = double_layer_ && !repeats() && parameters_.solvers.assembled(double_layer_->by_clusters() && !many_iterations);
-  if (double_layer_) double_layer_->place(x);
-  if (assembled) double_layer_->assemble(own_targets(), double_rows_);
-  const bool single_assembled = viscous_ && !repeats() && parameters_.solvers.assembled(layer_.by_clusters());
-  if (viscous_) layer_.place(x, measure());
-  if (single_assembled) layer_.assemble(own_targets(), single_rows_);
-  const auto times = [&](const stokes::Rows<double>& all, const Net& v) {  // product of v and assembled rows at all targets, divided among the ranks
-    Net at_targets = zero_at_targets();
-    const Eigen::VectorXd rows = all * Eigen::Map<const Eigen::VectorXd>(v.data(), v.size());
-    for (Eigen::Index k = 0; const int i : own_targets()) at_targets.row(i) = rows.segment<3>(3 * k++).transpose();
-    gather_targets(false, at_targets);
-    return at_targets;
-  };
-  const auto load_of = [&](const Net& v) {  // part of the load that depends on v (viscous membranes, prescribed rigid motions), or empty
-    Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
-    if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
-    return load;
-  };
-  const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
-    if (!double_layer_ && !viscous_) return v;
-    Net hv = assembled ? times(double_rows_, v) : double_layer_ ? double_layer_of(v) : zero_at_targets();
-    if (load.size() > 0) hv -= (single_assembled ? times(single_rows_, load) : single_layer_of(x, load)) / parameters_.viscosity;
-    Net bv = v - (projection_ ? projection_->control_values(hv) : collocation_.solve(hv));
-    rigid_.complete(v, bv);
-    return bv;
-  };
-  if (!schur()) return solve_blocks([&](const Net& v) { return without_wall(v, load_of(v)); }, f, b, c, rhs);
-  const auto project = [&](Net& v) {
-    if (b.size() > 0) constrain(v, b, c);
-  };
-  const auto apply = [&](const double* in, double* out) {
-    Net v = Eigen::Map<const Net>(in, n, 3);
-    project(v);
-    const Net load = load_of(v);
-    Net bv = without_wall(v, load);
-    if (tube_ || solids()) bv -= velocity_by_walls(x, load, v);
-    project(bv);
-    Eigen::Map<Net>(out, n, 3) = bv;
-  };
-  const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  Eigen::VectorXd v = guess.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size())) : right;
-  if (!alone_) alone_.emplace(particles(), rigid_, rest_, parameters_.quadrature);
-  const auto rows_of = [&](std::span<const int> targets) { return double_rows_of(x, targets, assembled); };
-  const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
-  const auto precondition = [&](const double* in, double* out) {
-    Net y = Eigen::Map<const Net>(in, n, 3);
-    alone_->take_to_sites(y);
-    films.add(y);
-    alone_->solve(rigid_, y);
-    Eigen::Map<Net>(out, n, 3) = y;
-  };
-  const LinearSystem system{velocity_blocks(), apply, alone_->empty() ? Apply() : precondition};
-  note(velocity_solver_.solve(system, right, v, parameters_.solvers.tolerance), v);
-  Net solution = Eigen::Map<const Net>(v.data(), n, 3);
-  project(solution);
-  return solution;
-}
-
 void Capsule::forget_recycled() const {
   for (const Krylov* solver : {&velocity_solver_, &step_solver_, &inner_solver_}) solver->forget();
   if (tube_) tube_->forget_recycled();
-}
-
-/// Solves for v, f^D, dp (2.5)-(2.7) and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f is also the initial guess of v.
-Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
-  const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
-  const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
-  const Eigen::VectorXd right = system.right_hand_side(rhs, f);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
-  x.head(rhs.size()) = right.head(rhs.size());
-  note(velocity_solver_.solve(system.linear_system(velocity_blocks(), parameters_.solvers.tube), right, x, parameters_.solvers.tolerance), x);
-  return Eigen::Map<const Net>(x.data(), rhs.rows(), 3);
-}
-
-Blocks Capsule::velocity_blocks() const {
-  if (particles().size() == 1) return {{"velocity", 3 * space_.n_points}};
-  Blocks blocks;
-  for (const Particle& particle : particles())
-    blocks.push_back({formatted("velocity of particle %d", static_cast<int>(blocks.size()) + 1), 3 * particle.block.n_points});
-  return blocks;
 }
 
 /// Moves x onto the prescribed volumes by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails.

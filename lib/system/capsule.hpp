@@ -17,7 +17,6 @@
 #include "system/ranks.hpp"
 #include "system/solids/one_body.hpp"
 #include "system/solids/rigid_particles.hpp"
-#include "system/solids/rigid_tractions.hpp"
 #include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solvers/frozen_operator.hpp"
@@ -41,6 +40,8 @@
 #include "surface/symmetry.hpp"
 
 namespace tanktread::coupling {
+
+class RigidTractions;
 
 /// Counts of operations, as a measure of cost that does not depend on the machine.
 struct Work {
@@ -83,7 +84,7 @@ struct CapsuleParameters {
 /// the mass matrix M of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                 (3.11)
 ///
 /// Rigid bodies are treated by RigidParticles: the unknown in their rows is the double-layer density w of (2.23). Their motion is not stiff, so that
-/// their rows of the Jacobian are set to zero. If all particles are rigid, the system may be solved for their tractions instead (RigidTractions).
+/// their rows of the Jacobian are set to zero. Alternatively the tractions on them are unknown instead (RigidTractions).
 ///
 /// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The rows of all other control points are
 /// mirror images of these rows.
@@ -237,7 +238,10 @@ class Capsule : public Dynamics {
   std::vector<Mat3> gradients_at(const Net& x) const;
   Net in_cell(Evaluation& e, const Net& guess);
   Net solve(Evaluation& e, Net x, const Net& guess);
-  Net solve_tractions(Evaluation& e, const Net& x);
+  Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
+  Mat3 moment_by_traction(Evaluation& at, std::size_t p);
+  void assemble_layers(const Net& x);
+  Net layers_of(const Net& x, const Net& v, const Net& f);
   bool deform_cell(double time);
   Net single_layer_of(const Net& x, const Net& f);
   Net double_layer_of(const Net& v);
@@ -255,6 +259,7 @@ class Capsule : public Dynamics {
   const std::vector<int>& own_targets() const { return projection_ ? projection_->own() : own_points_; }
   Net zero_at_targets() const { return Net::Zero(projection_ ? projection_->values().rows() : space_.n_points, 3); }
   Net control_values(Net at_targets);
+  Net serial_control_values(const Net& u) const { return projection_ ? projection_->control_values(u) : collocation_.solve(u); }
   void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
   Net solved(const membrane::SymmetricSolver& a, Net field);
   Net work_of_loads(const Net& x, std::vector<Net>& sums);
@@ -273,22 +278,20 @@ class Capsule : public Dynamics {
   Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
   Net frozen_viscous(const Net& v);
   Net fluid_velocity_change(const Net& delta, const Net& work = {});
-  stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets, bool assembled);
+  stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets);
   Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
   Blocks velocity_blocks() const;
   Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
-  void note_tractions(const Net& v);
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
-  bool by_tractions() const { return parameters_.solvers.rigid_bodies == "first kind"; }
   bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && !tractions_ && rigid_.empty(); }  // true if the unknowns are velocities of control
+  bool unknowns_follow() const { return !interface_ && rigid_.empty(); }  // true if the unknowns are velocities of control
                                                                                          // points
   bool defect_without_system() const;
   Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
-  bool schur() const { return !tube_ || parameters_.solvers.tube == "schur"; }
+  bool schur() const { return !tube_ || tractions_ || parameters_.solvers.tube == "schur"; }
 
   const spline::Space& space_;
   Net unstressed_, rest_;
@@ -322,7 +325,7 @@ class Capsule : public Dynamics {
   Net frozen_at_;                          // shape at which the frozen operators were assembled
   Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
   RigidParticles rigid_;
-  std::optional<RigidTractions> tractions_;  // set if all particles are rigid and solved for by their tractions
+  std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies, solved for by their tractions
   std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first
                                           // use
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "system/capsule.hpp"
+#include "system/solids/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 
@@ -66,7 +67,7 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
   if (tube_) return collocation_.solve(tube_->respond(f, v).velocity);
   Net u = zero_at_targets();
   add_solids(x, f, v, false, u);
-  return projection_ ? projection_->control_values(u) : collocation_.solve(u);
+  return serial_control_values(u);
 }
 
 /// Constructs the response of plates and posts, if there are any.
@@ -75,7 +76,7 @@ void Capsule::put_among_solids() {
   lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_);
   lattice_.solids->set_reference(unstressed_, measure(), measured_on_present(particles()));
   if (tractions_) tractions_->put_among(*lattice_.solids);
-  else lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
+  lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {

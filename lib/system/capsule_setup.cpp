@@ -8,6 +8,7 @@
 
 #include "system/capsule.hpp"
 #include "system/collocation.hpp"
+#include "system/solids/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 
@@ -17,6 +18,8 @@ namespace {
 CapsuleParameters placed(CapsuleParameters parameters, const spline::Space& space) {
   if (parameters.particles.size() == 1) parameters.particles.front().space = &space;
   place(parameters.particles);
+  for (Particle& one : parameters.particles)
+    one.by_traction = one.rigid && parameters.solvers.rigid_bodies == "first kind";
   return parameters;
 }
 
@@ -64,7 +67,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
       step_solver_(parameters.solvers.of(parameters.solvers.implicit_step)),
       inner_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature, !by_tractions()),
+      rigid_(parameters_.particles, initial, parameters.viscosity, parameters.quadrature),
       tube_(std::move(tube)) {
   surface::Symmetry& symmetry = parameters_.symmetry;
   if (symmetry.fundamental().empty()) symmetry = surface::Symmetry(space.n_points);
@@ -77,9 +80,9 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (measure() == stokes::Measure::reference) mass_matrix_.release();
   nodal_.share(ranks.rank(), ranks.size(), symmetry.fundamental());
   make_layers();
-  if (by_tractions())
-    tractions_.emplace(space, initial, particles(), parameters.viscosity, parameters.quadrature, parameters.solvers, parameters.wall, tube_.get(),
-                       ranks);
+  if (parameters.solvers.rigid_bodies == "first kind" && !rigid_.empty())
+    tractions_ = std::make_unique<RigidTractions>(space, unstressed_, initial, particles(), parameters.viscosity, parameters.quadrature,
+                                                  parameters.solvers, parameters.wall, tube_.get(), own_points_, ranks);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return !one.rigid && one.material.viscosity.any(); }))
     viscous_.emplace(membrane_), linearised_viscous_.emplace(membrane_);
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.material.area_order > 0; })) {
@@ -94,7 +97,7 @@ Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& i
   if (tube_) {
     if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
     tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
-    if (!tractions_) tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
+    tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
   }
   for (const Particle& particle : particles())
     volume0_.push_back(particle.kept_volume ? *particle.kept_volume : surface::volume(*particle.space, particle.block.rows(initial)));
@@ -110,7 +113,7 @@ Capsule::~Capsule() = default;
 void Capsule::make_layers() {
   using stokes::Layer;
   const surface::Symmetry& symmetry = parameters_.symmetry;
-  const std::vector<double> contrasts = by_tractions() ? std::vector<double>() : viscosity_contrasts(particles());
+  const std::vector<double> contrasts = viscosity_contrasts(particles());
   const auto make = [&](std::optional<Layer>& layer, Layer::Kernel kernel, const stokes::Sites& sites, const std::vector<double>& factor) {
     layer.emplace(kernel, space_, sites, parameters_.quadrature, factor);
   };

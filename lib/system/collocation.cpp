@@ -9,16 +9,22 @@
 namespace tanktread::coupling {
 
 BetweenSites between_sites(const spline::Space& space, const Net& surface) {
+  const spline::Block all = spline::whole(space);
+  return between_sites(space, surface, {&all, 1});
+}
+
+BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks) {
   stokes::Sites places;
   std::vector<double> areas;
-  for (int e = 0; e < static_cast<int>(space.elements.size()); ++e) {
-    const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
-    for (int q = 0; q < rule.size(); ++q) {
-      const spline::Site place{e, rule.s[q], rule.t[q]};
-      places.push_back({place});
-      areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
+  for (const spline::Block& block : blocks)
+    for (int e = block.first_element; e < block.first_element + block.n_elements; ++e) {
+      const quadrature::TensorRule& rule = quadrature::tensor_gauss(space.elements[static_cast<std::size_t>(e)].degree);
+      for (int q = 0; q < rule.size(); ++q) {
+        const spline::Site place{e, rule.s[q], rule.t[q]};
+        places.push_back({place});
+        areas.push_back(rule.weights[q] * surface::point(space, surface, place).jacobian);
+      }
     }
-  }
   const Eigen::SparseMatrix<double> values = value_matrix(space, places);
   return {places, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
 }

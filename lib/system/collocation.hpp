@@ -1,5 +1,7 @@
 #pragma once
+// Values of splines at collocation sites and between them.
 
+#include <span>
 
 #include <Eigen/SparseCore>
 
@@ -20,6 +22,7 @@ struct BetweenSites {
   Eigen::SparseMatrix<double> weights;  ///< N_A(q) times the area that q represents, shape (N, points)
 };
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
+BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks);  ///< points only on these surfaces
 
 /// Returns R_iA = N_A(xi_i) at the collocation sites, shape (N, N): maps control values to values at the sites (4.2).
 Eigen::SparseMatrix<double> collocation_matrix(const spline::Space& space);

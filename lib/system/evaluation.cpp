@@ -108,12 +108,8 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   const Particle& particle = system.particles()[p];
   const auto own = [&](const Net& net) { return particle.block.rows(net); };
   Mat3 moment;
-  if (system.tractions_) {
-    rigid();
-    moment = -system.tractions_->moment(p);
-    system.note_tractions(x_);
-  } else if (particle.rigid) {
-    moment = rigid().load_moment(p);
+  if (particle.rigid) {
+    moment = particle.by_traction ? system.moment_by_traction(*this, p) : rigid().load_moment(p);
   } else {
     Net of_particle = own(work());
     if (system.viscous()) of_particle += own(viscous_work());
@@ -121,7 +117,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
     if (!particle.loads.empty() || system.pressed())  // refers the moment to the centroid, because the load has a net force
       moment -= of_particle.colwise().sum().transpose() * surface::measures(*particle.space, own(x_)).centroid.transpose();
   }
-  if (const double contrast = viscosity_contrast(particle); contrast != 0 && !system.tractions_) {
+  if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
     std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
     std::iota(elements.begin(), elements.end(), particle.block.first_element);

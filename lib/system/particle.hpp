@@ -31,6 +31,7 @@ struct Particle {
   double radius = 1;                          ///< R_C, radius of the sphere of equal volume
   membrane::Material material;
   stokes::Measure measure = stokes::Measure::reference;  ///< area of its load: unstressed (3.7) or current (3.6); not for a rigid body
+  bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
   std::optional<double> kept_volume;  ///< volume V0 to be kept, if it is not the volume of the initial net, for example after a change of mesh
@@ -57,7 +58,7 @@ std::vector<bool> measured_on_present(std::span<const Particle> particles);
 /// Returns the net whose area defines the loads, force per area. The rows of a particle are rows of `x` or `unstressed`, depending on its measure.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
-/// Returns the factor of the particle's double layer: 1 - lambda, or -1 for a rigid body, whose density is w of (2.23).
+/// Returns the factor of the particle's double layer: 1 - lambda; for a rigid body -1 if its density is w of (2.23), or 0 if its traction is unknown.
 double viscosity_contrast(const Particle& particle);
 
 /// Returns the viscosity contrast of each control point of all particles.

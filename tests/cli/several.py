@@ -386,7 +386,6 @@ def mistakes_are_named():
         ("Particles/small/density difference=1", ["Particles/small", "Flow/gravity"]),
         ("Particles/small/Membrane/load=strong", ["Particles/small/Membrane/load"]),
         ("Particles/drop/Interface/motion=sideways", ["Particles/drop/Interface/motion", "relaxed"]),
-        ("Solvers/rigid bodies=first kind", ["Solvers/rigid bodies", "Particles/capsule deforms"]),
         ("Membrane/law=Skalak", ["Membrane and Particles contradict", "Particles/defaults"]),
         ("Tube/section=circle", ["Particles/capsule", "does not fit into the tube"]),
         ("Expect/taylor_inertia/value=1", ["tolerance"]),

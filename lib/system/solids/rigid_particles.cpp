@@ -97,8 +97,8 @@ Mat3 cross(const Vec3& r) {
 
 }  // namespace
 
-RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature,
-                               bool solved_here) {
+RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity,
+                               const quadrature::Options& quadrature) {
   for (const Particle& particle : particles) {
     of_particle_.push_back(particle.rigid ? static_cast<int>(bodies_.size()) : -1);
     if (!particle.rigid) continue;
@@ -109,7 +109,7 @@ RigidParticles::RigidParticles(std::span<const Particle> particles, const Net& r
     const Net x = particle.block.rows(rest);
     body.rest_centre = body.centre = surface::measures(*particle.space, x).centroid;
     body.rest = x.rowwise() - body.centre.transpose();
-    if (!solved_here) continue;
+    if (particle.by_traction) continue;
     const auto alike = std::ranges::find_if(bodies_, [&](const Body& other) {
       return other.lacking && other.rest.rows() == body.rest.rows() && (other.rest - body.rest).norm() <= 1e-12 * body.rest.norm();
     });

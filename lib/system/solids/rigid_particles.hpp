@@ -46,9 +46,8 @@ struct OwnLacking {
 /// Nets are stacked nets of all particles. A body's rows of a net x stand for the position of the rigid body that fits these rows best.
 class RigidParticles {
  public:
-  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid. `solved_here`: true if the unknown of
-  /// the bodies is the density w of (2.23), false if RigidTractions solves for their tractions.
-  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature, bool solved_here);
+  /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid.
+  RigidParticles(std::span<const Particle> particles, const Net& rest, double viscosity, const quadrature::Options& quadrature);
 
   bool empty() const { return bodies_.empty(); }
   bool prescribed() const;  ///< true if the motion of any body is prescribed
@@ -60,6 +59,7 @@ class RigidParticles {
   /// forces act on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
   void push(const Net& work);
 
+  // The next six functions are for bodies whose unknown is w (2.23), not their traction.
   void add_load(Net& load) const;            ///< adds the load df (2.23) of bodies with given force and torque
   void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
                                              ///< body's load f

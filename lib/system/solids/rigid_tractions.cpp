@@ -1,10 +1,10 @@
 #include "system/solids/rigid_tractions.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/LU>
 
-#include "surface/geometry.hpp"
 #include "system/solids/rigid_body.hpp"
 
 namespace tanktread::coupling {
@@ -31,6 +31,18 @@ void set_unit_strains(const Net& at, const spline::Block& block, const Vec3& cen
   for (int k = 0; k < strains; ++k) columns.col(k).segment(3 * block.first_point, 3 * block.n_points) = flat(Net(from_centre * unit_strain(k)));
 }
 
+std::vector<Particle> bodies_among(std::span<const Particle> particles) {
+  std::vector<Particle> bodies;
+  std::ranges::copy_if(particles, std::back_inserter(bodies), [](const Particle& one) { return one.rigid.has_value(); });
+  return bodies;
+}
+
+std::vector<spline::Block> blocks_of(std::span<const Particle> particles) {
+  std::vector<spline::Block> blocks;
+  for (const Particle& one : particles) blocks.push_back(one.block);
+  return blocks;
+}
+
 /// Returns the changes of the motions, six per body, that produce the missing forces and torques. Prescribed motions do not change.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
@@ -43,119 +55,76 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
 
 }  // namespace
 
-RigidTractions::RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
-                               const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall,
-                               Tube* tube, Ranks& ranks)
-    : particles_(particles),
+RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
+                               double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
+                               const std::optional<stokes::PlaneWall>& wall, Tube* tube, const std::vector<int>& own, Ranks& ranks)
+    : n_particles_(particles.size()),
+      particles_(bodies_among(particles)),
       viscosity_(viscosity),
-      around_{tube},
+      walls_{tube},
       ranks_(ranks),
-      own_points_(ranks.share(space.n_points)),
-      between_(between_sites(space, rest)),
-      layer_(stokes::Layer::Kernel::single_layer, space, space.collocation, quadrature),
+      layer_(particles, viscosity, quadrature, wall, own, ranks),
+      between_(between_sites(space, rest, blocks_of(particles_))),
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
+      measure_(coupling::measure(particles)),
       sites_(collocation_matrix(space)),
       mass_(space, 8),  // eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
-      bodies_(particles.size()) {
-  for (stokes::Layer* layer : {&layer_, &between_layer_})
-    if (wall) layer->set_wall(*wall);
-  for (std::size_t p = 0; p < particles.size(); ++p)
+      bodies_(particles_.size()) {
+  between_layer_.set_reference(unstressed, measured_on_present(particles));
+  if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
+    between_double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, quadrature, std::move(contrasts));
+  if (wall) between_layer_.set_wall(*wall);
+  if (wall && between_double_) between_double_->set_wall(*wall);
+  for (std::size_t p = 0; p < particles_.size(); ++p)
     for (int k = 0; k < 6; ++k)
-      if (!particles[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
+      if (!particles_[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
 }
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
-  for (stokes::Layer* layer : {&layer_, &between_layer_}) layer->repeat(cell);
+  between_layer_.repeat(cell);
+  if (between_double_) between_double_->repeat(cell);
   repeats_ = true;
 }
 
-/// Sets, for each body, the two vectors of the regularising term of (2.10): the flux vector b = dV/dx, and s (R c)/(b.c), with R c the values of a
-/// velocity field c at the sites and s a scale. Any field c with nonzero flux b.c makes the system regular; the radial field about the mean of the
-/// sites is used.
-void RigidTractions::make_regular(const Net& x, const Net& at) {
-  flux_ = outward_ = Net::Zero(x.rows(), 3);
-  for (const Particle& body : particles_) {
-    const Net own = body.block.rows(at), outward = own.rowwise() - own.colwise().mean();
-    body.block.rows(flux_) = surface::Geometry(*body.space).volume_gradient(body.block.rows(x));
-    body.block.rows(outward_) = 2 * body.radius / 3 / body.block.rows(flux_).cwiseProduct(outward).sum() * outward;
-  }
-}
-
-/// Returns the regularised single-layer operator A of the bodies at the sites, without the images on a lattice and the response of a tube.
-Eigen::MatrixXd RigidTractions::system() {
-  const Eigen::Index n = flux_.size();
-  Eigen::MatrixXd all = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& own) {
-    stokes::Rows<double> rows;
-    layer_.assemble(own_points_, rows);
-    for (std::size_t i = 0; i < own_points_.size(); ++i) own.middleRows<3>(3 * own_points_[i]) = rows.middleRows<3>(3 * static_cast<Eigen::Index>(i));
-  });
-  for (const Particle& body : particles_) {
-    const Eigen::Index first = 3 * body.block.first_point, length = 3 * body.block.n_points;
-    all.block(first, first, length, length) += flat(outward_).segment(first, length) * flat(flux_).segment(first, length).transpose();
-  }
+/// Returns B y of the surroundings, with the regularising term of (2.10).
+Net RigidTractions::product(const Net& y) {
+  Net all = around_.product(y, repeats_ ? Net() : layer_.velocity(y));
+  if (repeats_) all += layer_.regular(y);
   return all;
 }
 
-/// Returns the product of f with the regularised single layer A that includes all lattice images.
-Net RigidTractions::images_of(const Net& f) {
-  Net u = ranks_.divided<Net>(static_cast<int>(f.rows()), 3, [&](std::span<const int> own, Net& rows) { layer_.apply(f, own, rows); });
-  for (const Particle& body : particles_)
-    body.block.rows(u) += body.block.rows(flux_).cwiseProduct(body.block.rows(f)).sum() * body.block.rows(outward_);
-  if (around_.solids) u -= viscosity_ * by_solids(at_, around_.solids->respond(f, {}));
-  return u;
-}
-
-/// Returns the velocity of a flow of the solids at points on the bodies.
-Net RigidTractions::by_solids(const Net& at, const Solids::Flow& flow) {
-  return ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
-    if (&at == &at_) around_.solids->velocities(flow, u);
-    else around_.solids->velocity_at(at, own, flow, u);
-  });
-}
-
-/// Returns the velocity without bodies: v_inf, and the flow that solids add to it.
-Net RigidTractions::flow_at(const Net& at, const stokes::AmbientFlow& flow) {
-  Net v = flow.velocities(at);
-  if (around_.solids) v += by_solids(at, around_.solids->empty());
-  return v;
-}
-
-void RigidTractions::factor() {
-  factors_.reset();  // frees the old factors before the new matrix is allocated
-  alone_ = system();
-  if (around_.tube)
-    factors_.emplace(alone_);
-  else
-    factors_.emplace(std::exchange(alone_, {}));
-}
-
-/// Returns the force densities that produce the given velocities at the sites, one per column, for the viscosity 1.
+/// Returns the unknowns y, one column per column of `velocities`. These are velocities of the bodies at the sites and, in other rows, the right-hand
+/// side of the system for the velocity of deformable particles. If nothing responds, only the force densities are found; other rows are unchanged.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
-  if (!repeats_ && !around_.tube) return factors_->solve(velocities);
+  if (!around_.responds) return layer_.solved(velocities);
   const Eigen::Index n = velocities.rows();
-  const auto apply = [&](const double* in, double* out) {
-    const Net f = Eigen::Map<const Net>(in, n / 3, 3);
-    Eigen::Map<Net> u(out, n / 3, 3);
-    if (repeats_)
-      u = images_of(f);
-    else
-      u = as_net(alone_ * flat(f)) - viscosity_ * around_.tube->respond(f).velocity;
-  };
+  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n / 3, 3) = product(Eigen::Map<const Net>(in, n / 3, 3)); };
   const auto precondition = [&](const double* in, double* out) {
-    Eigen::Map<Eigen::VectorXd>(out, n) = factors_->solve(Eigen::Map<const Eigen::VectorXd>(in, n));
+    Eigen::Map<Eigen::VectorXd>(out, n) = layer_.solved(Eigen::Map<const Eigen::VectorXd>(in, n));
   };
   const LinearSystem system{{{"traction", n}}, apply, precondition};
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n, velocities.cols());
   for (Eigen::Index k = 0; k < all.cols(); ++k) {
     if (velocities.col(k).isZero(0)) continue;
-    Eigen::VectorXd f = all.col(k);
-    reports_.push_back(krylov_.solve(system, velocities.col(k), f, tolerance_));
-    all.col(k) = f;
+    Eigen::VectorXd y = all.col(k);
+    reports_.push_back(krylov_.solve(system, velocities.col(k), y, tolerance_));
+    all.col(k) = y;
   }
   return all;
+}
+
+/// Returns the unknowns y. If nothing responds, adds the velocity that the force densities cause on deformable particles.
+Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
+  Net y = as_net(unknowns);
+  if (around_.responds || alone()) return y;
+  Net forces = Net::Zero(y.rows(), 3);
+  for (const Particle& body : particles_) body.block.rows(forces) = body.block.rows(y);
+  Net lacking = product(forces);
+  for (const Particle& body : particles_) body.block.rows(lacking).setZero();
+  return y - lacking;
 }
 
 /// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
@@ -173,55 +142,68 @@ Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const
   return motion + freed(free_, resistance, given - held - resistance * motion);
 }
 
-/// Returns int N_A (v - v_inf - (1/mu) A f) dG, the collocation error weighted by the spline functions N_A. v: control values. `flow`: v_inf at the
-/// Gauss points `between_`.
-Net RigidTractions::left_over(const Net& x, const Net& f, const Net& v, const Net& flow) {
-  between_layer_.place(x);
-  const Net at = between_.values * x;
-  const Tube::Response response = around_.tube ? around_.tube->respond(f) : Tube::Response();
-  const Solids::Flow by_solids = around_.solids ? around_.solids->respond(f, {}) : Solids::Flow();
-  const Net u = ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& part) {
-    between_layer_.apply(f, own, part);
-    Net answer(part.rows(), 3);
-    if (around_.tube) around_.tube->velocity_at(at, response, own, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
-    if (around_.solids) around_.solids->velocity_at(at, own, by_solids, answer), part(own, Eigen::all) -= viscosity_ * answer(own, Eigen::all);
+/// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at
+/// the Gauss points `between_`. `flow`: v_inf at these points. `v`: velocity of all particles.
+Net RigidTractions::left_over(const Net& x, const Net& y, const Net& v, Net flow) {
+  between_layer_.place(x, measure_);
+  if (between_double_) between_double_->place(x);
+  const Net at = between_.values * x, load = around_.load(y);
+  const Tube::Response response = walls_.tube ? walls_.tube->respond(load, v) : Tube::Response();
+  const Solids::Flow by_solids = walls_.solids ? walls_.solids->respond(load, v) + walls_.solids->empty() : Solids::Flow();
+  flow += ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+    between_layer_.apply(load, own, u);
+    u /= -viscosity_;
+    Net part(u.rows(), 3);
+    const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
+    if (between_double_) between_double_->apply(v, own, part), add();
+    if (walls_.tube) walls_.tube->velocity_at(at, response, own, part), add();
+    if (walls_.solids) walls_.solids->velocity_at(at, own, by_solids, part), add();
   });
-  return between_.weights * (between_.values * v - flow - u / viscosity_);
+  return between_.weights * (between_.values * v - flow);
 }
 
-void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow) {
+void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
+                           Surroundings around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
-  layer_.place(x);
-  const Net at = at_ = sites_ * x;
-  if (around_.solids) around_.solids->place(x, at_, own_points_);
+  around_ = std::move(around);
+  at_ = sites_ * x;
+  layer_.place(x, at_, around_.responds && !repeats_);
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
+  const Net at_sites = sites_ * around_.flow;
+  Net empty = -around_.flow;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
-    set_unit_motions(at, particles_[p].block, centres[p], velocities.middleCols<6>(column));
-    set_unit_motions(x, particles_[p].block, centres[p], fields.middleCols<6>(column));
+    const spline::Block& block = particles_[p].block;
+    set_unit_motions(at_, block, centres[p], velocities.middleCols<6>(column));
+    set_unit_motions(x, block, centres[p], fields.middleCols<6>(column));
+    block.rows(empty) = block.rows(at_sites);
   }
-  velocities.col(m) = flat(flow_at(at_, flow));
-  make_regular(x, at);
-  factor();
-  const Eigen::MatrixXd of_all = viscosity_ * densities(velocities), z = of_all.leftCols(m);
+  velocities.col(m) = flat(empty);
+  const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
   Eigen::MatrixXd work(n, m);  // product of column k with a density: work of this density in the unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
-  Eigen::VectorXd f = z * motion - of_all.col(m);
-  const Net between = flow_at(between_.values * x, flow);
-  const Eigen::VectorXd v = fields * motion;
-  left_ = flat(left_over(x, as_net(f), as_net(v), between));
+  Eigen::VectorXd y = z * motion - of_all.col(m);
+  Net v = completed(y);
+  const Net unknowns = v;
+  const Eigen::VectorXd moving = fields * motion;
+  for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
+  const Net between = flow.velocities(between_.values * x);
+  left_ = flat(left_over(x, unknowns, v, between));
   const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
   const Eigen::VectorXd change = freed(free_, resistance, -lacking);
   motion += change;
-  f += z * change;
-  const Eigen::VectorXd integrals = work.transpose() * f + lacking;
-  density_ = as_net(f);
-  if (around_.tube && flow.duct()) lacking_pressure_ = around_.tube->lacking_pressure(between_, between, flow.amplitude(), density_, lacks[m]);
-  const Net weighted = mass * density_;
+  y += z * change;
+  unknowns_ = completed(y);
+  const Eigen::VectorXd integrals = work.transpose() * y + lacking;
+  Net f = Net::Zero(x.rows(), 3);
+  for (const Particle& body : particles_) body.block.rows(f) = body.block.rows(unknowns_);
+  if (walls_.tube && flow.duct() && alone())
+    lacking_pressure_ = walls_.tube->lacking_pressure(between_, between, flow.amplitude(), f, lacks[m]);
+  const Net weighted = mass * f;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;
@@ -232,10 +214,10 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
-  if (around_.tube) return bodies_[p].moment;
+  if (walls_.tube) return bodies_[p].moment;
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
   set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
-  return bodies_[p].moment + strain_of_products(viscosity_ * densities(velocities).transpose() * left_);
+  return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * left_);
 }
 
 }  // namespace tanktread::coupling

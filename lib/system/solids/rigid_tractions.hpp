@@ -1,13 +1,13 @@
 #pragma once
-// Several rigid bodies without other particles, solved by the tractions on all of them.
+// Several rigid bodies, also among deformable particles, solved by the tractions on all of them.
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
-#include "base/dense_factors.hpp"
 #include "base/types.hpp"
 #include "membrane/mass.hpp"
 #include "quadrature/options.hpp"
@@ -18,6 +18,7 @@
 #include "system/collocation.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
+#include "system/solids/body_layer.hpp"
 #include "system/solids/rigid_motion.hpp"
 #include "system/solids/solid_response.hpp"
 #include "system/solids/tube.hpp"
@@ -26,7 +27,7 @@
 
 namespace tanktread::coupling {
 
-/// The first-kind equation on all surfaces, with the force density f on the fluid:
+/// The first-kind equation on the surfaces of all rigid bodies, with the force density f on the fluid:
 ///
 ///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
 ///
@@ -39,23 +40,42 @@ namespace tanktread::coupling {
 /// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. In (2.23) they are linear in the error of one
 /// density. The matrix is dense, which limits the number of control points to a few thousand.
 ///
-/// On a lattice, A includes all images. Among solids, their response (2.47) is part of A, and the flow without bodies part of v_inf. In a tube, mu
-/// times the response of the wall and the pressure drop is subtracted from A. These additions are smooth. Each density is therefore found by a few
-/// iterations, and the preconditioner is the factored operator without these additions. The pressure drop of a duct flow is corrected like a force;
-/// this correction includes the interpolation error of v_inf (2.41).
+/// Among other boundaries of the fluid, A includes their response to f: the images on a lattice, the wall of a tube and its pressure drop, plates and
+/// posts (2.47), and deformable particles; v_inf includes the flow that they cause without bodies. These additions are smooth, and A remains
+/// self-adjoint. The densities are then found by GMRES, together with the velocity of deformable particles (2.52), and the preconditioner is the
+/// factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 do not respond. The pressure drop of a duct flow
+/// is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: common space of all bodies, in their order. `rest`: net of the bodies. `tube`: surrounding tube, or null. References must outlive this
-  /// object.
-  RigidTractions(const spline::Space& space, const Net& rest, std::span<const Particle> particles, double viscosity,
-                 const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
-                 Ranks& ranks);
+  /// Boundaries of the fluid other than particles; null if there are none.
+  struct Walls {
+    Tube* tube = nullptr;
+    SolidResponse* solids = nullptr;
+  };
 
-  /// Sets the lattice on which the bodies repeat, for all later calls.
+  /// `space`: common space of all particles. `unstressed`, `rest`: their nets. `own`: collocation points whose rows this rank computes. References
+  /// must outlive this object.
+  RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
+                 const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
+                 const std::vector<int>& own, Ranks& ranks);
+
+  /// Sets the lattice on which the particles repeat, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the solids in the lattice, which must outlive this object.
-  void put_among(SolidResponse& solids) { around_.solids = &solids; }
+  void put_among(SolidResponse& solids) { walls_.solids = &solids; }
+
+  /// What surrounds the bodies. Nets have one row per control point of all particles. Unknowns y are the force densities f in rows of bodies, and the
+  /// velocity v in rows of deformable particles.
+  struct Surroundings {
+    Net flow;       ///< control values of the velocity without f and v (4.2)
+    bool responds;  ///< false: velocities on the bodies depend on y only through their own single layers
+
+    /// Returns B y. `caused`: velocity at all collocation sites that f causes; empty on a lattice. Rows of bodies contain the velocity that y causes
+    /// at the sites. Other rows contain v minus the control values of this velocity, projected onto constant volumes. Collective.
+    std::function<Net(const Net& y, const Net& caused)> product;
+    std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
+  };
 
   struct Body {
     RigidMotion motion;
@@ -63,59 +83,57 @@ class RigidTractions {
     Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the correction of moment()
   };
 
-  /// Solves for the densities and motions of the bodies with net x, for which the tube, if any, must have been set. `centres`: centres of the bodies.
-  /// `driven`: their prescribed forces and torques, or motions. Results are kept until the next call. Collective.
-  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow);
+  /// Solves for the densities and motions of the bodies, and the velocity of the deformable particles, with net x, for which the tube, if any, must
+  /// have been set. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions. Results are kept until the next
+  /// call. Collective.
+  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow, Surroundings around);
 
+  /// Returns the results for the bodies in the order of the particles.
   const std::vector<Body>& bodies() const { return bodies_; }
 
-  /// Returns int f r dG of a body for the latest solve. Its symmetric traceless part is corrected for the collocation error. The correction takes
+  /// Returns int f r dG of body p for the latest solve. Its symmetric traceless part is corrected for the collocation error. The correction takes
   /// five additional solves, one for each unit strain. In a tube no part is corrected. Collective.
   Mat3 moment(std::size_t p);
 
-  const Net& density() const { return density_; }  ///< control values of f
+  bool alone() const { return bodies_.size() == n_particles_; }  ///< returns whether all particles are rigid bodies
+  const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
   double lacking_pressure() const { return lacking_pressure_; }         ///< correction of the pressure drop (2.7), for all bodies together
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
-  stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + between_layer_.evaluations(); }
+  stokes::Evaluations kernel_evaluations() const {
+    const stokes::Evaluations sum = layer_.evaluations() + between_layer_.evaluations();
+    return between_double_ ? sum + between_double_->evaluations() : sum;
+  }
 
  private:
-  /// Tube around the bodies, and solids among which they are; null if there are none.
-  struct Surroundings {
-    Tube* tube = nullptr;
-    SolidResponse* solids = nullptr;
-  };
-  Eigen::MatrixXd system();
-  void factor();
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
-  void make_regular(const Net& x, const Net& at);
-  Net images_of(const Net& f);
-  Net flow_at(const Net& at, const stokes::AmbientFlow& flow);
-  Net by_solids(const Net& at, const Solids::Flow& flow);
+  Net product(const Net& y);
+  Net completed(const Eigen::VectorXd& y);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
-  Net left_over(const Net& x, const Net& f, const Net& v, const Net& flow);
+  Net left_over(const Net& x, const Net& y, const Net& v, Net flow);
 
-  std::span<const Particle> particles_;
+  std::size_t n_particles_;
+  std::vector<Particle> particles_;  // the bodies
   double viscosity_;
-  Surroundings around_;
+  Walls walls_;
   Ranks& ranks_;
-  std::vector<int> own_points_;
-  BetweenSites between_;
-  stokes::Layer layer_, between_layer_;  // single layer at the collocation sites; single layer at Gauss points
+  BodyLayer layer_;
+  BetweenSites between_;                         // Gauss points on the bodies
+  stokes::Layer between_layer_;                  // single layer of all particles at these points
+  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at these points; set if they have a viscosity contrast
+  stokes::Measure measure_;
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
   bool repeats_ = false;
   Krylov krylov_;
   double tolerance_;
   std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
-  Net flux_, outward_;     // flux vector b of each body; a velocity field with nonzero flux, divided by this flux (2.10)
-  Eigen::MatrixXd alone_;  // system matrix without the response of the tube; kept only in a tube
-  std::optional<DenseFactors> factors_;  // LU factors of `alone_`
-  Net at_;                               // positions of the sites in the latest call of `solve`
-  Eigen::VectorXd left_;                 // int N_A (v - v_inf - (1/mu) A f) dG, the residual of (2.40) with the density f of this call, from which
-                                         // (2.11) computes corrections
+  Surroundings around_;    // surroundings in the latest call of `solve`
+  Net at_;                 // positions of the sites of all particles in this call
+  Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG, the residual of (2.40) with the density f of this call, from which (2.11) computes
+                           // corrections
   std::vector<Vec3> centres_;
   std::vector<Body> bodies_;
-  Net density_;
+  Net unknowns_;
   double lacking_pressure_ = 0;
   std::vector<SolveReport> reports_;
 };

@@ -80,9 +80,9 @@ void SolverOptions::declare(deck::Section& section) {
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
       "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, with sums by clusters. "
-      "`first kind`: tractions as unknowns (2.40), a dense matrix factored for every configuration; only if all particles are rigid. Its "
-      "forces and motions are far more accurate if gaps are small. `auto`: `first kind` if all particles are rigid, their meshes adapt to "
-      "films between them, and there are at most 4500 unknowns at the start; otherwise `second kind`");
+      "`first kind`: tractions as unknowns (2.40), a dense matrix of the bodies factored for every configuration. Its forces and motions are "
+      "far more accurate if gaps are small. `auto`: `first kind` if there are two or more rigid bodies, the meshes of all of them adapt to "
+      "films, and their tractions are at most 4500 unknowns at the start; otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "

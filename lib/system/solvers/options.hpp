@@ -54,8 +54,8 @@ struct SolverOptions {
                                                   ///< (BlockForm)
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
-  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles, also among other particles), first kind
-                                      ///< (RigidTractions, rigid bodies only), or auto (Scene::by_tractions)
+  std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
+                                      ///< (RigidTractions), or auto (Scene::by_tractions)
   std::string projection = "collocation";         ///< projection of velocities onto the splines: collocation or least squares (VelocityProjection)
   std::string frozen_operator = "nodal";          ///< frozen single layer of the Jacobian: nodal (NodalOperator) or assembled
                                                   ///< (FrozenOperator)

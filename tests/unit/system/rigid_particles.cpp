@@ -35,11 +35,12 @@ struct Bodies {
     Vec3 centre, semi_axes = Vec3::Ones();
     std::optional<Rigid> rigid = Rigid{};
     double viscosity_ratio = 1;
+    int elements = 0;  // per side; 0: n
   };
   Bodies(const std::vector<One>& bodies, int n, const Mat3& gradient) {
     std::vector<const spline::Space*> all;
     for (const One& one : bodies) {
-      const spline::TMesh mesh = spline::cube(n);
+      const spline::TMesh mesh = spline::cube(one.elements > 0 ? one.elements : n);
       spaces.push_back(spline::space(mesh, spline::ExtraordinaryRule::g1));
       surface::ParticleShape shape;
       shape.shape = "ellipsoid", shape.semi_axes = one.semi_axes, shape.center = one.centre;
@@ -245,6 +246,56 @@ TEST(RigidTractions, AnArrayResists) {
   one.parameters.quadrature.tolerance = 1e-6, one.parameters.solvers.tolerance = 1e-8;
   Capsule system = one.system();
   EXPECT_NEAR(system.evaluate(one.rest)->rigid().force(0)[0] / (6 * pi * viscosity) / 6.775920032, 1, 1e-5);  // 3e-4 by double layers
+}
+
+/// A drop 50 radii away changes the motion by 1e-6 at most: the force on the pair causes a strain of order 1/r^2 at the drop, and the stresslet of
+/// the drop a velocity of order 1/r^4 at the pair.
+TEST(RigidTractions, AFarDropChangesNothing) {
+  const Rigid pulled{false, {}, Vec3(6 * pi * viscosity, 0, 0), Vec3::Zero()};
+  std::vector<Bodies::One> bodies{{Vec3::Zero(), Vec3::Ones(), pulled}, {Vec3(3, 0, 0), Vec3::Ones(), Rigid{}}};
+  ByTractions pair(bodies, 4, Mat3::Zero());
+  Capsule two = pair.system();
+  const RigidParticles alone = two.evaluate(pair.rest)->rigid();
+  bodies.insert(bodies.begin() + 1, {Vec3(0, 50, 0), Vec3::Ones(), std::nullopt, 5, 3});
+  ByTractions among(bodies, 4, Mat3::Zero());
+  Capsule system = among.system();
+  const RigidParticles moved = system.evaluate(among.rest)->rigid();
+  EXPECT_NEAR(moved.motion(0).velocity[0], 0.96127974, 2e-6);  // x^a_11 and x^a_12 of the pair: multipoles
+  EXPECT_NEAR(moved.motion(2).velocity[0], 0.47076017, 2e-6);
+  EXPECT_LT((moved.motion(0).velocity - alone.motion(0).velocity).norm() + (moved.motion(2).velocity - alone.motion(1).velocity).norm(), 1e-6);
+}
+
+/// Velocity and stresslet of a body beside a drop, in a flow.
+struct BesideDrop {
+  Eigen::Matrix<double, 12, 1> of_body;
+  Vec3 of_drop;
+
+  BesideDrop(bool by_tractions, int n, double viscosity_ratio) {
+    const Rigid pulled{false, {}, Vec3(3, -2, 1), Vec3(1, 0, -1)};
+    ByTractions scene({{Vec3(0, 0, 2), Vec3(1, 1.1, 0.9), std::nullopt, viscosity_ratio, 6}, {Vec3(2.4, 0.2, 2.3), Vec3(1, 0.9, 1.1), pulled}}, n,
+                      some_gradient());
+    scene.parameters.quadrature.tolerance = 1e-6, scene.parameters.solvers.tolerance = 1e-8;
+    if (!by_tractions) scene.parameters.solvers.rigid_bodies = "second kind";
+    Capsule system = scene.system();
+    const auto found = system.evaluate(scene.rest);
+    const RigidMotion motion = found->rigid().motion(1);
+    const Mat3 stresslet = found->stresslet(1) / viscosity;
+    of_body << motion.velocity, motion.angular_velocity, stresslet.diagonal(), stresslet(0, 1), stresslet(1, 2), stresslet(2, 0);
+    of_drop = scene.parameters.particles[0].block.rows(found->velocity()).colwise().mean().transpose();
+  }
+};
+
+void expect_agreement(const BesideDrop& fine, double viscosity_ratio) {
+  const BesideDrop coarse(true, 3, viscosity_ratio), finer(true, 5, viscosity_ratio);
+  const auto error = [&](const BesideDrop& other) {
+    return (other.of_body - fine.of_body).norm() / fine.of_body.norm() + (other.of_drop - fine.of_drop).norm();
+  };
+  EXPECT_LT(error(coarse), 2e-3);  // 1e-4 to 7e-4
+  EXPECT_LT(error(finer), 2e-5);   // 1e-5, of which the double layers have a part
+}
+
+TEST(RigidTractions, MoveBesideADropAsDoubleLayersSay) {
+  for (const double ratio : {1., 5.}) expect_agreement(BesideDrop(false, 8, ratio), ratio);
 }
 
 }  // namespace rigid_particles_test
