@@ -104,6 +104,26 @@ def power_of_the_flow_is_that_of_its_rate_of_strain():
     check(abs(power - stresslet).max() < 2e-3 * abs(power).max(), f"{power} and {stresslet}")
 
 
+def mean_velocity_does_not_depend_on_how_bodies_are_modelled():
+    """Two spheres near one of two moving plates, by their tractions and by a double layer; a stiff drop of high viscosity comes close to them."""
+    text = """
+Tanktread:
+  Flow: {type: simple shear}
+  Domain: {periodic: x1 x2, side lengths: [4.0, 4.0, 1.0]}
+  Wall: {point: [0.0, 0.0, -1.5], distance: 3.0, elements per period: 12}
+  Particles:
+    defaults: {motion: free, radius: 0.5, Surface: {elements per side: 4}}
+    a: {center: [0.0, 0.0, 0.7]}
+    b: {center: [0.0, 2.0, 0.7]}
+  Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
+"""
+    by = {kind: _first(kind.split()[0], text, f"Solvers/rigid bodies={kind}", names=["mean_velocity_x1"])[0] for kind in ("first kind", "second kind")}
+    check(by["first kind"] > 0.04, f"{by}: the fluid is drawn along by the nearer plate")
+    close(by["second kind"], by["first kind"], 1e-3 * by["first kind"], "mean velocity")
+    drops = text.replace("motion: free, ", "viscosity ratio: 300.0, Membrane: {law: surface tension, capillary number: 0.001}, ")
+    close(_first("drops", drops, names=["mean_velocity_x1"])[0], by["first kind"], 0.03 * by["first kind"], "mean velocity of drops")
+
+
 def a_single_plate_in_a_domain_is_the_image_plane_of_a_dilute_layer():
     """Images of the wall and the periodic plate agree as the period grows."""
     text = """

@@ -117,7 +117,7 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
           const double slope = distance(scene_) / 2 - height(double_->nodes(), k);
           stress[k] = double_->nodes()[i][k] * normal[c] + slope * ((i == c ? n.dot(normal) : 0.) + n[c] * normal[i]);
         }
-        sum[i] -= double_->moments(stress).dot(strength.col(c));
+        sum[i] += double_->moments(stress).dot(strength.col(c));
       }
   }
   return along(wall, sum);

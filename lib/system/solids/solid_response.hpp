@@ -67,7 +67,7 @@ class SolidResponse {
   /// distance D it has components along the plates only, and follows from the reciprocal theorem. With z the distance from one plate and
   /// phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow phi e_i/mu, which has the stress sigma_i:
   ///
-  ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) - int_C (1 - lambda) v.sigma_i n dG                         (2.49)
+  ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) + int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.
