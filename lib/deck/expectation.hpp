@@ -50,7 +50,7 @@ struct Verdict {
 /// Series of the results by name, including the series `time`. Rows are in the order of time.
 using SeriesTable = std::map<std::string, std::vector<double>>;
 
-/// For the name of each series that may be NaN: the condition under which it is NaN, as a clause that follows "because" in a message.
+/// Maps the name of each series that may be NaN to the condition under which it is NaN. The condition follows the word "because" in messages.
 using UndefinedSeries = std::map<std::string, std::string>;
 
 /// Returns one verdict per expectation. A missing series, a time that was not reached, and a time at which the series is undefined are failures.
