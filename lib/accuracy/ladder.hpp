@@ -50,12 +50,12 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed. Collective.
 int climb(const Task& task, const Program& program);
 
-/// Runs the two lowest levels in a temporary directory. Returns, one line each, the level that is predicted to meet each request, and the predicted
-/// seconds. The lines are those of the first rank. Collective.
+/// Runs the two lowest levels in a temporary directory. Returns lines of text: for each request, the level that is predicted to meet it, and in the
+/// last line the predicted seconds. All ranks return the lines of the first rank. Collective.
 std::vector<std::string> forecast(const Task& task, const Program& program);
 
-/// Returns the predicted seconds of the next level. `seconds`: of the levels before it, coarse to fine. The prediction is the last value times the
-/// ratio of the last two, limited to 1.5 ... 5, or times 2.5 if there is only one value.
+/// Returns the predicted seconds of the next level. `seconds`: seconds of all previous levels, coarse to fine. The growth from level to level is the
+/// ratio of the last two values, limited to 1.5 ... 5, or 2.5 if there is only one value.
 double predicted_seconds(const std::vector<double>& seconds);
 
 }  // namespace tanktread::accuracy
