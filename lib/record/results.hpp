@@ -104,8 +104,8 @@ class Results {
   };
   Sampled sample(const SurfacePicture& picture, double time);
 
-  /// Saves a checkpoint of the current step and a snapshot of the same time or of a time within the step. `checkpoint` holds the other data that a
-  /// resumed run needs.
+  /// Saves a checkpoint of the current step, and a snapshot at the end of the step or at a time within it. `checkpoint`: data for a resumed run other
+  /// than `state` and `totals`, which are added to it.
   void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
 
   /// Writes the surface as Bezier-extraction text, `surface.iga`.

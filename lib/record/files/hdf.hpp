@@ -26,9 +26,9 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// Return a new file in memory, and its bytes as they would be on the disk. They are written to the disk in one piece (write_whole). So write errors
-/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not a copy. They are valid until
-/// the file is written to again or closed.
+/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors
+/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not copied. They are valid until
+/// the file is changed or closed.
 Id new_file();
 std::string_view image(const Id& file);
 
