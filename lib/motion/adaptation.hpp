@@ -58,8 +58,8 @@ struct AdaptationOptions {
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// Returns the elements and directions in which an element may become twice as long: it then stays below `coarsening margin` times every limit of
-/// (P-37).
+/// Returns the elements and directions to coarsen. An element is merged along a direction if the merged element, of twice the length, stays below
+/// `coarsening margin` times every limit of (P-37).
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Adds marks for elements next to a film, and removes merges that would be undone. An element is refined if it is longer than `film resolution`

@@ -138,7 +138,8 @@ std::optional<double> Branch::end_before(const Place& place) const {
   return {};
 }
 
-/// Returns the prediction of the point one step further: the parabola in arclength through the last three points, or the straight line along t.
+/// Returns the prediction of the next point of the branch, one step further. It lies on the parabola in arclength through the last three points. If
+/// there are fewer points, it lies on the straight line with the direction t.
 Branch::Place Branch::predicted(const Place& t) const {
   const Solved& now = last_.back();
   if (last_.size() < 3) return now.place.along(t, step_);
@@ -203,7 +204,7 @@ void Branch::adapt() {
   }
 }
 
-/// Keeps back the two latest points before it returns a point, because a fold may lie between them.
+/// Returns a point only after the next two points are known, because a fold may lie between them.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;

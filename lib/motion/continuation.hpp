@@ -69,8 +69,8 @@ class Branch {
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 
-  /// Alternative search for the first point, used if the search from x fails. Replaces x, the best iterate, and returns the report. `failed`: report
-  /// of the search that failed. Collective.
+  /// Alternative search for the first point, called if the first search fails. x: best iterate of the failed search, replaced by the result.
+  /// `failed`: report of the failed search. Returns its own report. Collective.
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 
@@ -127,7 +127,7 @@ class Branch {
   std::size_t values_ = 0;        // number of values of the second parameter that have been reached
   std::string failure_;
   double step_ = 0, missed_ = 1;  // length of the next step; distance of the latest point from its prediction, divided by the step
-  double heading_ = 0;  // last change of the scaled parameter q; a change of its sign shows a fold. It is kept when the mesh changes
+  double heading_ = 0;  // last change of the scaled parameter q along the branch; at a fold its sign changes. Not reset when the mesh changes
   int count_ = 0;
   bool ended_ = false;
 };

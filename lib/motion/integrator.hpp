@@ -59,8 +59,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. Throws RunFailure if the step falls below the minimum. The
-  /// state is then unchanged, except for the effect of cross_kink().
+  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. If the step falls below `Time/minimum step`, throws
+  /// RunFailure. The state is then unchanged, except for the effect of cross_kink().
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 
