@@ -62,12 +62,11 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
 /// practically on the element.
 constexpr double smallest = 1e-8;
 
-/// A part of an element is bisected in both directions if its squared side lengths differ by less than this factor. Otherwise rounding would choose
-/// the direction of bisection on square parts of symmetric shapes, and so change the error of the rule.
+/// A part of an element is bisected in both directions if the ratio of its squared side lengths is below this factor. Without this rule, round-off
+/// would choose the direction for square parts, so the result would not respect the symmetry of the shape.
 constexpr double square = 1.01;
 
-/// Largest number of parts of an element. A target on the element needs some hundreds of parts, so an element that needs more than this number is not
-/// usable.
+/// Largest number of parts of an element, above which the integral is NaN. Even a target on the element needs only some hundreds of parts.
 constexpr int most_parts = 100'000;
 
 }  // namespace
