@@ -176,7 +176,7 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
-/// Replaces `file` by its path (see `found`), and adds it to the files of which the run keeps a copy with the name `kept`.
+/// Replaces `file` by its path, as returned by `found`. Registers it to be copied into the results directory under the name `kept`.
 void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
   file = found(file, kept, arguments);
   scene.files.emplace_back(file, kept);
@@ -244,7 +244,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();
-  if (whole.resume) arguments.resume += "/level_0";  // the directory of level 0 has copies of the files that the deck names
+  if (whole.resume) arguments.resume += "/level_0";  // files named by the deck have copies in the results of level 0
   accuracy::Program program;
   program.deck = [&](const std::vector<std::string>& settings) {
     deck::Document level = deck::read({}, settings, base);
