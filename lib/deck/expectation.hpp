@@ -17,9 +17,9 @@ struct Expectation {
   double value = 0;               ///< expected value (required)
   double tolerance = 0;           ///< largest error that passes (required): absolute, or relative to `value`
   std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
-  std::optional<double> at;       ///< time of the value; if not set, the last time
-  std::string source;             ///< source of the value, for example a publication
-  std::string not_binding;        ///< reason why a failure is only reported; if empty, a failure fails the run
+  std::optional<double> at;       ///< time of the expected value; if not set, the last time
+  std::string source;             ///< source of the expected value, for example a publication
+  std::string not_binding;        ///< reason why a missed expectation is only reported; if empty, it fails the run
 
   void declare(Section& section);
 };
