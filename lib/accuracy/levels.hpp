@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the levels of a ladder: meshes and tolerances, from coarse to fine, as changes of a deck.
+// Settings of the levels of refinement (meshes and tolerances, from coarse to fine), as changes of a deck.
 
 #include <map>
 #include <string>

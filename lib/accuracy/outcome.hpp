@@ -1,5 +1,5 @@
 #pragma once
-// Results of the levels of a ladder, and the errors estimated from them.
+// Results of one deck on several levels of refinement, and the errors estimated from them.
 
 #include <filesystem>
 #include <map>
