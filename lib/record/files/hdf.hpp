@@ -35,7 +35,7 @@ std::string_view image(const Id& file);
 /// Opens an existing file for reading. Throws RunFailure if the system cannot open it as a file, std::runtime_error if it is not an HDF5 file.
 Id open(const std::filesystem::path& path);
 
-/// Opens a copy in memory of an existing file, which can be written to; see `image`. Throws like `open`.
+/// Opens an existing file as a copy in memory. The copy can be written to, and image() returns its bytes. Throws like `open`.
 Id open_copy(const std::filesystem::path& path);
 
 using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
