@@ -13,7 +13,7 @@ struct Memory {
   double step = 0;   ///< size of that step
 };
 
-/// A stage y - shift v(y) = rhs and its solution.
+/// Stage of an implicit scheme, y - shift v(y) = rhs with the velocity v, and its solution.
 struct Stage {
   Net y;                ///< start value of the iteration, and after `solve` the solution
   Net slope;            ///< slope (y - rhs)/shift of the result

@@ -141,7 +141,8 @@ class Recognition {
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// Returns the kind of a mode by its translation, rotation and relabelling parts. Modes due to a conserved volume or mass are not detected here.
+  /// Returns the kind of a mode from its components along translations, rotations and relabellings. Modes due to a conserved volume or mass are not
+  /// detected here.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();

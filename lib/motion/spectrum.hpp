@@ -81,7 +81,7 @@ class Linearised {
 };
 
 /// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved
-/// quantities, first the gradient of the volume. They identify the modes that have rate 0 only because of conservation. Collective.
+/// quantities, first the gradient of the volume. The gradients identify the modes that have rate 0 only because of conservation. Collective.
 std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 
