@@ -163,8 +163,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. This is the first path that exists of: the copy `kept` in the directory of a resumed
-/// run, the path relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
+/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run, the path
+/// relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -374,7 +374,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   }
 }
 
-/// Keeps freed memory for the next step and snapshot instead of returning it to the system, which clears every page that it hands out again.
+/// Keeps freed memory for later steps and snapshots. Memory that is returned to the system must be cleared by it when it is used again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 25);
