@@ -57,8 +57,8 @@ using UndefinedSeries = std::map<std::string, std::string>;
 /// Between rows the value is interpolated by the cubic through the four nearest rows (see `interpolated`).
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
 
-/// Returns the value at t of the polynomial of degree <= 3 through the (at most four) points nearest to t. `times` ascend and t is in their range.
-/// Uses only points that no NaN value separates from t. The result is NaN if a value next to t is NaN.
+/// Returns the value at the time t of the polynomial of degree <= 3 through the points nearest to t, at most four. `times` ascend and t is in their
+/// range. A NaN value separates the points: only points on the same side of it as t are used. The result is NaN if a value next to t is NaN.
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
 
 }  // namespace tanktread::deck
