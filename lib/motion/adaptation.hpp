@@ -35,7 +35,7 @@ struct AdaptationOptions {
   std::optional<double> film_resolution;
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
   int interval = 1;                                        ///< accepted steps between checks
-  int levels = 4;                                          ///< how many times an element of the initial mesh may be halved in one direction
+  int levels = 4;                                          ///< largest number of bisections of an element of the initial mesh in one direction
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
   double coarsening_margin = 0.7;                          ///< a merged element must stay below this fraction of every limit
@@ -63,8 +63,8 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// add_films() adds marks for elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film.
-/// keep_films() removes merges whose merged element would be longer than this. `lengths` (of elements, along s and t) and `widths` (of films) are in
-/// the order of elements(mesh). Marks of one element are united. L_min does not apply.
+/// keep_films() removes merges whose merged element would exceed this length times `coarsening margin`. `lengths` (of elements, along s and t) and
+/// `widths` (of films) are in the order of elements(mesh). Marks of one element are united. L_min does not apply.
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,

@@ -16,7 +16,7 @@ constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // values of Choice::scheme
 
 }  // namespace
 
-/// Memory of this scheme at the front of State::memory. The memory of the chosen scheme follows.
+/// Memory of the automatic choice of schemes, at the front of State::memory. The memory of the chosen scheme follows.
 struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;

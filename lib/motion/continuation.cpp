@@ -224,7 +224,7 @@ std::optional<BranchPoint> Branch::next() {
   return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
-/// Finds the first or the second point of the branch. Their values of the parameter are given.
+/// Finds the first or the second point of the branch, each at a prescribed value of the parameter.
 void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);

@@ -123,8 +123,8 @@ class Branch {
   std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
-  double last_share_ = 1;         // step between the two latest folds in the second parameter, divided by the interval between its given values
-  std::size_t values_ = 0;        // number of values of the second parameter that have been reached
+  double last_share_ = 1;         // last step of the second parameter, divided by the interval between two of its given values
+  std::size_t values_ = 0;        // number of given values of the second parameter that have been reached
   std::string failure_;
   double step_ = 0, missed_ = 1;  // length of the next step; distance of the latest point from its prediction, divided by the step
   double heading_ = 0;  // last change of the scaled parameter q along the branch; at a fold its sign changes. Not reset when the mesh changes

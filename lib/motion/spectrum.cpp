@@ -108,8 +108,8 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Returns an orthonormal basis, in shape coordinates, of the given fields, as far as the symmetry admits them. Fields that do not change the shape
-/// are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
+/// Returns an orthonormal basis, in shape coordinates, of the given fields that have the symmetry of the shape coordinates. Fields that do not change
+/// the shape are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));

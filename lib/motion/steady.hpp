@@ -63,9 +63,9 @@ class SteadyEquations {
   Net start_;
 };
 
-/// Solves G(x) = 0 (4.17) as a fixed point of x + s (1 - s J)^{-1} G(x), J the frozen Jacobian of the velocity, by NOX, with Anderson acceleration
-/// (`anderson`) or Newton's method (`newton-krylov`). If an iteration with the step s changes x by much, implicit steps shorter than s are done
-/// first. If the iteration does not converge, x is the best iterate. Collective.
+/// Solves G(x) = 0 (4.17) by NOX: the fixed-point iteration x -> x + s (1 - s J)^{-1} G(x), with the implicit step s and the frozen Jacobian J (4.3),
+/// accelerated by Anderson's (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by much, implicit time steps shorter
+/// than s are made first. If the iteration does not converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion
