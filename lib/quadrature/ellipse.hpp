@@ -36,7 +36,7 @@ struct Patch {
 struct Sight {
   double distance = 0, rho_u = 1, rho_v = 1;
 };
-/// Returns the distance of a target from a patch, and the parameters of the Bernstein ellipses of 1/r in the patch.
+/// Returns the distance of a target from a patch, and the parameters rho_u and rho_v of the Bernstein ellipses of 1/r.
 Sight sight(const Patch& patch, const Vec3& target);
 
 }  // namespace tanktread::quadrature
