@@ -212,7 +212,7 @@ void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
   scene.check();
 }
 
-/// Reads a deck given as text with other values of keys, and its files, and checks it.
+/// Reads and checks the scene of a deck given as text, with other values of keys (`settings`). Also reads the files that the deck names.
 Scene scene_of(const std::string& text, const std::vector<std::string>& settings, const Arguments& arguments, const Registry& registry) {
   deck::Document deck = deck::read({}, settings, text);
   Scene scene(registry);

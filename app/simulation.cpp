@@ -174,7 +174,7 @@ class Run {
     record();
   }
 
-  /// Adapts the mesh if the rule requires it. Then computes the velocity on the new mesh, because the loads on it differ: steps that continued with
+  /// Adapts the mesh if the rule requires it. Then computes the velocity again, because the loads on the new mesh differ: steps that continued with
   /// the velocity of the old mesh were ten times shorter.
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
