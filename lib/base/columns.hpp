@@ -28,7 +28,7 @@ class Columns {
   /// `every`: if true, `when` always returns true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
-  /// Returns `condition`, which is whether to add a column. If the Columns list all columns (`every`), always returns true.
+  /// Returns whether to add a column that exists only if `condition` is true. If all columns are listed (`every`), always returns true.
   bool when(bool condition) const { return condition || every_; }
 
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.
