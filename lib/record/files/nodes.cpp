@@ -85,8 +85,8 @@ namespace {
 
 constexpr int n_parts = 6;  // number of vectors in a jet: the position and five derivatives
 
-/// Returns the matrix that maps the Bezier points of an element to the jets (position and derivatives) at the nodes of its cell. Both have n = (p +
-/// 1)^2 entries. Shape (n, 6, n): Bezier point, component of the jet, node.
+/// Returns the matrix that maps the Bezier points of an element to the jets (position and derivatives) at the nodes of its cell. An element of degree
+/// p has n = (p + 1)^2 Bezier points and n nodes. Shape (n, 6, n): Bezier point, component of the jet, node.
 std::vector<double> jet_table(int p) {
   constexpr std::array<std::array<int, 2>, n_parts> derivatives{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   const auto order = node_order(p);
