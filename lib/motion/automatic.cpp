@@ -75,7 +75,7 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   } else {
     const bool first = choice.points == 0;
     measure(dynamics, state, choice);
-    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // stability would already limit the first step of BS3
+    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would exceed the stability limit of BS3
       choice.scheme = tr_bdf2;
       choice.then = choice.stiffness;
     }

@@ -14,7 +14,8 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged: quadrature errors may prevent smaller ones
+constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged, because quadrature errors may prevent smaller
+                              // corrections
 }
 
 void ContinuationOptions::declare(deck::Section& section) {

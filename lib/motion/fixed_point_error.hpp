@@ -23,7 +23,8 @@ class FixedPointError {
   /// point. The cost is a least-squares problem with m columns, without evaluations of the fixed-point map.
   Net operator()(const Net& x, const Net& f);
 
-  bool known() const { return before_.size() > 1; }  ///< returns whether the latest estimate (4.32) uses earlier iterates; otherwise it is -f_k
+  bool known() const { return before_.size() > 1; }  ///< returns whether the latest estimate (4.32) uses earlier iterates; if not, it is minus the
+                                                     ///< correction
 
  private:
   int most_;
