@@ -31,7 +31,7 @@ bool holds(const output::RunRecord& record, const std::string& name) {
   return std::ranges::find(record.series(), name, &output::Series::name) != record.series().end();
 }
 
-/// Returns the values of which a request limits the error, as a curve: the whole series, its last value, or its average.
+/// Returns the values whose error a request limits, as a curve: the whole series, its last value, or its average.
 Curve part(const Curve& whole, Of of) {
   if (of == Of::run || whole.at.empty()) return whole;
   return {{0}, {of == Of::end ? whole.values.back() : mean(whole)}};
@@ -60,7 +60,7 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
 
 /// Returns the expected sizes of the errors of the levels, for `estimated`: expected_error() of each level. If level 2 was also computed with a
 /// looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease with the time
-/// tolerance, and only the remaining error like expected_error().
+/// tolerance, and the remaining share to decrease like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;
