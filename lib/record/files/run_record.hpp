@@ -52,7 +52,7 @@ class RunRecord {
   /// Adds the estimated error of a series, one value per row.
   void add_error(Series error) { errors_.push_back(std::move(error)); }
 
-  /// Sets another path, to which `write` writes.
+  /// Changes the path to which `write` writes the file.
   void move(std::filesystem::path path) { path_ = std::move(path); }
 
   void write(Durable durable = Durable::no) const;
