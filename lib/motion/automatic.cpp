@@ -81,7 +81,7 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
     }
   }
 
-  // The state that the chosen scheme receives has only the part of the memory that belongs to that scheme.
+  // The chosen scheme receives only the part of State::memory that belongs to it.
   State inner = state;
   const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));

@@ -65,7 +65,8 @@ class Branch {
   /// parameter. Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
-  /// Starts at `parameter` with the steady shape reached from `x`. `second`: value of the second parameter if the first fold is continued.
+  /// Starts the branch at `parameter`, with the steady shape that a search from `x` finds. `second`: value of the second parameter if the first fold
+  /// is continued.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 

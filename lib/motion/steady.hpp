@@ -63,9 +63,9 @@ class SteadyEquations {
   Net start_;
 };
 
-/// Solves G(x) = 0 (4.17) by NOX: the fixed-point iteration x -> x + s (1 - s J)^{-1} G(x), with the implicit step s and the frozen Jacobian J (4.3),
-/// accelerated by Anderson's (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by much, implicit time steps shorter
-/// than s are made first. If the iteration does not converge, x is the best iterate. Collective.
+/// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
+/// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by much, implicit time
+/// steps shorter than s are made first. If the iteration does not converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion
