@@ -271,7 +271,7 @@ std::string deck_of_run(const std::string& directory) {
   return ladder ? *ladder : stored_deck(directory);
 }
 
-/// Returns the text that these options ask for independently of a deck, or nothing if they ask for none.
+/// Returns the text that the command-line options ask for independently of a deck, or nothing if they ask for none.
 std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
   if (arguments.reference) return "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" + deck::manual(Scene(registry));
   if (arguments.reference_series) return series_manual(registry);
@@ -374,7 +374,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   }
 }
 
-/// Keeps freed memory for later steps and snapshots. Memory that is returned to the system must be cleared by it when it is used again.
+/// Keeps freed memory for later steps and snapshots. If it were returned to the system, the system would clear it at the next allocation.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 25);

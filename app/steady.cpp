@@ -150,7 +150,8 @@ class SteadyRun {
     return true;
   }
 
-  /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all of them to the new mesh. Returns whether the mesh has changed.
+  /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all `shapes` to the new mesh. Returns whether the mesh has
+  /// changed.
   bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
     system_ = system_at(parameters);
     state_.history.clear(), state_.places.clear();
