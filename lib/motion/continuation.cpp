@@ -205,7 +205,7 @@ void Branch::adapt() {
   }
 }
 
-/// Returns a point only after the next two points are known, because a fold may lie between them.
+/// Returns a point only when the next point is known, because the next point may show that a fold lies before this point.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
