@@ -65,7 +65,7 @@ class Field {
   /// in the other space.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
-  /// Returns the gradient with respect to q of a sum that the motion conserves; empty if there is none.
+  /// Returns the gradient, with respect to the coefficients q, of a weighted sum of q that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
   /// Returns the values, at the state set last, of the columns of the time series that are registered with the field. snapshot() returns the fields
