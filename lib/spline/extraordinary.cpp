@@ -45,7 +45,7 @@ Row net(int u, int v) {
 }  // namespace
 
 Eigen::MatrixXd averaged_bicubic() {
-  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the net that is next to its corner (cu, cv).
+  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the control net that is nearest to its corner (u + cu, v + cv).
   auto near_corner = [](int u, int v, int cu, int cv) {
     return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
   };

@@ -22,7 +22,7 @@ struct Element {
   /// Extraction matrix, shape (m, (p + 1)^2). Every column sums to 1. Equal elements, for example in copies of a space, may share one matrix.
   std::shared_ptr<const Eigen::MatrixXd> extraction;
   int face = 0;                                    ///< index of the macro face (face of the cube) that contains the element
-  std::array<double, 2> origin{0, 0}, size{1, 1};  ///< lower left corner and size in units of the side of the macro face
+  std::array<double, 2> origin{0, 0}, size{1, 1};  ///< lower left corner and size of the element, in units of the side of the macro face
 };
 
 /// A parametric point of the surface: an element and local coordinates in [0, 1]^2.
@@ -36,7 +36,7 @@ struct Site {
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;
-  /// For each collocation point, its local coordinates on all elements whose closure contains it. The first element is used for evaluation.
+  /// Collocation points. Each is given by its sites (element, local coordinates) on all elements whose closure contains it. The first site is used.
   std::vector<std::vector<Site>> collocation;
   std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };

@@ -131,8 +131,9 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
     const auto [x, y] = turned(0, 0, 3, l.corner[v][0]);
     return {l.cell[v][0], x, y};
   }
-  // Distance of the Greville point from the anchor along directions 0 and 1, in thirds of a lattice unit. The Greville point is the mean of the three
-  // inner knots. The middle one is at the anchor, so that the distance is the sum of the positions of the other two relative to the anchor.
+  // The Greville point is the mean of the three inner knots, and the middle one of these knots is at the anchor. So its distance from the anchor, in
+  // thirds of a lattice unit, is the sum of the positions of the other two knots relative to the anchor. o0: along direction 0, o1: along direction
+  // 1.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
   const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
   if (l.pad > 0) {  // one face without turns
