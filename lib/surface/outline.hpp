@@ -36,7 +36,7 @@ struct CubicCurve {
 using PlaneCurve = std::variant<Ellipse, CubicCurve>;
 
 bool closed(const PlaneCurve& curve);
-std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last value of u; a closed curve is periodic and accepts any u
+std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter u; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
 /// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:

@@ -24,12 +24,12 @@ class CubeSphere {
 
   int elements_per_side() const { return n_; }
 
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3: a vertex of the last subdivided net, or a bilinear
-  /// interpolation between its vertices.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3, by bilinear interpolation between the vertices of the
+  /// last subdivided net.
   Vec3 net_point(const Vec3& on_cube) const;
 
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube: a point of the limit surface, evaluated as a bicubic B-spline.
-  /// This is exact except in the elements at the corners of the cube.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube, from the limit surface of the subdivision. The limit surface is
+  /// evaluated as a bicubic B-spline, which is exact except in the elements at the corners of the cube.
   Vec3 limit_point(const Vec3& on_cube) const;
 
  private:
