@@ -58,7 +58,7 @@ class Load {
 
   /// Stores at x the data that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
   virtual void linearise(const Net& /*x*/, std::span<const int> /*elements*/, std::span<const Net> /*sums*/) {}
-  /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). A part that is not stiff may be left out.
+  /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). Terms that are not stiff may be left out.
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
