@@ -74,7 +74,7 @@ struct Remover {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
     for (Ray s : starts) {
-      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed: two symmetries can map to the same edges
+      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed, because two symmetries map `start` to the same edge
       const auto bay = removable_bay(s);
       for (Ray e : bay) mesh.set(e, false);
       gone.insert(gone.end(), bay.begin(), bay.end());

@@ -285,7 +285,7 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
-    // for old element k: its new index, or -1 - j if the element is replaced by pieces that begin at pieces[j]
+    // for each element k: its index after the replacement, or -1 - j if it is replaced by pieces that begin at pieces[j]
     std::vector<int> place(out.elements.size());
     std::vector<bool> at_end(out.elements.size());
     for (std::size_t t = 0; t < out.elements.size(); ++t) {

@@ -15,7 +15,7 @@ namespace tanktread::spline {
 enum class PoleRule {
   plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
   bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (P-A.1, P-A.2)
-  c1,                ///< three functions per pole, such that the tangent plane is continuous; elements as in `plain`
+  c1,                ///< three functions per pole, so that tangent planes are continuous; elements have a collapsed side as in `plain`
 };
 
 /// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
