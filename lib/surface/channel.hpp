@@ -71,7 +71,7 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  // half widths of the outline along x2 and x3; length (one of these half widths, or the radius) to which the relative depth of a `step` refers
+  // half_: half widths of the outline along x2 and x3. height_: length to which the relative depth of a `step` refers (a half width, or the radius)
   double half_[2] = {1, 1}, height_ = 1;
   double first_ = 0, last_ = 0;           // smallest and largest arc length s at which the cross-section or the direction of the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;

@@ -101,7 +101,7 @@ class PairSearch {
     double bound;
     int box[2];
     const Part* part[2];
-    bool operator<(const Pair& other) const { return bound > other.bound; }  // so the top of the priority queue is the nearest pair
+    bool operator<(const Pair& other) const { return bound > other.bound; }  // the pair with the smallest bound is at the top of the priority queue
   };
 
   void push(const Pair& pair) {
@@ -212,7 +212,7 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 
 namespace {
 
-/// Returns minus the Newton step for |y - x|^2/2 with respect to s and t of x and of y.
+/// Returns the negative of the Newton step that minimises |y - x|^2/2 over the local coordinates s, t of x and of y.
 Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
   const Vec3 r = y.x - x.x;
   const Eigen::Vector4d gradient(-r.dot(x.s), -r.dot(x.t), r.dot(y.s), r.dot(y.t));

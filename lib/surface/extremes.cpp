@@ -188,7 +188,7 @@ void add_distances(const Patches& surface, const Vec3& centre, const std::vector
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
   for (const Candidate& c : candidates) {
-    // the element cannot contain the maximum, because sampling errors are smaller than `spread`
+    // skips elements that cannot contain the maximum, because sampling errors are smaller than `spread`
     if (sign * c.crossing.distance + c.spread < sampled) continue;
     for (const auto& method : {stationary_distance, distance_on_curve})
       if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {

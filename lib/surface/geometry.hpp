@@ -107,8 +107,8 @@ class Geometry {
 
   Measures measures(const Net& net) const;
 
-  /// Returns the moments of each block of elements, one block after the other: computed for the given blocks, zero for all other blocks. measures()
-  /// combines them.
+  /// Returns the moments of all blocks of elements, one block after the other. They are computed for the given blocks and zero for the other blocks.
+  /// measures() adds them up.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
