@@ -62,11 +62,11 @@ class Load {
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
-  /// Returns whether the load is symmetric under this image. If not, the scene is not reduced by this image.
+  /// Returns whether the load is symmetric under this image. If not, this symmetry is not used to reduce the number of unknowns.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns dimensionless conditions on a rigid motion U + W x r of the particle. If they hold, the load moves with the particle, and the search for
-  /// steady shapes leaves this motion free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
+  /// Returns the dimensionless conditions under which the load moves with the particle in a rigid motion U + W x r. The search for steady shapes
+  /// leaves such motions free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.

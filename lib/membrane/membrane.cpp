@@ -26,8 +26,8 @@ struct Part {
                                     ///< this elasticity
   std::vector<Law> whole;           ///< per material: law with all terms, from which tensions are computed, even if the area elasticity has a
                                     ///< separate group
-  std::vector<bool> sampled;        ///< per material: false for the shear part of a split law, whose tensions are evaluated at the points of the area
-                                    ///< part
+  std::vector<bool> sampled;        ///< per material: false for the shear part of a split law, whose tensions are evaluated at the Gauss points of
+                                    ///< the area part
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending

@@ -35,7 +35,7 @@ struct Options {
   std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
   std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
-  std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
+  std::string bending_reference = "unstressed";  ///< surface without bending moment: `unstressed` (curved as the unstressed surface) or `flat`
   std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
   std::optional<double> relaxation_time;                 ///< relaxation time T of a Maxwell element (3.23), whose viscosities are `viscosity`
