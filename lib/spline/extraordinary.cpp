@@ -136,7 +136,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// Returns how Bezier point (v, u) of face j (5 x 5 points) depends on the unknowns: one coefficient per unknown.
+/// Returns the coefficients of the unknowns in the change of Bezier point (v, u) of face j (5 x 5 points).
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;

@@ -86,8 +86,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of the coordinate v of the degenerate element; the part of the element in this range is converted to the
-                               ///< triangle that contains the piece
+  double from = 0, to = 1;     ///< range of the coordinate v of the degenerate element that the triangle around this piece covers
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 

@@ -89,8 +89,8 @@ struct Cut {
   auto operator<=>(const Cut&) const = default;
 };
 
-/// Returns, of all images of a cut under the symmetries and the cut itself, the one with the smallest element (then direction). Equivalent cuts thus
-/// have one representative. If the lattice is too coarse for them, they are counted as one refused bisection.
+/// Returns the first of the images of a cut under the symmetries, including the cut itself, in the order of elements, then directions. Equivalent
+/// cuts thus have one representative. If the lattice is too coarse for them, they are counted as one refused bisection.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

@@ -41,8 +41,8 @@ struct Space {
   std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };
 
-/// Index ranges of one of several spaces in the stacked space, which numbers the spaces' control points and elements consecutively: control points
-/// (and collocation points) first_point .. first_point + n_points - 1, elements first_element .. first_element + n_elements - 1.
+/// Index ranges of one space in a stacked space: its control points (and collocation points) are first_point .. first_point + n_points - 1, and its
+/// elements are first_element .. first_element + n_elements - 1.
 struct Block {
   int first_point = 0, n_points = 0;
   int first_element = 0, n_elements = 0;
