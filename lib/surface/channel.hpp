@@ -37,7 +37,7 @@ class Channel {
   bool repeats() const { return options_.period > 0; }
   double smallest_radius() const { return smallest_; }  ///< half the smallest width
 
-  /// Returns the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section at a position.
+  /// Returns, for the position x, the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section.
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 

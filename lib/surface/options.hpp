@@ -153,7 +153,7 @@ struct TubeOptions {
   std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
   int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  /// options that only a channel has; if set, the deck has a section Channel instead of Tube, with the keys of this structure and of `channel`
+  /// options that only a channel has; if set, the deck has a section Channel, not Tube, with all keys of this structure and of `channel`
   std::optional<ChannelOptions> channel;
   std::string list() const { return channel ? "Channel" : "Tube"; }
 
