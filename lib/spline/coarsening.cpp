@@ -143,8 +143,8 @@ struct Remover {
     return group;
   }
 
-  /// Doubles the spacing h of the elements around each extraordinary point for which all edges to be removed may be removed. Returns whether any
-  /// spacing was doubled.
+  /// Doubles the spacing h of the elements around each extraordinary point where this is possible (see doubling_group). Returns whether any spacing
+  /// was doubled.
   bool double_rings() {
     bool any = false;
     for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {

@@ -53,8 +53,8 @@ struct Builder {
   const Lattice& l;
   TileFunctions& out;
 
-  /// Returns the mesh element that contains a cell, and sets `number` to its index. A cell of zero height is an element of its own; `number` is then
-  /// negative.
+  /// Returns the mesh element that contains a cell, and sets `number` to its index. A cell of zero height counts as a separate element with a
+  /// negative `number`.
   Rectangle tile(int cell, int& number) const {
     number = out.tiling.tile_of_cell[cell];
     return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
