@@ -101,9 +101,9 @@ class Outline {
   /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.
   std::vector<double> knots(int k, int m) const;
 
-  /// Returns the outline as cubic splines. `elements` are divided among the sides by shares(), with at least two per side, or three on a smooth
-  /// outline; the knots are knots(). The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of the
-  /// result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
+  /// Returns the outline as cubic splines. shares() divides `elements` among the sides, with at least two per side, or three on a smooth outline.
+  /// knots() gives the knots of each side. The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of
+  /// the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
   Outline spline(int elements) const;
 
  private:

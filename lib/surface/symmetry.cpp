@@ -275,9 +275,8 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
   return result;
 }
 
-/// Completes the sums at the fundamental points by the contributions of images of elements. The image of an element under g contributes the reflected
-/// rows at the images of its points. So every row is reflected to the fundamental point of its orbit and added there, multiplied by the number of
-/// images that map this fundamental point onto itself.
+/// Completes the sums at the fundamental points. Images of fundamental elements contribute the reflected rows of their points. So every row is
+/// reflected to the fundamental point of its orbit and added there, multiplied by the number of images that map this fundamental point onto itself.
 void fold(const Symmetry& symmetry, Net& sums) {
   if (symmetry.order() == 1) return;
   const std::vector<int>& source = symmetry.source();
