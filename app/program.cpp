@@ -163,8 +163,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. This is the first path that exists of: the copy `kept` in the directory of a resumed
-/// run, the path relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
+/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run, the path
+/// relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -176,7 +176,7 @@ std::string found(const std::string& name, const std::filesystem::path& kept, co
   return name;
 }
 
-/// Replaces `file` by its path (see `found`), and adds it to the files of which the run keeps a copy with the name `kept`.
+/// Replaces `file` by its path, as returned by `found`. Registers it to be copied into the results directory under the name `kept`.
 void find(std::string& file, const std::string& kept, const Arguments& arguments, Scene& scene) {
   file = found(file, kept, arguments);
   scene.files.emplace_back(file, kept);
@@ -212,7 +212,7 @@ void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
   scene.check();
 }
 
-/// Reads a deck given as text with other values of keys, and its files, and checks it.
+/// Reads and checks the scene of a deck given as text, with other values of keys (`settings`). Also reads the files that the deck names.
 Scene scene_of(const std::string& text, const std::vector<std::string>& settings, const Arguments& arguments, const Registry& registry) {
   deck::Document deck = deck::read({}, settings, text);
   Scene scene(registry);
@@ -244,7 +244,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();
-  if (whole.resume) arguments.resume += "/level_0";  // the directory of level 0 has copies of the files that the deck names
+  if (whole.resume) arguments.resume += "/level_0";  // files named by the deck have copies in the results of level 0
   accuracy::Program program;
   program.deck = [&](const std::vector<std::string>& settings) {
     deck::Document level = deck::read({}, settings, base);
@@ -271,7 +271,7 @@ std::string deck_of_run(const std::string& directory) {
   return ladder ? *ladder : stored_deck(directory);
 }
 
-/// Returns the text that these options ask for independently of a deck, or nothing if they ask for none.
+/// Returns the text that the command-line options ask for independently of a deck, or nothing if they ask for none.
 std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
   if (arguments.reference) return "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" + deck::manual(Scene(registry));
   if (arguments.reference_series) return series_manual(registry);
@@ -374,7 +374,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   }
 }
 
-/// Keeps freed memory for the next step and snapshot instead of returning it to the system, which clears every page that it hands out again.
+/// Keeps freed memory for later steps and snapshots. If it were returned to the system, the system would clear it at the next allocation.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 25);

@@ -174,7 +174,7 @@ class Run {
     record();
   }
 
-  /// Adapts the mesh if the rule requires it. Then computes the velocity on the new mesh, because the loads on it differ: steps that continued with
+  /// Adapts the mesh if the rule requires it. Then computes the velocity again, because the loads on the new mesh differ: steps that continued with
   /// the velocity of the old mesh were ten times shorter.
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
@@ -244,7 +244,7 @@ class Run {
                      ", because a newer one cannot be written: " + unsaved);
   }
 
-  /// Interpolates the state at the last snapshot time within the latest step, for a snapshot.
+  /// Interpolates the state at the latest snapshot time that the step has passed. The snapshot shows this state.
   void picture_within(const motion::State& before) {
     double time = scene_.next_snapshot(before.time);
     for (double next = scene_.next_snapshot(time); next <= state_.time && next > time; next = scene_.next_snapshot(time)) time = next;
@@ -283,8 +283,8 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // Evaluating the snapshot has increased the counts in totals_. Its solution is also the initial guess of the
-                              // next solve.
+    if (pictured_) settle();  // The evaluation of the snapshot has increased the counts in totals_. The solution of its linear systems is also the
+                              // initial guess of the next solve.
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);

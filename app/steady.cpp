@@ -36,7 +36,7 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   return a;
 }
 
-/// A scene and its motion. A branch has one system per value of its parameters.
+/// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters.
 struct System {
   System(Scene of, coupling::Ranks& ranks, Phases& phases) : scene(std::move(of)), particle(deforming(scene, ranks, phases)) {
     begin(particle->start());
@@ -150,7 +150,8 @@ class SteadyRun {
     return true;
   }
 
-  /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all of them to the new mesh. Returns whether the mesh has changed.
+  /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all `shapes` to the new mesh. Returns whether the mesh has
+  /// changed.
   bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
     system_ = system_at(parameters);
     state_.history.clear(), state_.places.clear();
@@ -222,7 +223,7 @@ class SteadyRun {
     system.begin(state_.x);
   }
 
-  /// Adds the operation counts of a system, which is then dropped, to the totals.
+  /// Adds the operation counts of a system to the totals, before the system is deleted.
   void count_out(const System& system) {
     work_ = work_ + system.particle->work(), kernel_ = kernel_ + system.particle->kernel_evaluations();
   }
@@ -380,8 +381,8 @@ class SteadyRun {
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
-  coupling::Work work_;         // operation counts of systems that were dropped
-  stokes::Evaluations kernel_;  // kernel evaluations of systems that were dropped
+  coupling::Work work_;         // operation counts of systems that were deleted
+  stokes::Evaluations kernel_;  // kernel evaluations of systems that were deleted
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;
   std::string failure_;

@@ -22,10 +22,10 @@ struct Estimate {
   bool trusted() const { return untrusted.empty(); }
 };
 
-/// Factor by which an estimate exceeds what the differences give (9.1).
+/// Safety factor of an estimated error, the factor 1.2 of (9.1).
 constexpr double safety = 1.2;
 
-/// A request is met if the estimate times this factor does not exceed it, because the error may be larger than its estimate.
+/// Second safety factor: a request is met if the estimated error times this factor is at most the requested error.
 constexpr double margin = 1.5;
 
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.

@@ -47,7 +47,8 @@ class Ladder {
   }
 
  private:
-  // First level whose tolerances are adjusted to shares_, see `balanced`. The shares are measured at level 2, so they are unknown on coarser levels.
+  // First level whose time and quadrature tolerances are chosen from the measured shares of these errors, see `balanced`. The shares are measured at
+  // level 2, so levels 0 to 2 cannot use them.
   static constexpr int balanced_from = 3;
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
@@ -69,7 +70,7 @@ class Ladder {
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns why the ladder stops before level k because of its wall-clock limit, as a sentence; empty if it continues.
+  /// Returns a sentence if level k is not run, because it is predicted to exceed the wall-clock limit of all levels; empty if it is run.
   std::string reason_to_stop(int k) const {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
@@ -236,12 +237,12 @@ class Ladder {
   coupling::Ranks ranks_;
   std::unique_ptr<output::Occupation> occupation_;  // on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank
-  std::optional<Outcome> looser_;                   // level 2 with a looser tolerance of time, on the first rank
+  std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
-  std::string failure_, failure_of_last_;           // message of the latest failure; message of the latest level, empty if it succeeded
+  std::string failure_, failure_of_last_;           // message of the latest failed run; message of the latest run if it failed, otherwise empty
 };
 
 }  // namespace

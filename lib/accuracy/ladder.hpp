@@ -13,7 +13,7 @@
 
 namespace tanktread::accuracy {
 
-/// Functions of the program that a ladder calls. Both are collective.
+/// Functions of the program with which one deck is run on finer and finer levels. Both are collective.
 struct Program {
   /// Returns the effective deck of the scene with these settings `Section/key=value`, without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
@@ -34,8 +34,8 @@ struct Task {
   bool runs_in_time = true;  ///< false for searches for steady or periodic shapes, which cannot be resumed
 };
 
-/// Exit codes of a ladder: all requests are met; one is not met on the finest allowed level; the ladder was stopped, by a signal or by its limit,
-/// and can be resumed.
+/// Exit codes of runs on finer and finer levels: all requests are met; one is not met on the finest allowed level; the runs were stopped, by a signal
+/// or by the wall-clock limit, and can be resumed.
 enum Code { met = 0, missed = 1, stopped = 4 };
 
 /// Name of the deck file in the directory of a ladder (runs of one deck on finer and finer levels).
@@ -44,18 +44,19 @@ constexpr const char* ladder_file = "ladder.yaml";
 /// Returns the deck of the ladder (runs on finer and finer levels) in a directory; nothing if the directory holds no ladder. Collective.
 std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 
-/// Climbs the ladder (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of the directory. The results of the finest
-/// finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a section `accuracy` in `summary.yaml`. If the
-/// ladder is resumed, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws UserError if the directory already contains
-/// results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed. Collective.
+/// Runs a deck on finer and finer levels until all requests are met (lib/README.md, Accuracy on request). Level k runs in the folder `level_<k>` of
+/// the directory. The results of the finest finished level become the results in the directory itself, with `/error/<series>` in `run.h5` and a
+/// section `accuracy` in `summary.yaml`. If the task resumes, finished levels are kept and an unfinished level is resumed. Returns a Code. Throws
+/// UserError if the directory already contains results and the task neither resumes nor overwrites them. Throws RunFailure if no level is completed.
+/// Collective.
 int climb(const Task& task, const Program& program);
 
-/// Runs the two lowest levels in a temporary directory. Returns, one line each, the level that is predicted to meet each request, and the predicted
-/// seconds. The lines are those of the first rank. Collective.
+/// Runs the two lowest levels in a temporary directory. Returns lines of text: for each request, the level that is predicted to meet it, and in the
+/// last line the predicted seconds. All ranks return the lines of the first rank. Collective.
 std::vector<std::string> forecast(const Task& task, const Program& program);
 
-/// Returns the predicted seconds of the next level. `seconds`: of the levels before it, coarse to fine. The prediction is the last value times the
-/// ratio of the last two, limited to 1.5 ... 5, or times 2.5 if there is only one value.
+/// Returns the predicted seconds of the next level. `seconds`: seconds of all previous levels, coarse to fine. The growth from level to level is the
+/// ratio of the last two values, limited to 1.5 ... 5, or 2.5 if there is only one value.
 double predicted_seconds(const std::vector<double>& seconds);
 
 }  // namespace tanktread::accuracy

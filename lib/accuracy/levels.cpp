@@ -37,11 +37,11 @@ class Setter {
   void scale(const std::string& path, double factor) {
     if (has(path)) set(path, number(path, 0) * factor);
   }
-  /// Multiplies a whole number that the deck has.
+  /// Multiplies the value of a key by `factor` if the deck has the key, and rounds and limits it to `least` ... `most`.
   void scale_whole(const std::string& path, double factor, double least, double most) {
     if (has(path)) set_whole(path, number(path, 0) * factor, least, most);
   }
-  /// Lowers a tolerance that is above `most`.
+  /// Sets a tolerance to `most` if the deck has a larger value.
   void lower(const std::string& path, double most) {
     if (has(path) && number(path, 0) > most) set(path, most);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of the levels of a ladder: meshes and tolerances, from coarse to fine, as changes of a deck.
+// Settings of the levels of refinement (meshes and tolerances, from coarse to fine), as changes of a deck.
 
 #include <map>
 #include <string>
@@ -35,10 +35,9 @@ double expected_error(const Level& level);
 /// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns mesh level k with levels of time integration and quadrature that fit the measured errors. `time` and `quadrature`: error due to time
-/// integration and error due to quadrature at level 2, each divided by the whole error at level 2. For each of the two, chooses the loosest level, at
-/// most two levels from k, at which its error is at most a quarter of the expected error of level k. If there is none, chooses the level k + 2. If k
-/// = 2 and the value is 0.25, the level is k.
+/// Returns the level with mesh level k whose time and quadrature errors are small compared with its mesh error. `time`, `quadrature`: shares of time
+/// integration and quadrature in the error at level 2. For each of the two, chooses the loosest level from k - 2 to k + 2 whose error is at most a
+/// quarter of the expected error of level k. If there is none, chooses k + 2. Shares of 0.25 at k = 2 give k.
 Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:

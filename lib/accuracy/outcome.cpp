@@ -31,7 +31,7 @@ bool holds(const output::RunRecord& record, const std::string& name) {
   return std::ranges::find(record.series(), name, &output::Series::name) != record.series().end();
 }
 
-/// Returns the values of which a request limits the error, as a curve: the whole series, its last value, or its average.
+/// Returns the values whose error a request limits, as a curve: the whole series, its last value, or its average.
 Curve part(const Curve& whole, Of of) {
   if (of == Of::run || whole.at.empty()) return whole;
   return {{0}, {of == Of::end ? whole.values.back() : mean(whole)}};
@@ -44,7 +44,7 @@ double magnitude(const Curve& whole) {
   return most;
 }
 
-/// Returns the differences of all pairs of successive levels, coarse to fine.
+/// Returns the differences of a series between successive levels, coarse to fine.
 std::vector<Curve> differences(const std::string& series, Of of, const std::vector<Outcome>& levels) {
   std::vector<Curve> found;
   for (std::size_t k = 1; k < levels.size(); ++k)
@@ -58,9 +58,9 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, for `estimated`. By default, each is the expected_error() of the level. If `looser` shows
-/// that a share of the error at level 2 is due to time integration, this share is assumed to decrease with the time tolerance, and only the remaining
-/// error with expected_error().
+/// Returns the expected sizes of the errors of the levels, for `estimated`: expected_error() of each level. If level 2 was also computed with a
+/// looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease with the time
+/// tolerance, and the remaining share to decrease like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;
@@ -175,7 +175,8 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
-      // On a branch of steady shapes, the error of a row is the error at the next fold, or at the end of the branch after the last fold.
+      // On a branch of steady shapes, errors are estimated only at folds and at the end. Each row has the error of the next fold, or of the end of
+      // the branch if no fold follows.
       if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())
         for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;
       one.values = envelope(pairs.back(), at);

@@ -1,5 +1,5 @@
 #pragma once
-// Results of the levels of a ladder, and the errors estimated from them.
+// Results of one deck on several levels of refinement, and the errors estimated from them.
 
 #include <filesystem>
 #include <map>
@@ -26,11 +26,11 @@ struct Outcome {
 /// deck.
 bool resumes(const std::string& one, const std::string& other);
 
-/// Returns the finished run of a deck in a directory; nothing if there is none, it has not reached its end, or it is of another deck.
+/// Returns the finished run in a directory; nothing if the directory has no run, its run has not reached its end, or its deck is not `deck`.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
-/// Returns a series as a function of time. For a branch of steady shapes, whose points differ between levels, returns the values at its folds and its
-/// last point, as a function of their index. A run of one row gives one point.
+/// Returns a series as a function of time. For a branch of steady shapes, returns the values at its folds and its last point as a function of their
+/// index, because all other points differ between levels. A run of one row gives one point.
 Curve curve(const output::RunRecord& record, const std::string& series);
 
 /// The estimate for one request.
@@ -38,13 +38,13 @@ struct Answer {
   Request request;
   Estimate estimate;
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
-  double allowed = 0;    ///< the request in the unit of the series
+  double allowed = 0;    ///< requested bound of the error, in the unit of the series
   bool met = false;
   double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
 };
 
-/// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: the run of level 2 with a looser tolerance of time, if
-/// there is one; it shows which share of the errors falls with this tolerance.
+/// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: result of level 2 with a looser time tolerance, if it
+/// was computed; it shows which share of the errors is due to the time integration.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 /// Returns the error of `level` for a request that is due to one part of the discretisation (time integration or quadrature). `looser`: a run in
@@ -59,7 +59,7 @@ std::string obstacle(const std::vector<Outcome>& levels);
 /// Estimated error of a series of the finest level: one value per row.
 struct SeriesError {
   std::string name, unit, si;
-  std::vector<double> values;  ///< NaN where the estimate cannot be trusted
+  std::vector<double> values;  ///< estimated error at each row; NaN if it cannot be trusted
   std::string untrusted;       ///< reason why the estimate cannot be trusted; empty if it can
 };
 

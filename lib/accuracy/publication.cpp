@@ -70,7 +70,7 @@ std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, 
   return text;
 }
 
-/// Returns the summary of one run without its statement about errors, which is replaced by the sections of the ladder.
+/// Returns the summary of a run without the section `estimated errors`. The sections about all levels replace it.
 std::string without_statement(std::string summary) {
   const std::size_t begin = summary.find("\nestimated errors:\n");
   if (begin == std::string::npos) return summary;

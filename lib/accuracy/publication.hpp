@@ -12,10 +12,10 @@ namespace tanktread::accuracy {
 /// Returns one sentence about a request and its estimate.
 std::string sentence(const Answer& answer);
 
-/// Makes the results of the finest level the results in the directory of the ladder: its files, with `/error/<series>` in `run.h5`, the field
-/// `position error` in snapshots, and the sections `error`, `accuracy` and `expect` in `summary.yaml`. `why`: reason why the ladder ended without
-/// meeting all requests; empty if it met them. Returns one line that lists the missed expectations, without expectations that are not binding.
-/// Serial.
+/// Makes the results of the finest level the results in the directory of the ladder. The directory then has the files of this level, with
+/// `/error/<series>` in `run.h5`, the field `position error` in snapshots, and the sections `error`, `accuracy` and `expect` in `summary.yaml`.
+/// `why`: reason why the ladder ended without meeting all requests; empty if it met them. Returns one line that lists the missed expectations,
+/// without expectations that are not binding. Serial.
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
                     const std::string& why, double seconds);
 

@@ -16,7 +16,7 @@ enum class Of { run, end, mean };
 struct Request {
   std::string series;     ///< name of the series in `run.h5`, for example `taylor_inertia` or `left/velocity_x1`
   Of of = Of::run;        ///< largest error over the run, error of the last value, or error of the time average
-  double value = 0;       ///< largest allowed error, in the unit of the series, or relative
+  double value = 0;       ///< largest allowed error: relative if `relative`, otherwise in the unit of the series
   bool relative = false;  ///< true if `value` is relative to the largest magnitude of the series over the run
 
   /// Returns the request as the text that a deck contains.

@@ -1,5 +1,5 @@
 #pragma once
-// Columns of the record of a run (`/series` in run.h5). The object that a column describes declares it together with its value.
+// Columns of the record of a run (`/series` in run.h5). Each object declares the columns that describe it, together with their values.
 
 #include <functional>
 #include <string>
@@ -28,8 +28,7 @@ class Columns {
   /// `every`: if true, `when` always returns true, so that the columns of all decks are listed.
   explicit Columns(bool every = false) : every_(every) {}
 
-  /// Returns whether to add a column that exists only under this condition. Returns true for every condition if the Columns list all columns
-  /// (`every`).
+  /// Returns whether to add a column that exists only if `condition` is true. If all columns are listed (`every`), always returns true.
   bool when(bool condition) const { return condition || every_; }
 
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.

@@ -12,8 +12,8 @@ namespace tanktread {
 /// Start positions, in an array, of tables of numbers that are stored one after the other. The key is a hash of the content of the table.
 using Tables = std::unordered_multimap<std::size_t, std::size_t>;
 
-/// Returns the start position of the table that was added to `all` from `first` to its end. If an earlier table is bitwise equal, removes the added
-/// table and returns the position of the earlier one.
+/// Registers the table that was appended to `all`, from index `first` to the end, and returns its start index. If an earlier table is bitwise equal,
+/// removes the appended table and returns the start index of the earlier one.
 template <class Number>
 std::size_t kept_once(std::vector<Number>& all, std::size_t first, Tables& tables) {
   const std::size_t size = all.size() - first;

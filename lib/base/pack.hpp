@@ -1,13 +1,13 @@
 #pragma once
-// Memory for the numbers of SIMD registers, for code that is compiled without the instruction set of the kernels.
+// Storage for arrays of SIMD registers whose width is known only at run time, because the kernels are compiled for several instruction sets.
 
 namespace tanktread {
 
 /// Largest number of doubles in a register of any instruction set.
 constexpr int most_lanes = 8;
 
-/// Storage for the numbers of one register of any width. Registers are contiguous from the start of an array of packs. If registers are narrower than
-/// a pack, the end of the array is not used.
+/// Storage for one register of the largest width. An array of packs stores its registers without gaps. If the registers are narrower than a pack, the
+/// end of the array is not used.
 struct alignas(sizeof(double) * most_lanes) Pack {
   double room[most_lanes];
 };

@@ -61,9 +61,9 @@ inline Register sqrt(const Register& a) {
   return root;
 }
 
-/// Returns 1 / sqrt(a) to round-off, or 0 if a <= least, with least >= 0. So a node that coincides with the target contributes nothing.
-/// With AVX-512, corrects the estimate y of the instruction, which is accurate to 2^-14, by the series of (1 - e)^(-1/2), e = 1 - a y^2, up to e^3
-/// (error 6e-17), or in single precision by one Newton step. With other instruction sets, square root and division are as fast.
+/// Returns 1 / sqrt(a) to round-off; 0 if a <= least, so that a node that coincides with the target contributes nothing. least >= 0. With AVX-512,
+/// corrects the hardware estimate y, which is accurate to 2^-14: in double precision by the series of (1 - e)^(-1/2) with e = 1 - a y^2, up to e^3
+/// (error 6e-17), in single precision by one Newton step. With other instruction sets, square root and division are as fast.
 inline Register inverse_root(const Register& a, const Register& least = Register{}) {
 #if defined(__AVX512F__)
   const Register y = _mm512_maskz_rsqrt14_pd(_mm512_cmp_pd_mask(a, least, _CMP_GT_OQ), a);

@@ -16,7 +16,7 @@ class Phases {
  public:
   struct Phase {
     std::string name;
-    double seconds = 0;  ///< wall-clock time without the time of inner phases
+    double seconds = 0;  ///< wall-clock time of the phase, without phases that ran inside it
     long calls = 0;
   };
 

@@ -47,7 +47,7 @@ class Document {
   /// Returns a JSON schema (draft 7) of decks, for editors: types, choices, bounds and descriptions.
   std::string schema() const;
 
-  /// Returns the deck that was given as YAML, with the description of each key above the key.
+  /// Returns the given deck as YAML, with the description of each key in a comment above it.
   std::string commented() const;
 
  private:

@@ -17,9 +17,9 @@ struct Expectation {
   double value = 0;               ///< expected value (required)
   double tolerance = 0;           ///< largest error that passes (required): absolute, or relative to `value`
   std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
-  std::optional<double> at;       ///< time of the value; if not set, the last time
-  std::string source;             ///< source of the value, for example a publication
-  std::string not_binding;        ///< reason why a failure is only reported; if empty, a failure fails the run
+  std::optional<double> at;       ///< time of the expected value; if not set, the last time
+  std::string source;             ///< source of the expected value, for example a publication
+  std::string not_binding;        ///< reason why a missed expectation is only reported; if empty, it fails the run
 
   void declare(Section& section);
 };
@@ -50,15 +50,15 @@ struct Verdict {
 /// Series of the results by name, including the series `time`. Rows are in the order of time.
 using SeriesTable = std::map<std::string, std::vector<double>>;
 
-/// For the name of each series that may be NaN: the condition under which it is NaN, as a clause that follows "because" in a message.
+/// Maps the name of each series that may be NaN to the condition under which it is NaN. The condition follows the word "because" in messages.
 using UndefinedSeries = std::map<std::string, std::string>;
 
 /// Returns one verdict per expectation. A missing series, a time that was not reached, and a time at which the series is undefined are failures.
 /// Between rows the value is interpolated by the cubic through the four nearest rows (see `interpolated`).
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
 
-/// Returns the value at t of the polynomial of degree <= 3 through the (at most four) points nearest to t. `times` ascend and t is in their range.
-/// Uses only points that no NaN value separates from t. The result is NaN if a value next to t is NaN.
+/// Returns the value at the time t of the polynomial of degree <= 3 through the points nearest to t, at most four. `times` ascend and t is in their
+/// range. A NaN value separates the points: only points on the same side of it as t are used. The result is NaN if a value next to t is NaN.
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
 
 }  // namespace tanktread::deck

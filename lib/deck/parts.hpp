@@ -58,7 +58,7 @@ class Parts<Made(On...)> {
     return names;
   }
 
-  /// Returns the columns of all registered parts, for the manual.
+  /// Returns the columns that all registered parts add to the record of a run, for the manual.
   std::vector<Column> columns() const {
     std::vector<Column> all;
     for (const Part& part : all_) all.insert(all.end(), part.columns.begin(), part.columns.end());

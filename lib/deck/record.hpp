@@ -24,15 +24,15 @@ struct List {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;   ///< section from the user (`merged` if it is set); null if not given
-  const Teuchos::ParameterList* itself = nullptr;  ///< section from the user, without the keys taken from sections named by `like` or from `defaults`
-  std::shared_ptr<Teuchos::ParameterList> merged;  ///< section from the user, with the keys taken from sections named by `like` or from `defaults`
+  const Teuchos::ParameterList* given = nullptr;   ///< the section in the deck, null if it is absent; the same as `merged` if that is set
+  const Teuchos::ParameterList* itself = nullptr;  ///< the section in the deck, without keys inherited through the key `like` or from `defaults`
+  std::shared_ptr<Teuchos::ParameterList> merged;  ///< the section in the deck, with keys inherited through the key `like` or from `defaults`
   std::vector<Entry> entries;
   std::vector<std::unique_ptr<List>> lists;
   std::vector<std::string> mistakes;                ///< one sentence per refused value; the key keeps its default
-  bool alike = false;                               ///< true if inner sections take unset keys from the section that `like` names, or from `defaults`
+  bool alike = false;                               ///< true if inner sections inherit keys through the key `like` or from `defaults`
   std::vector<std::string> mentioned;               ///< names that are allowed in this section although they are not declared
-  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters for another library; null if the section is for this program
+  std::shared_ptr<Teuchos::ParameterList> foreign;  ///< parameters passed to another library; null if this program reads the section
 
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };

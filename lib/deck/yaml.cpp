@@ -94,7 +94,7 @@ class Walk {
     else if (value.IsSequence())
       list.setEntry(name, typed_row(words(value, path)));
     else
-      read(value, path, level + 1, list.sublist(name));  // an empty section if nothing follows the colon
+      read(value, path, level + 1, list.sublist(name));  // a key with nothing after its colon becomes an empty section
   }
 
  private:

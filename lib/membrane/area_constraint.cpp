@@ -74,8 +74,8 @@ void AreaConstraint::factor(double time) {
   system_.factorize(system);
 }
 
-/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3), for a vector y with one entry per Gauss point. For y = D r it is the part
-/// of r that the operator P of (4.25) removes.
+/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3), with y one number per Gauss point, the `time` of factor(), the gradient D
+/// of the area conditions and the mobility m. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
 Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
   const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
   return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);

@@ -1,5 +1,5 @@
 #pragma once
-// Constraints of constant local area for nearly area-incompressible membranes: the stiff part of the membrane's tangent.
+// Conditions of constant local area, which represent the stiff part of the tangent of nearly area-incompressible membranes.
 
 #include <vector>
 
@@ -9,9 +9,9 @@
 
 namespace tanktread::membrane {
 
-/// Elastic resistance to area changes, integrated by a separate quadrature (3.13) and written as one condition t per Gauss point. With D the scaled
-/// gradient of the conditions, the gradient of this energy is D't, and the stiff part of its second derivative is D'D. With the mobility m_A of
-/// control point A (velocity per force), the operator
+/// Elastic resistance to area changes, integrated by a separate quadrature (3.13). It is written as one area condition per Gauss point; t is the
+/// vector of these conditions. With D the scaled gradient of t, the gradient of this energy is D't, and the stiff part of its second derivative is
+/// D'D. With the mobility m_A of control point A (velocity per force), the operator
 ///
 ///   P = (1 + time m D'D)^-1 = 1 - time m D'(1 + time D m D')^-1 D                                                                 (4.25)
 ///
@@ -26,17 +26,18 @@ class AreaConstraint {
   /// Returns true if no material of the membrane integrates its area elasticity separately.
   bool empty() const { return points_.empty(); }
 
-  /// Evaluates the area conditions t and their scaled gradient D at the shape x.
+  /// Evaluates, at the shape x, the area condition t of every Gauss point and the scaled gradient D of these conditions, for the operator P (4.25).
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Factors the matrix 1 + time D m D' of the operator P (4.25), with the gradient D at the shape of the latest place().
+  /// Factors the matrix 1 + time D m D' of the operator P (4.25). D is the gradient of the area conditions at the latest place(), m the mobility.
   void factor(double time);
 
   /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves x in two steps so that its area conditions t are close to the conditions of the shape `like`. The remaining difference is of second order
-  /// in the initial difference. The steps use the operator P (4.25) with this `time`. Afterwards this object is evaluated at the new x.
+  /// Moves the shape x in two steps by the operator P (4.25) with this `time`, so that the area at every Gauss point nearly equals the area in the
+  /// shape `like`. The remaining area error is of second order in the initial one. Afterwards the conditions are evaluated at the new x, as by
+  /// place(x).
   void bring(Net& x, const Net& like, double time);
 
  private:

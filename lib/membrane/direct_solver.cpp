@@ -52,7 +52,8 @@ std::vector<Eigen::Index> block_starts(const RowMajor& a) {
   return starts;
 }
 
-/// Returns whether two diagonal blocks of `size` rows are equal, up to the round-off of positions far from the origin.
+/// Returns whether two diagonal blocks of `size` rows are equal up to round-off. (Blocks of equal particles at different positions differ by
+/// round-off.)
 bool equal_blocks(const RowMajor& a, Eigen::Index one, Eigen::Index other, Eigen::Index size) {
   const int* row = a.outerIndexPtr();
   const int first = row[one], apart = row[other] - first, entries = row[one + size] - first;

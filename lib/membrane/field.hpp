@@ -38,7 +38,7 @@ class Field {
   /// Stores the state set last and the slip (fluid minus control-point velocity) for the four linearised functions value_change() to solve().
   virtual void linearise(const Net& slip) = 0;
 
-  /// Returns the change of the field's values (the concentration, the strain) for changes of x and q.
+  /// Returns the change of the values of the field (concentration or strain) for the change dx of the shape and dq of the coefficients.
   virtual Eigen::VectorXd value_change(const Net& dx, const Eigen::VectorXd& dq) const = 0;
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
@@ -46,18 +46,17 @@ class Field {
   /// Stores the shape x for solve(), in addition to the state that linearise() has stored. May replace the state that was set last.
   virtual void freeze(const Net& /*x*/) {}
 
-  /// Returns an approximation of (1 - shift A)^-1 r, A = d(rate)/dq.
+  /// Returns an approximation of (1 - shift A)^-1 r, with the Jacobian A = d(rate)/dq.
   virtual Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const = 0;
 
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift J) dq = r, J = d(rate)/dq. The weighted sums of coefficients that the motion conserves then
+  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq. The weighted sums of coefficients that the motion conserves then
   /// have the same values for dq as for r, to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
-  /// Returns the rate of change of q if the control points slide along the surface with this velocity while the material is at rest, at the state set
-  /// last.
+  /// Returns dq/dt, at the state set last, if the control points slide along the surface with this velocity while the material is at rest.
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
 
   /// Returns the coefficients q on this space, for the surface with the shape x, transferred from the field `from` of the same kind on another mesh
@@ -65,7 +64,7 @@ class Field {
   /// in the other space.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
-  /// Returns the gradient with respect to q of a sum that the motion conserves; empty if there is none.
+  /// Returns the gradient, with respect to the coefficients q, of a weighted sum of q that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
   /// Returns the values, at the state set last, of the columns of the time series that are registered with the field. snapshot() returns the fields

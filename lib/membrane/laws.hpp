@@ -217,7 +217,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 /// The law that the deck selects, as a variant. It is visited once per batch of elements, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law written as a sum of two laws: the area elasticity, which is integrated separately, and the remaining energy of shear.
+/// A law as a sum of two terms: the area elasticity, which is integrated by another Gauss rule, and the energy of shear.
 struct SplitLaw {
   Law shear;
   AreaElasticity area;

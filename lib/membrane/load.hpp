@@ -58,15 +58,15 @@ class Load {
 
   /// Stores at x the data that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
   virtual void linearise(const Net& /*x*/, std::span<const int> /*elements*/, std::span<const Net> /*sums*/) {}
-  /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). A part that is not stiff may be left out.
+  /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). Terms that are not stiff may be left out.
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
   virtual void add_global_tangent(const Net& /*dx*/, Net& /*change*/) const {}
 
-  /// Returns whether the load is symmetric under this image. If not, the scene is not reduced by this image.
+  /// Returns whether the load is symmetric under this image. If not, this symmetry is not used to reduce the number of unknowns.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns dimensionless conditions on a rigid motion U + W x r of the particle. If they hold, the load moves with the particle, and the search for
-  /// steady shapes leaves this motion free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
+  /// Returns the dimensionless conditions under which the load moves with the particle in a rigid motion U + W x r. The search for steady shapes
+  /// leaves such motions free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.

@@ -25,7 +25,7 @@ Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   return spline::assemble(space.n_points, local);
 }
 
-/// Returns the index of the first function value of a batch in the array of values.
+/// Returns the index at which the function values of a batch begin in the array of its group.
 std::size_t values_of(const Group& g, const Batch& batch) {
   return batch.extraction / static_cast<std::size_t>(g.n_bernstein()) * static_cast<std::size_t>(g.n_gauss());
 }

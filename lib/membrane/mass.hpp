@@ -30,11 +30,11 @@ class MassMatrix {
  private:
   const spline::Space* space_;
   std::vector<Group> groups_;
-  // For each group: values N_A of the basis functions A at the Gauss points q of a batch, entry [A n_gauss + q]. Batches with equal extraction
-  // matrices share the values.
+  // Values of the basis functions A at the Gauss points q of a batch of elements, entry [A n_gauss + q], one array per group of batches. Batches with
+  // equal extraction matrices share the values.
   std::vector<std::vector<Pack>> values_;
-  // For each group: positions in matrix_ of the entries (A, B) and (B, A), for each pair B <= A of functions of a batch. Pair k of the group, counted
-  // through all of its batches, has the positions [2 k pack_lanes() + lane] and [(2 k + 1) pack_lanes() + lane].
+  // Positions in matrix_ of the entries (A, B) and (B, A) for each pair B <= A of functions of a batch, one array per group. Pairs k are counted
+  // through all batches of the group; pair k has the array entries [2 k pack_lanes() + lane] and [(2 k + 1) pack_lanes() + lane].
   std::vector<std::vector<int>> slots_;
   Eigen::SparseMatrix<double> matrix_;
   Net updated_;  // x of the latest update

@@ -4,11 +4,11 @@ namespace tanktread::membrane {
 namespace {
 
 constexpr double residual_of_mass = 1e-13;
-constexpr int iterations_allowed = 60;  // largest number of iterations; more of them would cost as much as a factorisation
+constexpr int iterations_allowed = 60;  // conjugate-gradient iterations allowed; more would cost as much as a factorisation
 
 Eigen::Array3d column_products(const Net& a, const Net& b) { return a.cwiseProduct(b).colwise().sum().transpose(); }
 
-// Returns a/b per component; 0 if b = 0, which means that the component is already solved.
+// Returns a/b per component; 0 if b = 0, because the residual of this component is already 0.
 Eigen::Array3d ratio(const Eigen::Array3d& a, const Eigen::Array3d& b) { return (b == 0).select(0., a / b); }
 
 }  // namespace

@@ -17,19 +17,19 @@ class MassSolver {
  public:
   explicit MassSolver(const DirectSolverOptions& options = {}, const surface::Symmetry& symmetry = surface::Symmetry());
 
-  /// Factors M0. Throws as DirectSolver does.
+  /// Factors the mass matrix M0 of the unstressed surface. Throws as DirectSolver does.
   void factor(const Eigen::SparseMatrix<double>& m0);
 
   /// Returns the solver for M0.
   const SymmetricSolver& reference() const { return reference_; }
 
-  /// Returns M0^-1 d, shape (N, 3).
+  /// Returns M0^-1 d, shape (N, 3), with M0 the mass matrix of the unstressed surface.
   Net solve(const Net& d) const { return reference_.solve(d); }
 
-  /// Returns S^-1 d, to a relative residual of 1e-13 in each component.
+  /// Returns S^-1 d for the mass matrix S = s (3.6), to a relative residual of 1e-13 in each component.
   Net solve(const Eigen::SparseMatrix<double>& s, const Net& d);
 
-  int iterations() const { return iterations_; }  ///< iterations of the last solve with S; 0 if S was factored
+  int iterations() const { return iterations_; }  ///< iterations of the last solve with a mass matrix S (3.6); 0 if S was factored
 
  private:
   SymmetricSolver reference_, direct_;

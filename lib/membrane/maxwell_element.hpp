@@ -28,14 +28,14 @@ class MaxwellElement : public Field {
   /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: relaxation time T.
   MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time);
 
-  Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< number of coefficients: C^11, C^12, C^22 at each Gauss point of each element
+  Eigen::Index size() const override { return 3 * unit_.rows(); }  ///< number of coefficients: the components C^11, C^12, C^22 at every Gauss point
   Eigen::VectorXd start(const Net& shape) const override;          ///< coefficients of an element without stress on this shape
   void set_state(const Net& x, const Eigen::VectorXd& q) override;
   Net load() const override;
   Eigen::VectorXd rate(const Net&) const override { return rate_; }
   double energy() const override;
 
-  /// Returns the power that the dashpots dissipate as heat, int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG.                      (3.25)
+  /// Returns the power (3.25) that the dashpots dissipate as heat, int (G (t^2 - 4 J^2)/(2 t J) + K (J - 1)^2)/T dG, with the symbols of (3.23).
   double dissipation() const override { return dissipation_; }
 
   void linearise(const Net&) override;
@@ -46,8 +46,8 @@ class MaxwellElement : public Field {
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
-  surface::FieldsAt values_at() const override;  ///< logarithm of the tensor C^ab x_a x_b in space, nine components
-  /// Interpolates the logarithm of C in orthonormal frames of the surface, so that C stays positive definite.
+  surface::FieldsAt values_at() const override;  ///< logarithm of the strain tensor C^ab x_a x_b (3.23) in space, nine components
+  /// Interpolates the logarithm of the strain C (3.23) in orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
  private:
@@ -69,8 +69,8 @@ class MaxwellElement : public Field {
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  Net unit_;  // g^11, sqrt(g^11 g^22), g^22 of the surface `initial`, one row per Gauss point; the coefficients are the components of C divided by
-              // these
+  // units of the coefficients, one row per Gauss point: coefficients are the components of C divided by g^11, sqrt(g^11 g^22), g^22 of `initial`
+  Net unit_;
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
   Eigen::VectorXd rate_;

@@ -26,7 +26,8 @@ struct Part {
                                     ///< this elasticity
   std::vector<Law> whole;           ///< per material: law with all terms, from which tensions are computed, even if the area elasticity has a
                                     ///< separate group
-  std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at the Gauss points of the groups of this material
+  std::vector<bool> sampled;        ///< per material: false for the shear part of a split law, whose tensions are evaluated at the Gauss points of
+                                    ///< the area part
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending
@@ -89,7 +90,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
   }
 }
 
-/// Moves the area elasticity of material m to groups of its own, which have their own Gauss rule (3.13).
+/// Moves the area elasticity of material m to separate groups of elements with another Gauss rule (3.13).
 void Part::split_material(const spline::Space& space, const Materials& of_surface, std::size_t m) {
   const Material& material = of_surface.all[m];
   const auto parts = split(material.law);

@@ -20,8 +20,8 @@ struct Options {
   std::optional<double> shear_modulus;     ///< G_s, force/length
   std::optional<double> surface_tension;   ///< sigma, force/length
   std::optional<double> area_dilatation;   ///< area dilatation C of the laws Skalak and Evans-Skalak, 1 if not given; empty for other laws
-  double global_area_dilatation = 0;        ///< K/G_s, with K the modulus of the total area (3.26)
-  double leaf_modulus = 0;                  ///< kbar/E_b, with kbar the modulus of the area difference of the leaflets (3.27)
+  double global_area_dilatation = 0;        ///< modulus K of the total area (3.26), divided by the shear modulus G_s
+  double leaf_modulus = 0;                  ///< modulus kbar of the area difference of the leaflets (3.27), divided by the bending modulus E_b
   std::optional<double> leaf_difference;    ///< stress-free area difference of the leaflets divided by the area difference of a sphere
   std::optional<double> neo_hookean_share;  ///< fraction m of the neo-Hookean term; only for the law Mooney-Rivlin
   std::optional<std::string> energy;        ///< strain energy Psi/G_s as an expression in I1, I2 and J; only for the law `expression`
@@ -35,7 +35,7 @@ struct Options {
   std::string load_measure = "reference";  ///< area to which the load per area refers: reference (unstressed, 3.7) or current (3.6)
   std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
-  std::string bending_reference = "unstressed";  ///< curvature without bending moment: unstressed (of the unstressed surface) or flat
+  std::string bending_reference = "unstressed";  ///< surface without bending moment: `unstressed` (curved as the unstressed surface) or `flat`
   std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
   std::optional<double> relaxation_time;                 ///< relaxation time T of a Maxwell element (3.23), whose viscosities are `viscosity`

@@ -103,7 +103,7 @@ Net PatchForces::virtual_work(const spline::Space& space, const Net& unstressed)
   return work;
 }
 
-/// Returns whether the forces are symmetric under the image.
+/// Returns whether the reflection `image` maps the forces on the control points onto themselves.
 bool PatchLoad::admits(const surface::Image& image) const {
   double defect = 0;
   for (Eigen::Index a = 0; a < work_.rows(); ++a)

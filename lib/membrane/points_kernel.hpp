@@ -21,8 +21,8 @@ using ReferencePoint = ReferencePointOf<Pack>;
 inline const double* numbers(const ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 
-/// The linearised stress at a Gauss point. With displacement gradients u1, u2 and the strain e = (a1.u1, a1.u2 + a2.u1, a2.u2), the change of the
-/// stress is dS = C e.
+/// The linearised stress at a Gauss point with the tangents a1, a2. Displacement gradients u1, u2 cause the strain e = (a1.u1, a1.u2 + a2.u1, a2.u2)
+/// and the change dS = C e of the stress.
 template <class Number>
 struct TangentPointOf {
   Number a1[3], a2[3];                  ///< tangents at the linearisation

@@ -25,7 +25,7 @@ class ExpressionParser {
     const Term all = sum();
     if (here() != '\0') refuse("an operator or the end is expected");
     if (!all.slot) throw UserError(what_ + " must depend on I1 or I2, but is constant.");
-    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // copies the energy, so that it is the last result
+    if (*all.slot + 1 != n_results()) emit(Kind::scaled, all, all, 1);  // appends a copy of the energy, because the energy must be the last result
     for (const auto& [name, value] : constants_)
       if (std::ranges::find(used_, name) == used_.end()) throw UserError(what_ + " does not use the constant `" + name + "`.");
   }

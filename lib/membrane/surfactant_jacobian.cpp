@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t most_gauss_points = 144, functions_of_element = 64;  // per element
 constexpr double shift_ratio = 1.25;                           // ratio of neighbouring values of the shift for which solve() computes factors
 
-/// Returns the value of a geometric sequence that is nearest to the shift. Factors computed at this value serve all shifts close to it. The value
-/// does not depend on earlier shifts.
+/// Returns the power of shift_ratio that is nearest to the shift. Factors computed for this power serve all shifts close to it. The result does not
+/// depend on earlier shifts.
 double rounded(double shift) { return std::pow(shift_ratio, std::round(std::log(shift) / std::log(shift_ratio))); }
 
 using Changing = Dual<double>;

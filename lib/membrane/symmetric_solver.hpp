@@ -41,7 +41,7 @@ class SymmetricSolver {
  private:
   /// Components that share a factor.
   struct Part {
-    std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components need not vanish
+    std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components may be nonzero
     std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if left out
     Eigen::VectorXd images;               // m_a, number of images of each fundamental point
     DirectSolver solver;

@@ -28,9 +28,9 @@ class WallRepulsion : public Load {
   void add_work(const Net& x, std::span<const int> elements, Net& work, std::span<Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
   void add_tangent(const Net& dx, Net& change) const override;
-  // Returns true for images that keep the axis x1. The caller checks the symmetry of the wall.
+  // Returns true for images that do not reverse the axis x1. The caller checks the symmetry of the wall.
   bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no conditions, as a tube allows only axial free motions
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no conditions: in a tube, only axial motions are free
   bool depends_on_labels() const override { return false; }
 
  private:

@@ -11,11 +11,12 @@ WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, 
   area.parts.emplace_back(1.0, Membrane(space, unstressed, SurfaceTension{1}, 4, {}));
   std::vector<int> all(space.elements.size());
   std::iota(all.begin(), all.end(), 0);
-  // of_sphere: integral N = int 2 chi dGamma of a sphere of area area0 and radius R, which is 8 pi R.
+  // of_sphere: int 2 chi dGamma over a sphere of area area0 and radius R, which is 8 pi R (chi: mean curvature).
   const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);
   area.stiffness = stiffness.area / area0, area.relaxed = area0;
   if (stiffness.leaves > 0) {
-    // N = int 2 chi dGamma is a difference of two bending energies: (2 chi + c)^2/2 - (2 chi - c)^2/2 = 4 chi c, with c = 1/R
+    // Computes N = int 2 chi dGamma, with the mean curvature chi, as the difference of two bending energies with spontaneous curvatures -1/R and 1/R,
+    // because (2 chi + 1/R)^2 - (2 chi - 1/R)^2 = 8 chi/R.
     for (const double sign : {-1.0, 1.0})
       difference.parts.emplace_back(-sign, Membrane(space, unstressed, SurfaceTension{0}, 4, {radius / 2, false, sign / radius}));
     difference.stiffness = std::numbers::pi * stiffness.leaves / area0;

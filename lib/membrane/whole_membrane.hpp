@@ -51,11 +51,12 @@ class WholeMembrane : public Load {
 
  private:
   struct Measure {
-    int degree;                                      // m, degree of homogeneity in x of Q, the total area or the area difference
+    int degree;                                      // m: Q(x) is homogeneous of degree m = 2 (total area) or m = 1 (area difference)
     std::vector<std::pair<double, Membrane>> parts;  // factors and membranes whose energies, times the factors, add up to Q
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
-    double tension = 0;                              // k (Q - Q0) of (3.26), (3.27) at the shape of linearise(); a tension if Q is the area
+    double tension = 0;                              // derivative k (Q - Q0) of the energy (3.26) or (3.27) with respect to Q, at the shape of
+                                                     // linearise()
     Net q = {};                                      // q at the linearisation
 
     double operator()(const Net& x, const Net& gradient) const { return x.cwiseProduct(gradient).sum() / degree; }

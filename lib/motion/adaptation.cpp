@@ -152,7 +152,8 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
   const auto slender = [&](double ratio) { return ratio >= margin * options.limit_aspect_ratio.value(); };
   const auto is_short = [&](const surface::MidLine& line) { return 2 * line.length < margin * allowed_length(line, options); };
   const auto alone = [&](std::size_t e, int a) { return is_short(metrics[e].along[a]) && !slender(2 * metrics[e].aspect_ratio(a)); };
-  // Merging in both directions keeps the aspect ratio, so that it is possible even if merging in one direction would exceed the limit.
+  // Merging in both directions keeps the aspect ratio of an element. It is possible even if merging in one direction would exceed the limit on the
+  // aspect ratio.
   const auto both = [&](const surface::ElementMetrics& m) {
     return !slender(std::max(m.aspect_ratio(0), m.aspect_ratio(1))) && is_short(m.along[0]) && is_short(m.along[1]);
   };

@@ -35,10 +35,10 @@ struct AdaptationOptions {
   std::optional<double> film_resolution;
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
   int interval = 1;                                        ///< accepted steps between checks
-  int levels = 4;                                          ///< how many times an element of the initial mesh may be halved in one direction
+  int levels = 4;                                          ///< largest number of bisections of an element of the initial mesh in one direction
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
-  double coarsening_margin = 0.7;                          ///< an element of twice the length must stay below this fraction of every limit
+  double coarsening_margin = 0.7;                          ///< a merged element must stay below this fraction of every limit
   double coarsening_tolerance = 1e-4;  ///< largest displacement of the current or the unstressed surface by one coarsening, length
 
   void declare(deck::Section& section);
@@ -58,13 +58,13 @@ struct AdaptationOptions {
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// Returns the elements and directions in which an element may become twice as long: it then stays below `coarsening margin` times every limit of
-/// (P-37).
+/// Returns the elements and directions to coarsen. An element is merged along a direction if the merged element, of twice the length, stays below
+/// `coarsening margin` times every limit of (P-37).
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// Adds marks for elements next to a film, and removes merges that would be undone. An element is refined if it is longer than `film resolution`
-/// times sqrt(width x R_C), with the width of the film. An element is not merged if the merged one would be too long. `lengths` (of elements, along s
-/// and t) and `widths` (of films) are in the order of elements(mesh). Marks of one element are united. L_min does not apply.
+/// add_films() adds marks for elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film.
+/// keep_films() removes merges whose merged element would exceed this length times `coarsening margin`. `lengths` (of elements, along s and t) and
+/// `widths` (of films) are in the order of elements(mesh). Marks of one element are united. L_min does not apply.
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,

@@ -17,8 +17,8 @@ std::string Approach::text() const {
 
 Approach approach_steady(const std::function<std::shared_ptr<SteadyEquations>(double amplitude)>& family, const SteadyOptions& options,
                          const coupling::SolverOptions& solvers, Net& x) {
-  // least_step: smallest step of the amplitude of the flow. coarse: least tolerance of the searches at amplitudes below 1. far: largest change of
-  // shape in one step, divided by the particle radius.
+  // least_step: smallest step of the amplitude of the flow. coarse: tolerance of a search at an amplitude below 1, unless Steady/tolerance is larger.
+  // far: largest change of shape in one step, divided by the particle radius.
   constexpr double least_step = 1. / 512, coarse = 1e-4, far = 0.5;
   constexpr int few = 25, most_searches = 60;
   Approach way;

@@ -8,7 +8,7 @@ namespace tanktread::motion {
 namespace {
 
 constexpr double stable = 2.3;       // largest dt rho for BS3; less than the stability limit 2.51, because the measured rho is a lower bound
-constexpr double solve_share = 0.5;  // work of a linear solve divided by work of an evaluation: 0.4 to 1.5 on 218 and 866 control points
+constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5 with 218 and 866 control points
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
@@ -16,7 +16,7 @@ constexpr double bs3 = 0, tr_bdf2 = 1, rkc2 = 2;  // values of Choice::scheme
 
 }  // namespace
 
-/// Memory of this scheme at the front of State::memory. The memory of the chosen scheme follows.
+/// Memory of the automatic choice of schemes, at the front of State::memory. The memory of the chosen scheme follows.
 struct Automatic::Choice {
   double scheme = bs3;
   double stiffness = 0;
@@ -75,13 +75,13 @@ StepReport Automatic::advance(coupling::Dynamics& dynamics, State& state, double
   } else {
     const bool first = choice.points == 0;
     measure(dynamics, state, choice);
-    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // stability would already limit the first step of BS3
+    if (first && choice.scheme == bs3 && state.step * choice.stiffness > stable) {  // the first step would exceed the stability limit of BS3
       choice.scheme = tr_bdf2;
       choice.then = choice.stiffness;
     }
   }
 
-  // The state that the chosen scheme receives has only the part of the memory that belongs to that scheme.
+  // The chosen scheme receives only the part of State::memory that belongs to it.
   State inner = state;
   const std::size_t own = std::min(values_of(choice).size(), inner.memory.size());
   inner.memory.erase(inner.memory.begin(), inner.memory.begin() + static_cast<std::ptrdiff_t>(own));

@@ -9,7 +9,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr std::size_t places = 3;  // number of earlier positions that a step needs in addition to x_n
+constexpr std::size_t places = 3;  // number of positions, earlier than the current one, that a step needs
 constexpr double growth = 1.5;     // largest ratio of a step to the previous one
 constexpr int patience = 3;        // number of failed attempts at a step after which the scheme starts again with TR-BDF2 steps
 

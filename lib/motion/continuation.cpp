@@ -14,7 +14,8 @@
 namespace tanktread::motion {
 
 namespace {
-constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged: quadrature errors may prevent smaller ones
+constexpr double noise = 30;  // a correction below this multiple of the tolerance counts as converged, because quadrature errors may prevent smaller
+                              // corrections
 }
 
 void ContinuationOptions::declare(deck::Section& section) {
@@ -138,7 +139,8 @@ std::optional<double> Branch::end_before(const Place& place) const {
   return {};
 }
 
-/// Returns the prediction of the point one step further: the parabola in arclength through the last three points, or the straight line along t.
+/// Returns the prediction of the next point of the branch, one step further. It lies on the parabola in arclength through the last three points. If
+/// there are fewer points, it lies on the straight line with the direction t.
 Branch::Place Branch::predicted(const Place& t) const {
   const Solved& now = last_.back();
   if (last_.size() < 3) return now.place.along(t, step_);
@@ -203,7 +205,7 @@ void Branch::adapt() {
   }
 }
 
-/// Keeps back the two latest points before it returns a point, because a fold may lie between them.
+/// Returns a point only when the next point is known, because the next point may show that a fold lies before this point.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
@@ -223,7 +225,7 @@ std::optional<BranchPoint> Branch::next() {
   return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
-/// Finds the first or the second point of the branch. Their values of the parameter are given.
+/// Finds the first or the second point of the branch, each at a prescribed value of the parameter.
 void Branch::begin() {
   const double first = options_.step.value_or(std::abs(options_.to - start_) / 20), way = options_.to - start_;
   const double parameter = last_.empty() ? start_ : start_ + std::copysign(std::min(first, std::abs(way)), way);

@@ -65,12 +65,13 @@ class Branch {
   /// parameter. Returns false if there is no better mesh. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
-  /// Starts at `parameter` with the steady shape reached from `x`. `second`: value of the second parameter if the first fold is continued.
+  /// Starts the branch at `parameter`, with the steady shape that a search from `x` finds. `second`: value of the second parameter if the first fold
+  /// is continued.
   Branch(Family family, Remesh remesh, const ContinuationOptions& options, const SteadyOptions& steady, const coupling::SolverOptions& solvers,
          double parameter, double second, Net x);
 
-  /// Alternative search for the first point, used if the search from x fails. Replaces x, the best iterate, and returns the report. `failed`: report
-  /// of the search that failed. Collective.
+  /// Alternative search for the first point, called if the first search fails. x: best iterate of the failed search, replaced by the result.
+  /// `failed`: report of the failed search. Returns its own report. Collective.
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 
@@ -123,11 +124,11 @@ class Branch {
   std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
   std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
-  double last_share_ = 1;         // step between the two latest folds in the second parameter, divided by the interval between its given values
-  std::size_t values_ = 0;        // number of values of the second parameter that have been reached
+  double last_share_ = 1;         // last step of the second parameter, divided by the interval between two of its given values
+  std::size_t values_ = 0;        // number of given values of the second parameter that have been reached
   std::string failure_;
   double step_ = 0, missed_ = 1;  // length of the next step; distance of the latest point from its prediction, divided by the step
-  double heading_ = 0;  // last change of the scaled parameter q; a change of its sign shows a fold. It is kept when the mesh changes
+  double heading_ = 0;  // last change of the scaled parameter q along the branch; at a fold its sign changes. Not reset when the mesh changes
   int count_ = 0;
   bool ended_ = false;
 };

@@ -19,11 +19,12 @@ class FixedPointError {
   /// `most`: largest number m of earlier iterates.
   explicit FixedPointError(int most) : most_(most) {}
 
-  /// Stores the iterate x_k and its correction f_k, which must be finite, and returns the estimate of the error x_k - x*. The cost is a least-squares
-  /// problem with m columns; g is not evaluated.
+  /// Stores the iterate x_k and its correction f_k, which must be finite. Returns the estimate (4.32) of the error x_k - x*, where x* is the fixed
+  /// point. The cost is a least-squares problem with m columns, without evaluations of the fixed-point map.
   Net operator()(const Net& x, const Net& f);
 
-  bool known() const { return before_.size() > 1; }  ///< returns true if the latest estimate uses earlier iterates, not only the correction
+  bool known() const { return before_.size() > 1; }  ///< returns whether the latest estimate (4.32) uses earlier iterates; if not, it is minus the
+                                                     ///< correction
 
  private:
   int most_;

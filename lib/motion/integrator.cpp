@@ -11,7 +11,7 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double same_time = 1e-12;  // relative tolerance of times; equal limits and kinks may differ by rounding
+constexpr double same_time = 1e-12;  // two times count as equal if their relative difference is below this round-off tolerance
 
 std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox) {
   if (options.scheme == "tr-bdf2") return std::make_unique<TrBdf2>(options);
@@ -78,7 +78,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double trial = 1e-3 / speed;
   dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
-  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // the maximum ignores a NaN in `change`
+  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // a NaN in `change` has no effect
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 

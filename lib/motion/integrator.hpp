@@ -41,8 +41,8 @@ void forget(State& state);
 /// Computes the first slope of a state that has none.
 void begin(coupling::Dynamics& dynamics, State& state);
 
-/// Restarts a state that is at a kink of the motion: keeps only position, step and frozen operator, and computes the slope after the kink. Returns
-/// false if the state is not at a kink. `advance` calls this function. Before the call, the state has the slope at the end of its last step.
+/// If the state is at a kink of the motion (a time of non-smooth change), restarts it: keeps only position, step and frozen operator, and computes
+/// the slope after the kink. Otherwise returns false. `advance` calls this function; until then, the state has the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.
@@ -59,8 +59,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. Throws RunFailure if the step falls below the minimum. The
-  /// state is then unchanged, except for the effect of cross_kink().
+  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. If the step falls below `Time/minimum step`, throws
+  /// RunFailure. The state is then unchanged, except for the effect of cross_kink().
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 
@@ -72,8 +72,8 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
 /// rate of the motion r = |dx/dt|, the third derivative is approximated by r max(|d2x/dt2|, r^2), so the step does not depend on the unit of time.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
-/// Returns the step to use towards `limit` when the controller proposes `step`: all of the remaining time if it is not longer than `step`, or half of
-/// it if two steps are needed, so that the last step is not tiny.
+/// Returns the size of the next step, if the controller proposes `step`: the remaining time up to `limit` if `step` reaches the limit, half of the
+/// remaining time if two such steps reach it, otherwise `step`. The last step is then never tiny.
 double step_towards(double time, double limit, double step);
 
 /// Continuous output within a step: the cubic Hermite interpolant of positions and slopes at both ends, of fourth order, without further evaluations.

@@ -20,12 +20,12 @@ struct TimeOptions {
   std::optional<double> maximum_step;      ///< empty: no limit
   std::optional<double> minimum_step;      ///< smallest step of the step control; the run fails if a smaller step is needed; empty: 1e-9 of `unit`
   double unit = 1;                         ///< unit of time of the scene, the inverse rate of its flow; not a key of the deck
-  /// the run ends if the shape velocity (6.8), divided by the rate of the flow times R_C, is less; empty: never
+  /// the run ends if the shape velocity (6.8), divided by the rate of the flow times R_C, is below this value; empty: never
   std::optional<double> steady_tolerance;
   std::optional<double> end_when_past;     ///< the run ends if x1 of the centroids of all particles is larger than this; empty: never
   double iteration_tolerance = 1e-7;       ///< tolerance of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< for crank-nicolson: plain, anderson, newton-krylov
-  /// step control of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain
+  /// step control of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain, otherwise error
   std::optional<std::string> step_control;
   bool count_euler_step = true;             ///< true if the Euler step counts as a sub-iteration of crank-nicolson
   double newton_tolerance = 0.2;           ///< allowed error of the quasi-Newton iteration of a stage, divided by `tolerance`

@@ -131,7 +131,7 @@ std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& sta
   const auto product = [&](const Net& d) -> Net {
     const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
     const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
-    // `admitted` removes errors that break the symmetry, which would appear as a multiplier of 1
+    // `admitted` removes errors that break the symmetry; they would appear as an eigenvalue 1 of the return map
     return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));
   };
   const int most = static_cast<int>(std::min<Eigen::Index>(2 * number + 4, x.size()));

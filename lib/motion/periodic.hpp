@@ -33,7 +33,7 @@ struct PeriodicOptions {
   void declare(deck::Section& section);
 };
 
-/// Return map of a motion to a plane in the space of shapes, one period T after x. With the flow map phi of the motion and the rotation R:
+/// Return map P of a motion: the next crossing of a plane in the space of shapes, one period T later. phi: flow map of the motion; R: rotation.
 ///
 ///   P(x) = R^-1 phi_T(x),   n.(P(x) - c) = 0,   n along v(c)                                                        (4.27)
 ///
@@ -46,7 +46,7 @@ class ReturnMap {
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 
-  /// Returns P(x) (4.27), the shape at its next return. Throws RunFailure if the motion does not return.
+  /// Returns P(x) (4.27), the shape at the next crossing of the plane. Throws RunFailure if the motion does not return to the plane.
   Net operator()(const Net& x);
   double period() const { return period_; }  ///< T of the latest return
 
@@ -68,17 +68,17 @@ class ReturnMap {
 struct PeriodicReport {
   int iterations = 0;
   bool converged = false;
-  double rest = 0;  ///< distance between the shape and its return
+  double rest = 0;  ///< distance between the shape and its image under the return map
 };
 
 /// Returns the shape after three expected periods, rotated back after each: a suitable point for the plane of returns. Collective.
 Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
                   const PeriodicOptions& options, Net x);
 
-/// Finds the fixed point of P reached from x, by NOX (`anderson`). Collective. Throws RunFailure if a shape does not return.
+/// Finds the fixed point of the return map P (4.27), starting from x, by NOX (`anderson`). Collective. Throws RunFailure if a shape does not return.
 PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::ParameterList>& nox, Net& x);
 
-/// An eigenvalue of the derivative of P, with its eigenvector, a displacement of the fixed point.
+/// Floquet multiplier: an eigenvalue of the derivative of the return map P (4.27), with the real and imaginary part of its eigenvector.
 struct Multiplier {
   std::complex<double> value;
   Net real, imaginary;

@@ -19,7 +19,8 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     const Net defect = dynamics.defect(stage.y, (stage.y - rhs) / shift);
     ++stage.iterations;
     if (!defect.allFinite()) return;
-    if (k == 1 && options.secants > 0) {  // only the first correction gives a secant: in later, smaller ones quadrature errors dominate
+    if (k == 1 && options.secants > 0) {  // only the first correction gives a secant, because later corrections are so small that quadrature errors
+                                          // dominate them
       const Net missed = dynamics.missed_of(defect - before, delta, shift);
       if (!missed.allFinite()) return;
       secants.add(delta, missed, options.secants);

@@ -13,7 +13,7 @@ struct Memory {
   double step = 0;   ///< size of that step
 };
 
-/// A stage y - shift v(y) = rhs and its solution.
+/// Stage of an implicit scheme, y - shift v(y) = rhs with the velocity v, and its solution.
 struct Stage {
   Net y;                ///< start value of the iteration, and after `solve` the solution
   Net slope;            ///< slope (y - rhs)/shift of the result
@@ -31,7 +31,7 @@ struct Stage {
 ///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
 ///
 /// The iteration ends if the error is below `Time/newton tolerance` times the tolerance. If an earlier stage of the same step has observed a rate,
-/// this rate is used from the first iteration on, because the shape of the Jacobian and the shift are the same. Otherwise the first rate is assumed
+/// this rate is used from the first iteration on, because the stages have the same frozen Jacobian and shift. Otherwise the first rate is assumed
 /// to be 1/2, so that a second evaluation is made unless the first correction is small. The rate is never taken below the relative residual of the
 /// linear solves.
 void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& rhs, double shift, coupling::Secants& secants, Stage& stage);
@@ -43,9 +43,9 @@ struct Verdict {
 };
 
 /// Decides on an attempted step that ended with the stage `last`. `error`: local error of the step divided by the tolerance; it is proportional to
-/// the step size to the power `power`. Restores the volume at the end of an accepted step; if this fails, the step is rejected. Assembles the layer
-/// operators again at state.x, and deletes the secants, if this can make the iteration faster: it failed or contracted too slowly, and the shape has
-/// changed since the last assembly. Throws RunFailure if a step of fixed size was not solved.
+/// the step size to the power `power`. Restores the volume at the end of an accepted step; if this fails, the step is rejected. If the iteration
+/// failed or contracted too slowly, and the shape has changed since the layer operators were last assembled, assembles them again at state.x and
+/// deletes the secants. Throws RunFailure if a step of fixed size was not solved.
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory);
 

@@ -43,7 +43,8 @@ struct Chebyshev {
   }
 };
 
-/// Computes the step from x with slope v at `start` to start + dt, with s - 1 velocity evaluations, at the times start + c_j dt of the stages j.
+/// Computes one RKC2 step of s stages (4.8) from x with slope v at the time `start` to start + dt. Evaluates s - 1 velocities, at the times start +
+/// c_j dt of the stages j.
 Net step(coupling::Dynamics& dynamics, const Net& x, const Net& v, double start, double dt, int s) {
   const double w0 = 1 + 2. / 13 / (s * s);  // damping parameter 2/13
   const Chebyshev c(s, w0);

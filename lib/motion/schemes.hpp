@@ -25,7 +25,8 @@ std::vector<double> values_of(const Memory& memory) {
 }
 
 /// Returns the factor between 0.3 and 2 by which a PI controller multiplies the step. `error`: error of the step divided by the tolerance.
-/// `previous`: the same ratio for the previous accepted step, or 0. `power`: power of the step with which the error scales. Source: Gustafsson 1991.
+/// `previous`: this ratio for the previous accepted step, 0 if there is none. The error is proportional to the step to the power `power`. Source:
+/// Gustafsson 1991.
 double step_factor(double error, double previous, int power);
 
 /// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate has the same order as its
@@ -49,15 +50,16 @@ class Attempts {
   /// is not finite; `kind` names the scheme in the message.
   bool holds(double error, const char* kind) const;
 
-  /// Rejects the attempt. `error`: error of the attempt divided by the tolerance; 0 if unknown. The size of the next attempt is `part` times the size
-  /// of this attempt. If two successive attempts are rejected, their errors give the power p of error ~ dt^p, which is taken as at least 1/2. The
-  /// size for which p predicts an acceptable error is then an upper bound of the next attempt. This bound is at least a tenth of the rejected size.
-  /// (p is below 1 while a shape relaxes after mesh refinement.) Source: Gustafsson 1994.
+  /// Rejects the attempt. The size of the next attempt is `part` times the size of this attempt. `error`: error of the attempt divided by the
+  /// tolerance; 0 if unknown. After two successive rejections, the two errors give the power p of error ~ dt^p, at least 1/2. The next attempt is
+  /// then at most as large as p predicts for an acceptable error, but this bound is not below a tenth of the rejected size. (p is below 1 while a
+  /// shape relaxes after mesh refinement.) Source: Gustafsson 1994.
   void reject(double part, double error = 0);
 
   /// Ends the step at y and returns the report. Sets the position and time of the state, and the size of the next step: `factor` times the size of
   /// this step. If this step was shortened, for example to end at the time `limit`, the next step is at least as long as this step would have been.
-  /// The scheme updates its history and memory itself. `error`: error of the step divided by the tolerance times `share` (4.31).
+  /// The scheme updates its history and memory itself. The allowed error is the tolerance times `share` (4.31). `error`: error of the step divided by
+  /// the allowed error.
   StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`

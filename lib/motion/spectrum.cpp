@@ -108,8 +108,8 @@ Eigen::VectorXd Linearised::operator()(const Eigen::VectorXd& y) const {
 
 namespace {
 
-/// Returns an orthonormal basis, in shape coordinates, of the given fields, as far as the symmetry admits them. Fields that do not change the shape
-/// are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
+/// Returns an orthonormal basis, in shape coordinates, of the given fields that have the symmetry of the shape coordinates. Fields that do not change
+/// the shape are left out: rotations of a sphere, and motions of points along the interface of a drop (relabellings).
 Eigen::MatrixXd orthonormal(const coupling::ShapeCoordinates& shapes, const std::vector<Net>& fields) {
   constexpr double seen = 1e-3;
   Eigen::MatrixXd all(shapes.size(), static_cast<Eigen::Index>(fields.size()));
@@ -141,7 +141,8 @@ class Recognition {
         rotations_(rigid_motions(shapes, x, 3)),
         labels_(orthonormal(shapes, dynamics.relabellings(x))) {}
 
-  /// Returns the kind of a mode by its translation, rotation and relabelling parts. Modes due to a conserved volume or mass are not detected here.
+  /// Returns the kind of a mode from its components along translations, rotations and relabellings. Modes due to a conserved volume or mass are not
+  /// detected here.
   ModeKind kind(const Eigen::VectorXcd& mode) const {
     constexpr double most = 0.9;
     const double translation = (translations_.transpose() * mode).norm(), rotation = (rotations_.transpose() * mode).norm();

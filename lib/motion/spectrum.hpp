@@ -39,8 +39,8 @@ struct SpectrumOptions {
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
-/// Mode of the linearised motion: a displacement, or a change of a state with fields, Re(mode e^{rate t}). It is scaled to a largest displacement of
-/// 1; if nothing moves, to a largest component of 1.
+/// Mode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points, or if there are surface fields, a change of positions and
+/// fields. It is scaled to a largest displacement of 1; if nothing moves, to a largest component of 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;
@@ -81,7 +81,7 @@ class Linearised {
 };
 
 /// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved
-/// quantities, first the gradient of the volume. They identify the modes that have rate 0 only because of conservation. Collective.
+/// quantities, first the gradient of the volume. The gradients identify the modes that have rate 0 only because of conservation. Collective.
 std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 

@@ -43,9 +43,9 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
     : dynamics_(dynamics), free_(std::move(free)), step_(step), start_(std::move(start)) {}
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
-  // A field is added only if its part orthogonal to the fields before it is larger than this fraction of its norm. `rounding`, for rigid motions, is
-  // above round-off. `between_meshes`, for relabellings, is above the mesh error by which a relabelling of an axisymmetric drop differs from a rigid
-  // rotation.
+  // Thresholds of the orthogonalisation: a field is dropped if its component orthogonal to the previous fields is smaller than this fraction of its
+  // norm. `rounding`, for rigid motions, is above round-off. `between_meshes`, for relabellings, is above the mesh error: on an axisymmetric drop a
+  // relabelling and a rigid rotation differ only by this error.
   constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);

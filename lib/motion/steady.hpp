@@ -45,11 +45,11 @@ class SteadyEquations {
   /// `step`: implicit step s of the preconditioner in (4.17), a time. `start`: the shape x0. `dynamics` must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
-  Net residual(const Net& x);                          ///< returns s times the residual G(x) (4.17); not finite if the evaluation fails. Collective
-  /// returns (1 - s J)^{-1} r with s of (4.17) and the frozen Jacobian J (4.3), linearised at x. Collective
+  Net residual(const Net& x);                          ///< returns G(x) (4.17) times the implicit step s; not finite if it fails. Collective
+  /// returns (1 - s J)^{-1} r, with the implicit step s (4.17) and the frozen Jacobian J (4.3) linearised at x. Collective
   Net precondition(const Net& x, const Net& r);
   double unit_length() const;                          ///< Euclidean norm of a displacement for which Dynamics::norm is 1
-  std::vector<Net> neutral(const Net& x);  ///< returns the orthonormal fields that Q projects onto. Collective
+  std::vector<Net> neutral(const Net& x);  ///< returns an orthonormal basis of the neutral directions, the range of Q in (4.17). Collective
   coupling::Dynamics& dynamics() { return dynamics_; }
   double step() const { return step_; }
 
@@ -63,9 +63,9 @@ class SteadyEquations {
   Net start_;
 };
 
-/// Solves G(x) = 0 (4.17) as a fixed point of x + s (1 - s J)^{-1} G(x), J the frozen Jacobian of the velocity, by NOX, with Anderson acceleration
-/// (`anderson`) or Newton's method (`newton-krylov`). If an iteration with the step s changes x by much, implicit steps shorter than s are done
-/// first. If the iteration does not converge, x is the best iterate. Collective.
+/// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
+/// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by much, implicit time
+/// steps shorter than s are made first. If the iteration does not converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion

@@ -7,8 +7,8 @@
 namespace tanktread::quadrature {
 namespace {
 
-/// Returns the parameter rho of the Bernstein ellipse of 1 / |y - a u| as a function of a in [-1, 1]. The singularities, where the distance is 0, are
-/// at a = (y.u +- i |y x u|) / u.u.
+/// Returns the parameter rho of the Bernstein ellipse of 1 / |y - a u| as a function of a in [-1, 1]. The function is singular at the complex a =
+/// (y.u +- i |y x u|) / u.u.
 double rho_along(const Vec3& u, const Vec3& y) {
   const double uu = u.squaredNorm(), re = y.dot(u) / uu;
   return ellipse(re, std::sqrt(std::max(0., y.squaredNorm() / uu - re * re)));

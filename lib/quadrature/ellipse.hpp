@@ -31,12 +31,12 @@ struct Patch {
   double area() const { return 4 * u.cross(v).norm(); }
 };
 
-/// Distance of a target from a patch, and the Bernstein parameter rho of 1/r along u and along v through the point of the patch nearest to the
-/// target.
+/// Data of a patch seen from a target. distance: from the target to the nearest point of the patch. rho_u, rho_v: parameters of the Bernstein
+/// ellipses of 1/r along the directions u and v through this point.
 struct Sight {
   double distance = 0, rho_u = 1, rho_v = 1;
 };
-/// Computes the distance and the Bernstein parameters rho_u, rho_v of a patch for a target.
+/// Returns the distance of a target from a patch, and the parameters rho_u and rho_v of the Bernstein ellipses of 1/r.
 Sight sight(const Patch& patch, const Vec3& target);
 
 }  // namespace tanktread::quadrature

@@ -62,12 +62,11 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
 /// practically on the element.
 constexpr double smallest = 1e-8;
 
-/// A part of an element is bisected in both directions if its squared side lengths differ by less than this factor. Otherwise rounding would choose
-/// the direction of bisection on square parts of symmetric shapes, and so change the error of the rule.
+/// A part of an element is bisected in both directions if the ratio of its squared side lengths is below this factor. Without this rule, round-off
+/// would choose the direction for square parts, so the result would not respect the symmetry of the shape.
 constexpr double square = 1.01;
 
-/// Largest number of parts of an element. A target on the element needs some hundreds of parts, so an element that needs more than this number is not
-/// usable.
+/// Largest number of parts of an element, above which the integral is NaN. Even a target on the element needs only some hundreds of parts.
 constexpr int most_parts = 100'000;
 
 }  // namespace
@@ -75,7 +74,8 @@ constexpr int most_parts = 100'000;
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
   const Bezier element{bezier, degree};
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
-  // Largest bulge of a part (distance from its planar approximation) divided by its distance from the target; from tests/verify/layer_shapes.cpp.
+  // Largest bulge of a part (distance from its planar approximation) divided by the distance of the part from the target. The values were found by
+  // tests/verify/layer_shapes.cpp.
   const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};

@@ -9,15 +9,15 @@
 
 namespace tanktread::quadrature {
 
-/// Accuracy that an element integral must have: |error of int dG / r| <= `allowed` (a length), or for a kernel that is steeper by one order,
-/// |error of int `steep` dG / r^2| <= `allowed` with a length `steep` > 0. `tolerance` is the relative accuracy of the smooth part of the integrand
-/// (density, metric), which `smooth_order` points reach on the whole element.
+/// Accuracy of an integral over an element with the surface element dA. For the kernel 1/r: |error of int dA / r| <= `allowed`, a length. For the
+/// kernel 1/r^2, with a length `steep` > 0: |error of int `steep` dA / r^2| <= `allowed`. `smooth_order` Gauss points on the whole element integrate
+/// the smooth factors of the integrand (density, metric) to the relative accuracy `tolerance`.
 struct Demand {
   double allowed = 0, steep = 0, tolerance = 1e-5;
   int smooth_order = 4;
 
-  /// Returns the largest error rho^(-2 n) of n Gauss points that is allowed on a part of the element with this area at this distance from the target.
-  /// For the kernel 1/r^2 (`steep` > 0), the error is taken as ten times as large as rho^(-2 n).
+  /// Returns the largest rho^(-2 n), the error estimate of n Gauss points, that is allowed on a part of the element with this area at this distance
+  /// from the target. For the kernel 1/r^2 (`steep` > 0), the error of n Gauss points is taken as 10 rho^(-2 n).
   double error(double area, double distance) const {
     return allowed * distance / area * (steep > 0 ? 0.1 * std::min(1., distance / steep) : 1.);
   }

@@ -9,9 +9,9 @@ namespace tanktread::quadrature {
 /// Options of the quadrature of layer integrals: `Quadrature/*` of the deck.
 struct Options {
   double tolerance = 1e-4;        ///< relative accuracy of every layer integral: singular, near-singular and far
-  std::string rule = "adaptive";  ///< `adaptive`: orders by tolerance; `fixed`: `points` x `points` Gauss points, and the map of Lachat and Watson on
-                                  ///< panels that contain the target; `desingularised`: only these Gauss points, with the singularity subtracted by
-                                  ///< identities
+  std::string rule = "adaptive";  ///< `adaptive`: number of Gauss points chosen by `tolerance`; `fixed`: `points` x `points` Gauss points, with the
+                                  ///< map of Lachat and Watson on panels that contain the target; `desingularised`: these Gauss points on all panels,
+                                  ///< with the singularity subtracted by identities
   int points = 8;                 ///< Gauss points per direction of the rules `fixed` and `desingularised`
   std::string far_sum = "auto";   ///< `dense`: sums over all far nodes; `tree`: sums over clusters of nodes; `auto`: the faster one
 

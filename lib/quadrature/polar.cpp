@@ -37,17 +37,17 @@ void each_triangle(double s, double t, const Use& use) {
   }
 }
 
-/// Returns the parameter rho of the Bernstein ellipse of 1 / |a + r b| as a function of r in [0, 1]. The singularities are at r = (-a.b +- i |a x b|)
-/// / b.b.
+/// Returns the parameter rho of the Bernstein ellipse of 1 / |a + r b| as a function of r in [0, 1]. The function is singular at the complex r =
+/// (-a.b +- i |a x b|) / b.b.
 double rho_along_ray(const Vec3& a, const Vec3& b) {
   const double square = b.squaredNorm();
   if (!(square > 1e-12 * a.squaredNorm()) || !(a.squaredNorm() > 0)) return 1e6;
   return ellipse(-2 * a.dot(b) / square - 1, 2 * a.cross(b).norm() / square);
 }
 
-/// Side from A to B of a triangle with its apex at the target. Lengths are in the plane of the metric, the parameter plane under the linear map that
-/// gives the tangents x_,s and x_,t their angle and their ratio of lengths. h: distance of the side from the apex. tau_a, tau_b: positions of A and B
-/// along the side, from the foot of the perpendicular. mu_a: angular coordinate mu of A, see polar(). range: length of the interval of mu.
+/// Side from A to B of a triangle with its apex at the target. Lengths are measured in a plane, to which a linear map takes the parameter plane so
+/// that the tangents x_,s and x_,t keep their angle and their ratio of lengths. h: distance of the side from the apex. tau_a, tau_b: positions of A
+/// and B along the side, from the foot of the perpendicular. mu_a: angular coordinate mu of A, see polar(). range: length of the interval of mu.
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 
@@ -61,8 +61,8 @@ struct FarSide {
 
   int order(double tolerance, double rho) const { return 1 + order_for(std::pow(tolerance, 1.25) * std::exp(-range / 2), rho); }
 
-  /// Returns the Bernstein parameter rho of the integrand as a function of the angular coordinate mu, if the side is the line a + q c in space with c
-  /// = b - a. The distance from the target is 0 at q = (-a.c +- i |a x c|) / c.c.
+  /// Returns the parameter rho of the Bernstein ellipse of the integrand as a function of the angular coordinate mu, for a side from a to b relative
+  /// to the target. With c = b - a, the distance |a + q c| from the target vanishes at the complex q = (-a.c +- i |a x c|) / c.c.
   double rho(const Vec3& a, const Vec3& b) const {
     const Vec3 c = b - a;
     if (!(c.squaredNorm() > 1e-12 * a.squaredNorm())) return 1e6;
@@ -107,8 +107,8 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
     const FarSide side(shear, a, b);
     orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
   });
-  // On the ray to a corner, the position relative to the target is x(r) = r affine + r^2 (corner - affine). The integrand, of the order of 1/|x|, has
-  // poles at the complex r /= 0 with x.x = 0.
+  // Along the ray to a corner, the position relative to the target is approximated by x(r) = r affine + r^2 (corner - affine). The integrand is of
+  // the order of 1/|x|. It has poles at the complex r /= 0 with x.x = 0.
   for (int k = 0; k < 4; ++k)
     orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
   orders.radial = rounded_up(orders.radial);

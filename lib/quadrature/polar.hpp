@@ -19,7 +19,7 @@ struct Shear {
   auto operator<=>(const Shear&) const = default;
 };
 
-/// Returns the bin of the metric g_ab = x_,a . x_,b, or of the unit metric if g is degenerate or not finite.
+/// Returns the metric g_ab = x_,a . x_,b rounded to a Shear; the unit metric if g is degenerate or not finite.
 Shear shear(double g_ss, double g_st, double g_tt);
 
 /// Numbers of Gauss points of a polar rule: in the radial direction, and in the angular direction over each side of the square (t = 0, s = 1, t = 1,
@@ -30,9 +30,9 @@ struct PolarOrders {
   auto operator<=>(const PolarOrders&) const = default;
 };
 
-/// Returns the orders for a target at (s, t) of an element that is nearly affine. The angular coordinate is mu of polar(). As a function of mu, the
-/// integrand has poles at +- i pi / 2, the directions in which r^2 = 0. The angular order is chosen such that the error due to these poles is
-/// tolerance^1.25 exp(-m/2), with m the length of the interval of mu. This choice follows from measurements on deformed surfaces
+/// Returns the orders for a target at (s, t) of an element that is nearly affine. As a function of the angular coordinate mu, see polar(), the
+/// integrand has poles at +- i pi / 2, where the squared distance r^2 vanishes. The angular order keeps the error due to these poles below
+/// tolerance^1.25 exp(-m/2), with m the length of the interval of mu. This bound was found by measurements on deformed surfaces
 /// (tests/verify/layers.cpp).
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
@@ -43,9 +43,9 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
                          const std::array<Vec3, 4>& affine);
 
-/// Returns the polar rule about (s, t) in the closed unit square. It consists of up to four triangles with apex (s, t), in a plane in which lengths
-/// and angles are those of the metric `shear`. Each triangle has Gauss points in the radial coordinate and in an angular coordinate mu. With h the
-/// distance of the side opposite the apex, h sinh(mu) is the arc length along this side, measured from the foot of the perpendicular.
+/// Returns the polar rule about (s, t) in the closed unit square. The square is divided into up to four triangles with apex (s, t). Lengths and
+/// angles are those of the metric `shear`. Each triangle has Gauss points in the radial coordinate and in an angular coordinate mu. If h is the
+/// distance of the apex from the opposite side, h sinh(mu) is the arc length along this side from the foot of the perpendicular.
 Rule polar(double s, double t, Shear shear, const PolarOrders& orders);
 
 /// Returns the rule of Maestre et al. (2017): up to four triangles with apex (s, t) in the parameter plane, each with n x n Gauss points under the

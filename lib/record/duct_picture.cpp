@@ -82,8 +82,8 @@ std::vector<double> flat(const std::vector<Vec3>& rows) {
   return out;
 }
 
-/// Data along the line of the wall where the outline begins: the coordinate along the centre line, the magnitude of the tangential traction, and the
-/// pressure.
+/// Data along the channel, on the line on the wall that begins at the first point of the outline. s: arc length along the centre line. shear:
+/// magnitude of the tangential traction.
 struct WallLine {
   std::vector<double> s, shear, pressure;
 };
@@ -152,7 +152,7 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
        {flow.extra_pressure_drop()},
        {}}};
   if (channel.repeats())
-    return all;  // in a periodic channel the density on the wall is not the traction of the fluid inside, so it is not plotted
+    return all;  // the layer density on the wall of a periodic channel is not the traction, so it is not plotted
   const WallLine wall = along_wall(flow);
   all.push_back({"wall_s", "length", "arc length along the line of the wall on which the outline begins", wall.s, {wall.s.size()}});
   all.push_back({"wall_shear_stress",

@@ -12,7 +12,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double longest = 5;  // seconds that a timed evaluation may take
+constexpr double longest = 5;  // largest allowed duration of a timed evaluation, in seconds
 
 /// Measured cost of one velocity evaluation, over all ranks.
 struct Cost {

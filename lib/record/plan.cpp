@@ -279,8 +279,8 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// Returns the lines of one particle of the coupled system. `n_points`: number of control points of all particles. `responds`: whether anything other
-/// than rigid bodies responds to their tractions.
+/// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `responds`: true if the tractions of
+/// rigid bodies are found by GMRES, because the scene has a tube, a domain, or a deforming particle with a velocity system.
 Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
@@ -295,8 +295,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
                        (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
 }
 
-/// Adds the lines of all particles to the plan. The lines of a single particle are added unchanged. If there are several, each particle has one line,
-/// and particles with equal lines share it.
+/// Adds the lines about all particles to the plan. For a single particle, these are its lines. For several particles, the lines of each are joined
+/// into one line, and particles with the same line share it.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   const bool responds = std::ranges::any_of(alone, [](const Scene& one) {

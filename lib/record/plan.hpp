@@ -22,8 +22,8 @@ output::Entries<double> numbers(const Scene& scene, const Body& body);
 /// Returns the derived and dimensionless numbers of a scene as the text of one line of the plan.
 std::string numbers_text(const output::Entries<double>& numbers);
 
-/// Returns the plan: unknowns, kernels, memory, scheme, and the computations that the scene does not need. `body`: stacked body of all particles.
-/// `ranks`: number of ranks.
+/// Returns the plan: unknowns, kernels, memory, scheme, and the computations that are skipped because the scene does not need them. `body`: all
+/// particles as one body. `ranks`: number of ranks.
 output::Entries<std::string> plan(const Scene& scene, const Body& body, int ranks);
 
 /// Returns the plan of a scene before a run. Throws UserError if the particles overlap, or do not fit into the scene, in their initial positions.

@@ -223,7 +223,7 @@ void Results::write_record() {
   due_ = Clock::now() + std::max<Clock::duration>(second, 50 * (Clock::now() - begun));
 }
 
-/// Returns whether files are flushed to the disk. During the first second of a run they are not, because writing them again is faster than waiting.
+/// Returns whether files are flushed to the disk. During the first second of a run they are not: repeating this second is faster than the flushes.
 output::Durable Results::durable() const { return Clock::now() - start_ < second ? output::Durable::no : output::Durable::yes; }
 
 void Results::warn(const std::string& sentence) {

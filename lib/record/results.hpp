@@ -38,12 +38,12 @@ struct RunRequest {
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
-/// Names, in the results directory, of the copies of files that the deck names. With these copies the run can be resumed without the original files.
+/// Names of files in the results directory that are copies of files named by the deck. With the copies, a run can be resumed without the originals.
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
 std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file with the positions of a particle's copies
-/// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder
+/// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder.
 std::string kept_name(const std::string& file);
 
 /// Data of a finished run for its summary and its messages.
@@ -104,8 +104,8 @@ class Results {
   };
   Sampled sample(const SurfacePicture& picture, double time);
 
-  /// Saves a checkpoint of the current step and a snapshot of the same time or of a time within the step. `checkpoint` holds the other data that a
-  /// resumed run needs.
+  /// Saves a checkpoint of the current step, and a snapshot at the end of the step or at a time within it. `checkpoint`: data for a resumed run other
+  /// than `state` and `totals`, which are added to it.
   void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
 
   /// Writes the surface as Bezier-extraction text, `surface.iga`.

@@ -9,9 +9,9 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`. `h`: current spacing of the elements
-/// at the point. The edge belongs to the rings if, for H = h, 2 h, 4 h or a larger spacing below that of the initial mesh, it is within 3 H of the
-/// point and on the lattice of spacing H.
+/// Returns whether the edge belongs to uniform rings of elements around the extraordinary point at `corner`. An edge belongs to the rings of spacing
+/// H if it is on the lattice of spacing H and within 3 H of the point. H is h, 2 h, 4 h, ..., below the spacing of the initial mesh, with h the
+/// current spacing at the point.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
@@ -19,7 +19,7 @@ bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
 }
 
 /// Returns whether the edge must not be removed: it is on a line of the initial mesh, or it belongs to the uniform rings of elements around an
-/// extraordinary point at their current or a larger spacing.
+/// extraordinary point (see in_rings).
 bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
   const Lattice& l = *mesh.lattice;
   if ((e.horizontal ? l.height(e.y) : e.x) % l.base == 0) return true;
@@ -74,7 +74,7 @@ struct Remover {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
     for (Ray s : starts) {
-      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed: two symmetries can map to the same edges
+      if (!mesh.edge(s.vertex, s.slot)) continue;  // already removed, because two symmetries map `start` to the same edge
       const auto bay = removable_bay(s);
       for (Ray e : bay) mesh.set(e, false);
       gone.insert(gone.end(), bay.begin(), bay.end());
@@ -143,8 +143,8 @@ struct Remover {
     return group;
   }
 
-  /// Doubles the spacing h of the elements around every extraordinary point where all edges that this removes are removable. Returns whether any
-  /// spacing was doubled.
+  /// Doubles the spacing h of the elements around each extraordinary point where this is possible (see doubling_group). Returns whether any spacing
+  /// was doubled.
   bool double_rings() {
     bool any = false;
     for (int point = 0; point < int(lattice().extraordinary.size()); ++point) {
@@ -203,7 +203,7 @@ Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const Re
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // next: also marks the continuation of a vertical edge in a row of zero height (end knot)
+      if (!vertical || !l.pad) continue;  // at a pole, a vertical line continues in the row of zero height (end knot): marks its edge there, too
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

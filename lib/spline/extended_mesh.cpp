@@ -106,7 +106,7 @@ std::pair<TJunction, TJunction> ExtendedMesh::crossing(int& cursor) const {
   if (at == crossed_.end()) at = crossed_.begin();
   cursor = *at;
   const auto& here = passing_[*at];
-  int lowest[2] = {-1, -1};  // for each axis, the lowest T-junction whose extension passes this vertex along the axis; -1 if none
+  int lowest[2] = {-1, -1};  // for each axis, the T-junction of lowest index whose extension passes this vertex along the axis; -1 if none
   for (const Passing& p : here) {
     int& low = lowest[p.heading & 1];
     if (low < 0 || p.junction < low) low = p.junction;

@@ -42,8 +42,8 @@ class ExtendedMesh {
   /// Finds the first vertex with an index above `cursor` (cyclically) at which two extensions cross, and returns their T-junctions. Sets `cursor` to
   /// this vertex.
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
-  /// Returns the T-junctions, at most two, that are next to the first missing edge on the line of this edge. An extension of either of them could be
-  /// lengthened to contain the edge.
+  /// Returns the T-junctions whose extensions could be lengthened to contain the first missing edge. They lie on the line of this edge, at most one
+  /// in each direction.
   std::vector<TJunction> around_missing() const;
   /// Returns pairs of T-junctions that point at each other and whose extensions overlap, at most `most` pairs, in the order of vertices. Each
   /// overlap is listed twice, once from each side.

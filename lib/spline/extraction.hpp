@@ -9,7 +9,8 @@ namespace tanktread::spline {
 /// Representation of the surface on the faces around an extraordinary point.
 enum class ExtraordinaryRule {
   g1,             ///< one bi-quartic element per face, with continuous tangent planes (G1; Maestre et al. 2017); not nested under refinement
-  catmull_clark,  ///< limit surface of Catmull-Clark subdivision in bicubic pieces, smaller towards the extraordinary point; nested
+  catmull_clark,  ///< limit surface of Catmull-Clark subdivision, in bicubic pieces that shrink towards the extraordinary point; nested under
+                  ///< refinement
 };
 
 /// Returns the space of bicubic analysis-suitable T-splines of the mesh, with one function per anchor (vertex with a control point), in the order

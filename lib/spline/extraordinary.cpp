@@ -45,7 +45,7 @@ Row net(int u, int v) {
 }  // namespace
 
 Eigen::MatrixXd averaged_bicubic() {
-  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the net that is next to its corner (cu, cv).
+  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the control net that is nearest to its corner (u + cu, v + cv).
   auto near_corner = [](int u, int v, int cu, int cv) {
     return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
   };
@@ -136,7 +136,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// Returns how Bezier point (v, u) of face j (5 x 5 points) depends on the unknowns: one coefficient per unknown.
+/// Returns the coefficients of the unknowns in the change of Bezier point (v, u) of face j (5 x 5 points).
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;

@@ -146,7 +146,7 @@ Lattice polar_lattice(int azimuthal_elements, int meridional_elements, int level
 
 Lattice cube_lattice(int elements_per_side, int levels) {
   using Int3 = Eigen::Vector3i;
-  // Directions of x and y of each face. Their cross product points outwards.
+  // Unit vectors X, Y, Z. `axis`: directions of x and y of each face; their cross product points outwards.
   const Int3 X(1, 0, 0), Y(0, 1, 0), Z(0, 0, 1);
   const Int3 axis[6][2] = {{Y, Z}, {Z, Y}, {Z, X}, {X, Z}, {X, Y}, {Y, X}};
 

@@ -108,8 +108,8 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns, for PoleRule::c1, where function k of a pole is collocated: the anchor whose generalised Greville point is used, or -1 for the pole.
-  /// `ahead`: the pole at the end of the meridian, otherwise the pole at its start.
+  /// Returns, for PoleRule::c1, the anchor at whose generalised Greville point function k of a pole is collocated, or -1 if it is collocated at the
+  /// pole. `ahead`: the pole at the end of the meridian, otherwise the pole at its start.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:
@@ -285,7 +285,7 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions) {
   if (transformed) {
     const Transform transform(subdivisions);
     std::vector<Element> kept, pieces;
-    // for old element k: its new index, or -1 - j if the element is replaced by pieces that begin at pieces[j]
+    // for each element k: its index after the replacement, or -1 - j if it is replaced by pieces that begin at pieces[j]
     std::vector<int> place(out.elements.size());
     std::vector<bool> at_end(out.elements.size());
     for (std::size_t t = 0; t < out.elements.size(); ++t) {

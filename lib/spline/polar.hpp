@@ -15,7 +15,7 @@ namespace tanktread::spline {
 enum class PoleRule {
   plain,             ///< one function per pole, only continuous (C0) there; elements at a pole have one side that is collapsed to the pole
   bezier_transform,  ///< functions of `plain`, but degenerate elements at the poles are replaced by non-degenerate pieces (P-A.1, P-A.2)
-  c1,                ///< three functions per pole, such that the tangent plane is continuous; elements as in `plain`
+  c1,                ///< three functions per pole, so that tangent planes are continuous; elements have a collapsed side as in `plain`
 };
 
 /// Mesh of m elements in azimuth and r from pole to pole, with uniform knots. It has (r + 1) m + 2 control points, or (r - 1) m + 6 with `c1`.
@@ -28,35 +28,37 @@ struct PolarMesh {
 
 /// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (first pole, "behind") to r (last pole,
 /// "ahead"), and azimuth v in elements. Without `c1`, the control points are the poles and the rows of m points of the tensor-product net. With `c1`,
-/// three control points per pole replace the pole and the row next to it. `distance`: distance of the point from the axis, divided by the distance
-/// from the axis of the row at this u; 1 except for these three points.
+/// three control points per pole replace the pole and the row next to it. `distance`: ratio of the distance of the point from the axis to the
+/// distance of the row at this u from the axis. It is 1 except for these three points.
 struct PolarAnchor {
   double u = 0, v = 0, distance = 1;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
-/// Returns the space. Order of control points: the pole at the beginning of the meridian ("behind"), rows along the meridian with azimuth fastest,
-/// the pole at its end ("ahead"). Elements: s along the azimuth, t along the meridian towards the pole ahead; the pieces of the transform come last.
-/// With `plain`, a pole is a whole side of m elements, and its collocation point is at s = 1/2 on each of them. `face` is 0, and `origin` and `size`
-/// are fractions of the whole domain; the pieces of an element divide its size in azimuth.
+/// Returns the spline space of the mesh. Order of control points: the pole at the beginning of the meridian ("behind"), the rows along the meridian
+/// (azimuth fastest), the pole at its end ("ahead"). In an element, s runs along the azimuth and t along the meridian towards the pole ahead. The
+/// pieces that replace degenerate elements come last. With `plain`, a pole is a side of m elements, and its collocation point is at s = 1/2 on each
+/// of them. `face` is 0. `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size in azimuth.
 ///
-/// With `c1` (after Speleers and Toshniwal 2021), let rows 0 and 1 be next to the pole, f_j = 2 pi j / m the azimuths of their functions, d_j =
-/// (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle around all d_j. Then
+/// With `c1` (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1, next to
+/// it. Let f_j = 2 pi j / m be the azimuths of the functions of a row, d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle
+/// around all d_j. Then
 ///
 ///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
 ///
-/// The triangle has three of the d_j as the midpoints of its sides. They are chosen such that the triangle is as large as possible, so it contains
-/// all d_j, and all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of these three d_j, so the
-/// condition numbers of collocation are equal to the condition numbers of tensor-product splines.
+/// Three of the d_j are the midpoints of the sides of the triangle. They are chosen such that the triangle is as large as possible. It then contains
+/// all d_j, so all l_k(d_j) >= 0. The collocation points of the three functions are the generalised Greville points of the N_1j with these three d_j.
+/// The collocation matrix then has the condition number of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
 /// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the poles,
 /// in the order of the lattice vertices.
 ///
-/// With `c1`, knot insertion transfers the positions d_j in the plane at the pole from the functions of row 1 of the base mesh to the finer
-/// functions. The positions are then multiplied by the ratio of the heights of the first element in the refined mesh and in the base mesh. With this
-/// factor, spaces of nested meshes are nested. The triangle around the d_j and the pole is chosen again. `plain` spaces are nested, too.
-/// `bezier_transform` spaces are not, but they have the control points of the `plain` spaces, between which fields can be transferred.
+/// With `c1`, the functions next to a pole have positions d_j in the tangent plane, on the unit circle for the initial mesh (see above). Knot
+/// insertion transfers the d_j to the functions of a finer mesh. They are then multiplied by the ratio of the heights of the first element in the
+/// finer and in the initial mesh, so that spaces of nested meshes are nested. The triangle around the d_j and the pole is chosen again. `plain`
+/// spaces are nested, too. `bezier_transform` spaces are not nested, but they have the control points of the `plain` spaces, between which fields can
+/// be transferred.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
@@ -84,8 +86,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of v (coordinate of the degenerate element) of the part of the degenerate element that is converted to the
-                               ///< triangle around this piece
+  double from = 0, to = 1;     ///< range of the coordinate v of the degenerate element that the triangle around this piece covers
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 

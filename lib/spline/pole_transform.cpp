@@ -51,7 +51,7 @@ Eigen::MatrixXd triangle_of_degenerate() {
 }
 
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
-  // Evaluates the polynomial at 4 x 4 points and computes the Bezier points of its interpolant.
+  // Evaluates the cubic Bernstein polynomials of the triangle at 4 x 4 points and interpolates the values by bicubic Bernstein polynomials.
   constexpr double factorial[4] = {1, 1, 2, 6};
   Eigen::MatrixXd values(16, 10), bernstein_values(16, 16);
   double U[4], V[4];

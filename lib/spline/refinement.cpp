@@ -89,8 +89,8 @@ struct Cut {
   auto operator<=>(const Cut&) const = default;
 };
 
-/// Returns the smallest (element, then direction) of the images of a cut under the symmetries, including the cut itself. Equivalent cuts thus have
-/// one representative, and if the lattice is too coarse for the bisection, it is counted as refused only once.
+/// Returns the first of the images of a cut under the symmetries, including the cut itself, in the order of elements, then directions. Equivalent
+/// cuts thus have one representative. If the lattice is too coarse for them, they are counted as one refused bisection.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

@@ -37,7 +37,7 @@ std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, 
 /// its image. The result maps the T-mesh element that contains e to the T-mesh element that contains element[e].
 std::optional<LatticeMap> lattice_map(const TMesh& mesh, const Space& space, std::span<const int> element, bool mirrored);
 
-/// Requests to bisect an element of elements(mesh): across s (by a line of constant s), across t, or both.
+/// Request to bisect an element of elements(mesh): across s (by a line of constant s), across t, or both.
 struct Mark {
   int element;
   bool s = true, t = true;

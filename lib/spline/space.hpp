@@ -22,7 +22,7 @@ struct Element {
   /// Extraction matrix, shape (m, (p + 1)^2). Every column sums to 1. Equal elements, for example in copies of a space, may share one matrix.
   std::shared_ptr<const Eigen::MatrixXd> extraction;
   int face = 0;                                    ///< index of the macro face (face of the cube) that contains the element
-  std::array<double, 2> origin{0, 0}, size{1, 1};  ///< lower left corner and size in units of the side of the macro face
+  std::array<double, 2> origin{0, 0}, size{1, 1};  ///< lower left corner and size of the element, in units of the side of the macro face
 };
 
 /// A parametric point of the surface: an element and local coordinates in [0, 1]^2.
@@ -36,13 +36,13 @@ struct Site {
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;
-  /// For each collocation point, its local coordinates on all elements whose closure contains it. The first element is used for evaluation.
+  /// Collocation points. Each is given by its sites (element, local coordinates) on all elements whose closure contains it. The first site is used.
   std::vector<std::vector<Site>> collocation;
   std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };
 
-/// Index ranges of one of several spaces in the stacked space, which numbers the spaces' control points and elements consecutively: control points
-/// (and collocation points) first_point .. first_point + n_points - 1, elements first_element .. first_element + n_elements - 1.
+/// Index ranges of one space in a stacked space: its control points (and collocation points) are first_point .. first_point + n_points - 1, and its
+/// elements are first_element .. first_element + n_elements - 1.
 struct Block {
   int first_point = 0, n_points = 0;
   int first_element = 0, n_elements = 0;

@@ -91,7 +91,7 @@ Tiling elements(const TMesh& mesh) {
 
 namespace {
 
-/// Returns the unit edges from a ray straight on until they have met perpendicular edges `count` times.
+/// Returns the unit edges on the line of a ray, up to the vertex at which the line meets perpendicular edges for the `count`-th time.
 std::vector<Ray> bays(const TMesh& mesh, Ray ray, int count) {
   std::vector<Ray> path;
   while (count > 0 && !mesh.lattice->ends(ray.vertex, ray.slot)) {

@@ -36,8 +36,8 @@ int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   return cells[turn & 3];
 }
 
-/// Returns the products of the coefficients in the forward direction `turn` (Walker) with the coefficients in the direction to the left of it, in the
-/// order of the local coordinates s, t of the element.
+/// Returns the 16 products of coefficients along two directions: `ahead` in the direction `turn`, and `aside` in the direction to the left of it (see
+/// Walker). They are ordered by the local coordinates s, t of the element.
 std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::array<double, 4>& aside, int turn) {
   std::array<double, 16> row;
   for (int b = 0; b < 4; ++b)
@@ -53,8 +53,8 @@ struct Builder {
   const Lattice& l;
   TileFunctions& out;
 
-  /// Returns the mesh element that contains a cell, and sets `number` to its index. A cell of zero height is an element of its own; `number` is then
-  /// negative.
+  /// Returns the mesh element that contains a cell, and sets `number` to its index. A cell of zero height counts as a separate element with a
+  /// negative `number`.
   Rectangle tile(int cell, int& number) const {
     number = out.tiling.tile_of_cell[cell];
     return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
@@ -131,8 +131,9 @@ CellPoint greville(const TMesh& mesh, int v, const Knots& k) {
     const auto [x, y] = turned(0, 0, 3, l.corner[v][0]);
     return {l.cell[v][0], x, y};
   }
-  // Distance of the Greville point from the anchor along directions 0 and 1, in thirds of a lattice unit. The Greville point is the mean of the three
-  // inner knots. The middle one is at the anchor, so that the distance is the sum of the positions of the other two relative to the anchor.
+  // The Greville point is the mean of the three inner knots, and the middle one of these knots is at the anchor. So the distance from the anchor to
+  // the Greville point, in thirds of a lattice unit, is the sum of the positions of the other two knots relative to the anchor. o0: along direction
+  // 0, o1: along direction 1.
   const int o0 = l.length(v, 0, k.reach[0][0]) - l.length(v, 2, k.reach[2][0]);
   const int o1 = l.length(v, 1, k.reach[1][0]) - l.length(v, 3, k.reach[3][0]);
   if (l.pad > 0) {  // one face without turns

@@ -68,7 +68,7 @@ class BezierMap {
   std::vector<Block> blocks_;
   std::vector<Element> elements_;
   std::vector<int> points_;
-  // extraction matrices of shape (functions, Bezier points) with the function index running fastest; the transposed matrices
+  // by_bezier_: extraction matrices, entry [Bezier point][function]. by_function_: the same matrices transposed, entry [function][Bezier point].
   std::vector<double> by_bezier_, by_function_;
 };
 

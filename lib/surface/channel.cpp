@@ -66,7 +66,7 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// Returns by how much the contour of the wall is longer than the centre line, on each side of the middle of the profile `step`.
+/// Returns, for the profile `step`, the length of the wall contour minus the length of the centre line, on one side of the middle of the profile.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
@@ -145,7 +145,7 @@ double Channel::in_period_along(double s) const {
   return options_.period > 0 ? s - options_.period * std::floor((s - start_) / options_.period) : s;
 }
 
-/// Returns the point at u, where u may lie beyond the ends of the modelled period of a periodic channel.
+/// Returns the arc length and the scale factors at the longitudinal parameter u, which may be beyond the modelled period of a periodic channel.
 Channel::Place Channel::in_period(double u) const {
   if (options_.period == 0) return place(u);
   const double low = parameter(start_), whole = parameter(end_) - low, periods = std::floor((u - low) / whole);
@@ -313,8 +313,8 @@ int Channel::elements() const {
   return std::max(8, static_cast<int>(std::ceil(count)));
 }
 
-/// If there are enough elements, the knot is triple where the curvature of the wall or of the centre line jumps. The slope of the wall pressure
-/// jumps there, and the shear stress behaves like d log d with the distance d. Splines that are smooth across the jump would oscillate.
+/// Makes knots triple where the curvature of the wall or of the centre line jumps, if there are enough elements. The slope of the wall pressure jumps
+/// there, and the shear stress behaves like d log d with the distance d. Splines that are smooth across the jump would oscillate.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};
@@ -333,8 +333,7 @@ std::vector<double> Channel::knots(int elements) const {
     begin = end, done = whole;
   };
   std::vector<double> joints = kinks();
-  // At a step of the profile, triple knots would fold the sides of the elements on its transverse wall. With simple knots, the control points stay
-  // apart.
+  // On the transverse wall of a step, triple knots would fold the sides of the elements. With simple knots, the control points stay apart.
   if (own_.profile == "step")
     std::erase_if(joints, [&](double joint) { return std::abs(place(joint).s) < *own_.half_length + 1.001 * *own_.corner_radius; });
   std::ranges::sort(joints);

@@ -1,5 +1,5 @@
 #pragma once
-// Channel: similar cross-sections along a centre line.
+// A channel: a cross-section that is scaled along a centre line.
 
 #include <vector>
 
@@ -13,7 +13,7 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 /// Channel whose cross-section is the outline of a tube, scaled by factors f2 and f3 that depend on the arc length s of a centre line. The centre
 /// line runs along x1, where s = x1, and may bend once, by a circular arc in the plane x1 x2:
 ///
-///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the outline of factor 1, N = dC/ds turned towards x2 by a right angle
+///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the unscaled outline, N = dC/ds turned towards x2 by a right angle
 ///
 /// A periodic channel with period L has no ends and no bend, and its factors satisfy f(s + L) = f(s). Its start and end are the ends of the
 /// modelled period, which is centred on the range of s in which the factors change.
@@ -31,18 +31,18 @@ class Channel {
 
   const Outline& outline() const { return outline_; }
   Outline outline(double s) const;      ///< outline of the cross-section at the arc length s of the centre line
-  TubeOptions tube(double s) const;     ///< options of the straight tube with the cross-section at s
+  TubeOptions tube(double s) const;     ///< options of a straight tube with the cross-section at the arc length s of the centre line
   double start() const { return start_; }
   double end() const { return end_; }
   bool repeats() const { return options_.period > 0; }
   double smallest_radius() const { return smallest_; }  ///< half the smallest width
 
-  /// Returns the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section at a position.
+  /// Returns, for the position x, the arc length s of the centre line and the coordinates y2, y3 in the unscaled cross-section.
   Vec3 coordinates(const Vec3& x) const;
   bool inside(const Vec3& x) const;
 
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
-  /// this range. At a step of the profile, the factors f2 and f3 change with u while s is constant.
+  /// this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
   std::vector<double> knots(int elements) const;
   int elements() const;  ///< number of elements along the wall for which elements are about as long as wide
   Section at(double u) const;
@@ -71,7 +71,7 @@ class Channel {
   ChannelOptions own_;
   Outline outline_;
   std::optional<CubicCurve> factors_;
-  // half widths of the outline along x2 and x3; length (one of these half widths, or the radius) to which the relative depth of a `step` refers
+  // half_: half widths of the outline along x2 and x3. height_: length to which the relative depth of a `step` refers (a half width, or the radius)
   double half_[2] = {1, 1}, height_ = 1;
   double first_ = 0, last_ = 0;           // smallest and largest arc length s at which the cross-section or the direction of the channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;

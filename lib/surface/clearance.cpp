@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// Disc that gives a lower bound of the distance of a piece of the surface to the outline. The outline does not enter the disc, at least where it
-/// may be nearest to the piece. If a point of the piece is at the distance d from `centre`, its distance to the outline is therefore at least
-/// radius - d, which gap() returns for the argument d^2.
+/// Disc that gives a lower bound of the distance from a piece of the surface to the outline. The outline does not enter the disc, except where it is
+/// too far away to be nearest to the piece. So a point of the piece at the distance d from `centre` is at least radius - d away from the outline.
+/// gap(d^2) returns this bound.
 struct Disc {
   Vec2 centre;
   double radius;
@@ -25,8 +25,8 @@ struct Disc {
 };
 
 /// Returns a disc for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the outline nearest to
-/// x, and its curvature is at least the curvature of the outline there. While part of the outline lies inside the disc, the radius is reduced such
-/// that the circle passes through the point of the outline nearest to the centre.
+/// x, and its curvature is at least the curvature of the outline there. If a point of the outline lies inside the disc, the radius is reduced such
+/// that the circle passes through this point.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -93,8 +93,8 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// Collects the elements that may contain the point nearest to the outline. The lower bound of their distance follows from the largest disc inside
-  /// the outline about its centroid.
+  /// Collects the elements that may contain the point nearest to the outline. Lower bounds of their distances follow from the largest disc inside the
+  /// outline about its centroid.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {
@@ -137,8 +137,8 @@ class OutlineSearch {
     return part;
   }
 
-  /// Compares the best point found with a corner of the piece. If the corner is farther from the outline than the lower bound that the disc of the
-  /// piece gives for it, this bound can be improved, and a new disc is fitted to the piece.
+  /// Compares the distance of a corner of the piece with the smallest distance found. If the distance of the corner exceeds its lower bound from the
+  /// disc of the piece, the bound can be improved: a new disc is fitted to the piece.
   void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());
@@ -150,8 +150,8 @@ class OutlineSearch {
     bound(piece);
   }
 
-  /// Sets the lower bound of the distance, the farthest corner and the direction of largest curvature of a piece from the Bezier coefficients of the
-  /// squared distance to the centre of the disc that belongs to the piece.
+  /// Sets, for a piece, the lower bound of its distance, its corner farthest from the centre of its disc, and the direction of largest curvature.
+  /// They follow from the Bezier coefficients of the squared distance to the centre of the disc.
   void bound(ElementPart& piece) {
     const Eigen::Index m = piece.points[0].rows(), n = 2 * m - 1, last = n - 1;
     if (products_.rows() != m) products_ = products(m - 1);

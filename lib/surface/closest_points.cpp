@@ -56,7 +56,7 @@ struct Part {
                          (corner(0, 1) - corner(0, 0)).squaredNorm() + (corner(1, 1) - corner(1, 0)).squaredNorm();
     const int step = along_s ? 1 : n, across = along_s ? n : 1;
     std::array<Part, 2> result{Part{degree, points, low, sides}, Part{degree, points, low, sides}};
-    // `right` is computed in place: after round k of the algorithm, the first p - k + 1 points of a row hold the results of this round
+    // `right` is computed in place: after step k of de Casteljau's algorithm, the first p - k + 1 points of a row hold the results of step k
     auto& [left, right] = result;
     left.sides[along_s ? 0 : 1] /= 2, right.sides = left.sides;
     (along_s ? right.low.s : right.low.t) += left.sides[along_s ? 0 : 1];
@@ -101,7 +101,7 @@ class PairSearch {
     double bound;
     int box[2];
     const Part* part[2];
-    bool operator<(const Pair& other) const { return bound > other.bound; }  // so the top of the priority queue is the nearest pair
+    bool operator<(const Pair& other) const { return bound > other.bound; }  // the pair with the smallest bound is at the top of the priority queue
   };
 
   void push(const Pair& pair) {
@@ -212,7 +212,7 @@ ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& seco
 
 namespace {
 
-/// Returns minus the Newton step for |y - x|^2/2 with respect to s and t of x and of y.
+/// Returns the negative of the Newton step that minimises |y - x|^2/2 over the local coordinates s, t of x and of y.
 Eigen::Vector4d newton_step(const Jet& x, const Jet& y) {
   const Vec3 r = y.x - x.x;
   const Eigen::Vector4d gradient(-r.dot(x.s), -r.dot(x.t), r.dot(y.s), r.dot(y.t));
@@ -273,8 +273,8 @@ double distance(const Vec3& x, const Sampled& element) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
-  // `across` is the distance from the tangent plane at the nearest sample point. If the foot of this perpendicular is far from the sample point, it
-  // may be beyond the element's edges. In this case the tangent plane of another element is nearer, so the distance from the sample point is
+  // `across`: distance from the tangent plane at the nearest sample point. If the foot of the perpendicular on this plane is far from the sample
+  // point, it may be beyond the element's edges. The tangent plane of another element is then nearer, so the distance from the sample point is
   // returned.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);

@@ -151,8 +151,8 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
     if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
     if (length < 1e-9) break;
   }
-  // tolerance, in local coordinates, for points beyond the element's side; at distance d beyond it, the polynomials of neighbouring elements differ
-  // by O(d^3)
+  // tolerance, in local coordinates, for points outside the element; at a distance d outside, the polynomials of neighbouring elements differ by
+  // O(d^3)
   constexpr double slack = 1e-7;
   if ((at.array() < -slack).any() || (at.array() > 1 + slack).any()) return {};
   const Vec3 y = place(patch, at[0], at[1]) - centre;
@@ -188,7 +188,7 @@ void add_distances(const Patches& surface, const Vec3& centre, const std::vector
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
   for (const Candidate& c : candidates) {
-    // the element cannot contain the maximum, because sampling errors are smaller than `spread`
+    // skips elements that cannot contain the maximum, because sampling errors are smaller than `spread`
     if (sign * c.crossing.distance + c.spread < sampled) continue;
     for (const auto& method : {stationary_distance, distance_on_curve})
       if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {
@@ -251,7 +251,7 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // range of the distances of all candidates: samples of a nearly circular section do not separate minima from maxima
+  Range range;  // range over all candidates, because near a circle the sampled minimum may be a maximum of the exact curve
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

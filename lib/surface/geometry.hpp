@@ -107,21 +107,21 @@ class Geometry {
 
   Measures measures(const Net& net) const;
 
-  /// Returns the moments of each block of elements, one block after the other: computed for the given blocks, zero for all other blocks. measures()
-  /// combines them.
+  /// Returns the moments of all blocks of elements, one block after the other. They are computed for the given blocks and zero for the other blocks.
+  /// measures() adds them up.
   std::vector<double> block_moments(const Net& net, std::span<const int> blocks) const;
   static Measures measures(const Net& net, std::span<const double> of_blocks);
 
   int n_blocks() const { return surface::n_blocks(map_.n_elements()); }
 
-  /// Returns the Taylor parameter in the x1 x3 plane by two definitions, the inclination and the extents. The inertia definition uses the second
-  /// moments M_11, M_13, M_33. The surface definition uses the longest and shortest distance of the centroid to the curve in which the plane x2 =
-  /// centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
+  /// Returns the inclination, the extents along x1, x2 and x3, and the Taylor parameter in the x1 x3 plane by two definitions. The first definition
+  /// (inertia) uses the second moments M_11, M_13, M_33. The second definition (surface) uses the longest and shortest distance of the centroid to
+  /// the curve in which the plane x2 = centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
   Deformation deformation(const Net& net, const Measures& measures) const;
 
-  /// Returns the ranges that deformation() needs, over the given elements: section distances (0) and extents (1, 2, 3). The ranges of a whole
-  /// surface are the unions of the ranges of its parts. deformation() throws RunFailure if the plane misses the surface.
+  /// Number of ranges that extremes() returns for deformation(): distances of section points from the centroid (0), coordinates x1, x2, x3 (1, 2, 3).
+  /// The ranges of a whole surface are the unions of the ranges of its parts. deformation() throws RunFailure if the plane misses the surface.
   static constexpr int n_extremes = 4;
   std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);

@@ -234,8 +234,8 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
   if (static_cast<int>(found.vertices.size()) > found.start + 1)
     result.length = (samples.at(found.vertices[found.start + 1]).now - samples.at(edge.vertex).now).norm();
   const int last = static_cast<int>(found.vertices.size()) - 5;
-  // A fourth difference needs a window of five successive vertices. Use the two windows in which the edge touches the middle vertex. If the line is
-  // too short for both, use the windows in which the edge is the first or the last one.
+  // A fourth difference needs five successive vertices (a window). Uses the two windows in which the edge touches the middle vertex. If the line is
+  // too short for both, uses the windows in which the edge is the first or the last one.
   std::vector<int> windows;
   for (const int first : {found.start - 2, found.start - 1})
     if (first >= 0 && first <= last) windows.push_back(first);
@@ -254,8 +254,8 @@ Resolution mean(const Resolution& a, const Resolution& b) {
   return {(a.length + b.length) / 2, (a.errors + b.errors) * 0.5, {}};
 }
 
-/// Returns the element of twice the width (or height) that contains this mesh element on the grid of the initial mesh; returns the mesh element
-/// itself if there is none.
+/// Returns the element of twice the width (or height) that contains this mesh element, among the elements that repeated bisection of the initial mesh
+/// produces. Returns the mesh element itself if there is none.
 spline::Rectangle doubled(const Lattice& lattice, const spline::Rectangle& r, bool in_height) {
   spline::Rectangle out = r;
   int &at = in_height ? out.y : out.x, &size = in_height ? out.height : out.width;

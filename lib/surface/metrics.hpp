@@ -11,8 +11,8 @@
 
 namespace tanktread::surface {
 
-/// A mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (P-36): its length L, and |phi(end) - phi(start)| / L for phi the traction (per
-/// current area), the velocity and the mean curvature chi. Units: length, and the unit of phi per length.
+/// A mid-line of an element, along s at t = 1/2 or along t at s = 1/2 (P-36): its length L, and |phi(end) - phi(start)| / L for three fields phi: the
+/// traction (per current area), the velocity and the mean curvature chi. Units: length, and the unit of phi per length.
 struct MidLine {
   double length = 0, traction = 0, velocity = 0, curvature = 0;
 };
@@ -39,8 +39,8 @@ struct MetricFields {
 std::vector<ElementMetrics> element_metrics(const spline::TMesh& mesh, const spline::Space& space, const Net& net,
                                             const MetricFields& fields);
 
-/// Returns the traction per current area of a load per reference area (3.7): f J0/J, where `load` has control values, and `rest` and `net` are the
-/// two configurations. The result of this function and of field_of_net() refers to the arguments, which must outlive it.
+/// Returns the traction f J0/J per current area for a load f per reference area (3.7). J0 and J are the area elements of the configurations `rest`
+/// and `net`; `load`: control values of f. The result of this function and of field_of_net() refers to the arguments, which must outlive it.
 FieldAt per_current_area(const spline::Space& space, const Net& rest, const Net& net, const Net& load);
 
 /// Returns the field with control values `net`.
@@ -49,7 +49,7 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 /// Errors of an element along one direction. They estimate how far the exact surface or load is from its best approximation by cubics on elements
 /// of this length,
 ///
-///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per present area                       (1.5)
+///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per current area                       (1.5)
 ///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
 /// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of

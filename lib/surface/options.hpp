@@ -113,7 +113,7 @@ struct ChannelOptions {
   std::string directions = "x2 x3";      ///< directions in which the cross-section is scaled
   std::optional<std::string> points;     ///< path of the file with the factors that scale the cross-section; set for the profile `file`
   std::optional<double> bend_radius;     ///< radius of the arc of the centre line; not set for a straight centre line
-  double bend_start = 0, bend_angle = 90;  ///< coordinate at which the arc begins; angle of the arc, from x1 towards x2, degrees
+  double bend_start = 0, bend_angle = 90;  ///< x1 at which the arc begins; angle of the arc, from x1 towards x2, degrees
   std::optional<double> start, end;      ///< ends of the modelled part, as coordinates along the centre line
   std::optional<int> axial_elements;     ///< number of elements along the wall; if not set, it is chosen from the shape of the wall
 
@@ -153,7 +153,7 @@ struct TubeOptions {
   std::string flow = "exact";  ///< method for the duct flow: exact (closed form or series, if known for the cross-section), boundary elements
   int flow_elements = 96;      ///< number of boundary elements for the duct flow
 
-  /// options of a channel; if set, the section Channel of the deck contains the keys of all members
+  /// options that only a channel has; if set, the deck has a section Channel, not Tube, with all keys of this structure and of `channel`
   std::optional<ChannelOptions> channel;
   std::string list() const { return channel ? "Channel" : "Tube"; }
 

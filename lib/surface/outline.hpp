@@ -36,7 +36,7 @@ struct CubicCurve {
 using PlaneCurve = std::variant<Ellipse, CubicCurve>;
 
 bool closed(const PlaneCurve& curve);
-std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last value of u; a closed curve is periodic and accepts any u
+std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter u; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
 /// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:
@@ -101,9 +101,9 @@ class Outline {
   /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.
   std::vector<double> knots(int k, int m) const;
 
-  /// Returns the outline as cubic splines. `elements` are divided among the sides by shares(), with at least two per side, or three on a smooth
-  /// outline; the knots are knots(). The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of the
-  /// result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
+  /// Returns the outline as cubic splines. shares() divides `elements` among the sides, with at least two per side, or three on a smooth outline.
+  /// knots() gives the knots of each side. The splines interpolate the points at the knots and, on open sides, the tangents at the ends. All sides of
+  /// the result are CubicCurves. The error is of order 4 in the element length, and zero for straight sides.
   Outline spline(int elements) const;
 
  private:

@@ -9,7 +9,7 @@ namespace tanktread::surface {
 namespace {
 
 constexpr int fewest_smooth = 8, fewest_with_corners = 3;
-constexpr double same_point = 1e-6;  // distance below which points count as equal, divided by the longest step
+constexpr double same_point = 1e-6;  // points are equal if their distance is below this multiple of the longest distance between consecutive points
 
 struct Row {
   int line;

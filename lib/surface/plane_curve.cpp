@@ -106,7 +106,7 @@ PlaneJet jet(const CubicCurve& curve, double u) {
           (3 * r * r * d0 + 6 * r * s * d1 + 3 * s * s * d2) / h, (6 * r * (d1 - d0) + 6 * s * (d2 - d1)) / (h * h)};
 }
 
-/// Returns the blossom (polar form) of a cubic Bezier piece on [a, b] at three parameters.
+/// Returns the blossom (polar form) of the cubic with the Bezier points b on [begin, end], at the three arguments t.
 Vec2 blossom(std::array<Vec2, 4> b, double begin, double end, const std::array<double, 3>& t) {
   for (int level = 0; level < 3; ++level) {
     const double s = (t[level] - begin) / (end - begin);

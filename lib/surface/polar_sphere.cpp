@@ -114,8 +114,8 @@ class Sector {
     const double weight = node.weight * std::sqrt(metric.determinant());
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
-    // `residual`: eps = (|x|^2 - 1)/2, and the gradient of eps in an orthonormal frame of the tangent plane. `slope`: derivatives of `residual` with
-    // respect to the radii and heights (profile) of the circles of control points first .. last.
+    // `residual`: eps = (|x|^2 - 1)/2, then the gradient of eps in an orthonormal frame of the tangent plane. `slope`: derivatives of `residual` with
+    // respect to the profile, which are the radii and heights of the circles of control points first .. last.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);
@@ -149,9 +149,9 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   Eigen::VectorXd profile = first_profile(mesh), best = profile;
   double least = std::numeric_limits<double>::infinity();
   // Each row of control points is a circle about the axis. Moving rows along the meridian hardly changes the misfit, so the damping of the
-  // Gauss-Newton steps must be nearly zero to find the best distribution of rows. In a long step, rows that move along their tangents leave the
-  // sphere by the square of the step, which the next step corrects. But if rows are closer together than the points within a row, a long step may
-  // fold the surface, so its length is limited.
+  // Gauss-Newton steps must be nearly zero to find the best distribution of rows. Long steps along the tangents move rows off the sphere, by the
+  // square of the step; the next step corrects this. But if rows are closer together than the points within a row, a long step may fold the surface.
+  // Its length is then limited.
   const double longest = mesh.meridional > mesh.azimuthal ? 0.2 : std::numeric_limits<double>::infinity();
   double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {

@@ -24,12 +24,12 @@ class CubeSphere {
 
   int elements_per_side() const { return n_; }
 
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3: a vertex of the last subdivided net, or a bilinear
-  /// interpolation between its vertices.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3, by bilinear interpolation between the vertices of the
+  /// last subdivided net.
   Vec3 net_point(const Vec3& on_cube) const;
 
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube: a point of the limit surface, evaluated as a bicubic B-spline.
-  /// This is exact except in the elements at the corners of the cube.
+  /// Returns the image, on the unit sphere, of a point on the surface of the cube, from the limit surface of the subdivision. The limit surface is
+  /// evaluated as a bicubic B-spline, which is exact except in the elements at the corners of the cube.
   Vec3 limit_point(const Vec3& on_cube) const;
 
  private:
@@ -37,9 +37,9 @@ class CubeSphere {
   Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
 };
 
-/// Returns the control points of the unit sphere: the control points of a CubeSphere after `fits` least-squares fits of the surface to its own
-/// radial image. The error in the radius falls with h^4, in the normal with h^2.7. Both are 10 to 40 per cent smaller than with a start from the
-/// projected cube.
+/// Returns the control points of the unit sphere: the control points of a CubeSphere after `fits` least-squares fits of the surface to its own radial
+/// image. The error in the radius falls with h^4, the error in the normal with h^2.7. Both errors are 10 to 40 per cent smaller than if the fits
+/// start from the projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at +1 comes first. `space` is the space of the mesh.

@@ -12,8 +12,8 @@
 namespace tanktread::surface {
 
 /// One period of a surface of solids. The geometry is an open spline surface. Densities on it are periodic splines with one coefficient per
-/// collocation point in `sites`, and `open_from_periodic` maps these coefficients to control values on `space`. No collocation point lies on the
-/// seam.
+/// collocation point in `sites`, and `open_from_periodic` maps these coefficients to control values on `space`. No collocation point lies where a
+/// period begins or ends.
 struct SolidSurface {
   spline::Space space;
   Net net;

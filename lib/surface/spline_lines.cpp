@@ -29,8 +29,8 @@ void Line::add_site(double u, const std::vector<double>& knots, int first, bool 
 
 namespace {
 
-/// Adds the m intervals between knots to the line as pieces, each with four B-splines. `extended`: the knots, continued by three at each end. The
-/// B-spline that begins at its entry j is function number(j) of the line.
+/// Adds the m intervals between knots to the line as pieces, each with four B-splines. `extended`: the knots, with three more at each end. The
+/// B-spline whose first knot is extended[j] is function number(j) of the line.
 template <class Number>
 void add_pieces(Line& line, const std::vector<double>& extended, int m, const Number& number) {
   for (int e = 0; e < m; ++e) {

@@ -35,12 +35,12 @@ void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards
 struct RepeatingLine {
   Line open;
   Eigen::MatrixXd open_from_periodic;
-  std::vector<double> middles;  ///< middle of each periodic element, as a parameter of the piece with the same index
+  std::vector<double> middles;  ///< middle of each periodic element, as a local coordinate on the piece with the same index
 };
 
 /// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all between the ends. The two ends are
-/// the same point, the seam. It divides the periodic element between the last knot and the first knot of the next period: the first part of this
-/// element is the last piece of `open`, and the second part is piece 0.
+/// the same point of the period, the seam. It divides the periodic element that reaches from the last knot to the first knot of the next period. The
+/// part of this element before the seam is the last piece of `open`, and the part after the seam is piece 0.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
 /// Returns the collocation points of a product of two lines; the index on the second line runs fastest.

@@ -42,7 +42,7 @@ Meridian spheroid(double equator, double pole) {
 
 Meridian red_cell_meridian(double radius) {
   const auto half_thickness = [](double z) { return red_cell({std::sqrt(1 - z * z), 0, z})[2]; };
-  const auto slope = [](double z) {  // height'(z), with height = z/2 (c0 + c1 r^2 + c2 r^4), r^2 = 1 - z^2
+  const auto slope = [](double z) {  // derivative of the height z/2 (c0 + c1 r^2 + c2 r^4) of a red cell with respect to z, with r^2 = 1 - z^2
     const auto [c0, c1, c2] = red_cell_profile;
     const double r2 = 1 - z * z;
     return (c0 + c1 * r2 + c2 * r2 * r2) / 2 - z * z * (c1 + 2 * c2 * r2);

@@ -275,8 +275,8 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
   return result;
 }
 
-/// Completes the sums at the fundamental points. The image of an element under g contributes the reflected values at the points g p. So every row is
-/// reflected to the fundamental point of its orbit and added there, multiplied by the number of images that map this point onto itself.
+/// Completes the sums at the fundamental points. Images of fundamental elements contribute the reflected rows of their points. So every row is
+/// reflected to the fundamental point of its orbit and added there, multiplied by the number of images that map this fundamental point onto itself.
 void fold(const Symmetry& symmetry, Net& sums) {
   if (symmetry.order() == 1) return;
   const std::vector<int>& source = symmetry.source();
@@ -294,7 +294,7 @@ Parity::Parity(const Symmetry& symmetry, const Vec3& of_planes)
     : source_(symmetry.source()), signs_(Net::Zero(static_cast<Eigen::Index>(source_.size()), 3)),
       scalar_signs_(Eigen::VectorXd::Zero(signs_.rows())) {
   for (const int a : symmetry.fundamental()) signs_.row(a).setOnes(), scalar_signs_[a] = 1;
-  for (const Image& g : symmetry.images()) {  // adds, for each b, the factors by which the group elements g that map a to b multiply the field
+  for (const Image& g : symmetry.images()) {  // adds up, for each point b, the factors of the images g that map a fundamental point a to b
     const double turned = (g.signs.array() < 0).select(of_planes, Vec3::Ones()).prod();
     for (const int a : symmetry.fundamental()) {
       const int b = g.point[static_cast<std::size_t>(a)];

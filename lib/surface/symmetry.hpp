@@ -39,8 +39,8 @@ struct Reflection {
   Vec3 operator()(const Vec3& x) const { return middle + of_vector(x - middle); }
 };
 
-/// Returns the image with these signs if it maps the space and all these nets onto themselves: positions within 1e-10 of the first net's size (the
-/// accuracy of refined fits), basis functions within 1e-10, sites within 1e-9. Elements may be mapped to other elements.
+/// Returns the image with these signs if it maps the space and all these nets onto themselves. Elements may be mapped to other elements. Tolerances:
+/// 1e-10 of the first net's size for positions (the accuracy of refined fits), 1e-10 for basis functions, 1e-9 for sites.
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
 
 /// A group of reflections that map a surface onto itself. Its fundamental control points are orbit representatives, all in one connected part of
@@ -82,16 +82,16 @@ class Symmetry {
 /// the flow or a wall has the symmetry. Its argument has the images of the control points, but not yet those of the elements.
 Symmetry symmetry(const spline::Space& space, std::span<const Net* const> nets, const std::function<bool(const Image&)>& keeps);
 
-/// One element of each orbit of elements, in ascending order: the element with most fundamental points. The weight of an element is 1 divided by the
-/// number of images, including the identity, that map the element onto itself.
+/// One element per orbit of the symmetry group, in ascending order: the element of the orbit with the most fundamental points. The weight of an
+/// element is 1 divided by the number of images, including the identity, that map the element onto itself.
 struct FundamentalElements {
   std::vector<int> element;
   std::vector<double> weight;
 
-  bool whole() const;  ///< returns whether all weights are 1: no image except the identity maps an element onto itself
+  bool whole() const;  ///< returns whether all weights are 1, so that no image except the identity maps an element onto itself
 };
 
-/// Returns the fundamental elements. `points(e)`: the control points of element e.
+/// Returns one element per orbit, with its weight. `points(e)` returns the control points of element e.
 FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_elements, const std::function<std::span<const int>(int)>& points);
 
 /// Computes the rows at the fundamental points of a symmetric field from the weighted contributions of fundamental elements to all rows.

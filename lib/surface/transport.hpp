@@ -15,10 +15,10 @@ struct Treading {
   double frequency = 0;  ///< mean angular velocity omega (6.6) of the material points on this curve, radians/time
 };
 
-/// Returns the tank-treading of a surface whose centroid `centre` moves with velocity `of_centre`. Points of an elastic membrane are weighted by
-/// their length on the `unstressed` net. Without `unstressed`, they are weighted by the time that a material point takes to pass, and the frequency
-/// is zero if some point of the curve is at rest. The curve is computed on a grid of flat triangles with six intervals per element and direction; the
-/// error is 1e-4 on coarse meshes. If the plane misses the surface, both values are zero.
+/// Returns the tank-treading of a surface whose centroid `centre` moves with velocity `of_centre`. The frequency is a mean over the curve, weighted
+/// by length on the `unstressed` net of an elastic membrane. Without `unstressed`, the weight of a part of the curve is the time that a material
+/// point needs to pass it, and the frequency is zero if some point is at rest. The curve is computed on a grid of flat triangles with six intervals
+/// per element and direction; the error is 1e-4 on coarse meshes. If the plane misses the surface, both values are zero.
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre);
 
 /// Returns the sums over the given elements of the integrals that shape_velocity() needs, for a surface with control net x that moves with velocity

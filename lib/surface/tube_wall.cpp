@@ -36,8 +36,8 @@ std::vector<double> graded_knots(double length, int elements, double grading, do
   return knots;
 }
 
-/// Sets up periodic splines for the densities on a wall. `knots`: knots of the periodic splines. They divide the period into elements. The ends of
-/// the wall cut the last element in two.
+/// Sets up periodic splines for the densities on a wall. `knots`: knots of these splines, which divide the period into elements. The ends of the wall
+/// lie inside the last of these elements and cut it in two.
 void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots) {
   const RepeatingLine along = repeating(knots, {wall.start, wall.end});
   wall.sites = sites_of(along.open, around);
@@ -95,7 +95,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    // x1 coordinates of the control points (Greville points), which make x1 a linear function of the parameter
+    // x1 at the Greville points of the control points; with these coordinates, x1 is a linear function of the parameter
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
@@ -125,8 +125,8 @@ TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, 
 
 namespace {
 
-/// Returns the control points of the spline that interpolates a quantity of a channel's sections, with given slopes at the ends and at triple
-/// knots.
+/// Returns the control points of the spline that interpolates a quantity of a channel's sections. Its slopes at the ends and at triple knots are
+/// one-sided differences of the quantity.
 std::vector<Vec2> through(const Channel& channel, const std::vector<double>& knots, const std::function<Vec2(const Channel::Section&)>& value) {
   const auto at = [&](double u) { return value(channel.at(u)); };
   const double step = 1e-6 * (knots.back() - knots.front());
@@ -148,7 +148,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // the wall is one period long, and its ends cut an element of the periodic splines at a quarter
+  if (channel->repeats()) {  // the ends of the wall lie at a quarter of an element of the periodic splines
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);
@@ -164,8 +164,8 @@ TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elem
     const Channel::Section at = channel->at(knots[k]);
     if (k == 0 || at.factor.minCoeff() > narrowest) continue;
     const double widest = std::max(knots[k] - knots[k - 1], wall.outline.length() * at.factor.minCoeff() / azimuthal_elements);
-    // If several knots have the narrowest section, uses the smallest of their element lengths, because the elements at the ends of a straight channel
-    // are longer.
+    // If several knots have the narrowest section, uses the smallest of their element lengths: in a straight channel, elements at the ends are
+    // longer.
     wall.widest = at.factor.minCoeff() < narrowest ? widest : std::min(wall.widest, widest);
     narrowest = at.factor.minCoeff();
   }

@@ -34,7 +34,7 @@ struct TubeWall {
   /// for each element of `space`, the index in `middles` of the density element that contains this element
   std::vector<int> middle_of;
   double period = 0;  ///< period L along x1; 0 for an open wall with two ends
-  /// E, maps control values of a periodic density to control values on the space; empty if the wall is not periodic
+  /// matrix E, which maps control values of a periodic density to control values on `space`; empty if the wall is not periodic
   Eigen::SparseMatrix<double> open_from_periodic;
 
   double length() const { return end - start; }

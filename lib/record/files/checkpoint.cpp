@@ -116,7 +116,7 @@ namespace {
 
 std::string numbered(const char* name, std::size_t k) { return name + std::to_string(k); }
 
-/// Store or read the nets of one kind, under the name of the kind with a number.
+/// store() adds control nets to a checkpoint under the names `<name>0`, `<name>1`, ... stored() returns the nets with these names.
 void store(const std::vector<Net>& nets, const char* name, Checkpoint& checkpoint) {
   for (std::size_t k = 0; k < nets.size(); ++k) checkpoint.arrays[numbered(name, k)] = nets[k];
 }

@@ -64,7 +64,7 @@ struct Saved {
 /// (permission, a failing disk), because the newer snapshot may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
-/// Adds all of `state` to the checkpoint, for example the number "time".
+/// Adds all data of a time integration to the checkpoint.
 void store(const motion::State& state, Checkpoint& checkpoint);
 
 /// Returns the stored state, bitwise the same. Throws std::out_of_range if the checkpoint lacks a part of it.

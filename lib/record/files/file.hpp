@@ -44,12 +44,12 @@ void write_whole(const std::filesystem::path& path, std::string_view bytes, Dura
 /// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
 
-/// Throw RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe), or cannot be read to
-/// its end. If a file passes and still cannot be interpreted, it is damaged.
+/// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe), and
+/// check_readable() also if it cannot be read to its end. A file that passes but cannot be interpreted is damaged.
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 
-/// Renames a file to `<name>.damaged`, or `<name>.damaged.2` and so on, which no run is resumed from. Returns the new path. Throws RunFailure.
+/// Renames a file to `<name>.damaged`, or `<name>.damaged.2` and so on. No run is resumed from such a file. Returns the new path. Throws RunFailure.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
 /// Throws UserError if a directory holds results of a run.

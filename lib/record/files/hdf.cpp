@@ -47,7 +47,8 @@ void write_attribute(hid_t file, const std::string& name, const std::string& key
 
 Id dataset(hid_t file, const std::string& name) { return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "no dataset " + name}; }
 
-/// Reads a text of this type: calls read(buffer), which lets HDF5 fill the buffer, and removes the null characters with which HDF5 pads the text.
+/// Returns a text of the HDF5 type `type`. Calls read(buffer), which lets HDF5 fill the buffer, and removes the null characters with which HDF5 pads
+/// the text.
 template <class Read>
 std::string text_of(const Id& type, const std::string& name, const Read& read) {
   std::string text(H5Tget_size(type), '\0');
@@ -75,7 +76,7 @@ Id new_file() {
 std::string_view image(const Id& file) {
   check(H5Fflush(file, H5F_SCOPE_LOCAL), "cannot flush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  void* handle = nullptr;  // address of a pointer to the bytes of the file, which is in memory
+  void* handle = nullptr;  // receives the address of the pointer to the file's bytes
   if (size <= 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) throw std::runtime_error("HDF5: no image");
   return {reinterpret_cast<const char*>(*static_cast<unsigned char**>(handle)), static_cast<std::size_t>(size)};
 }

@@ -26,16 +26,16 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// Return a new file in memory, and its bytes as they would be on the disk. They are written to the disk in one piece (write_whole). So write errors
-/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not a copy. They are valid until
-/// the file is written to again or closed.
+/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors
+/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not copied. They are valid until
+/// the file is changed or closed.
 Id new_file();
 std::string_view image(const Id& file);
 
 /// Opens an existing file for reading. Throws RunFailure if the system cannot open it as a file, std::runtime_error if it is not an HDF5 file.
 Id open(const std::filesystem::path& path);
 
-/// Opens a copy in memory of an existing file, which can be written to; see `image`. Throws like `open`.
+/// Opens an existing file as a copy in memory. The copy can be written to, and image() returns its bytes. Throws like `open`.
 Id open_copy(const std::filesystem::path& path);
 
 using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar

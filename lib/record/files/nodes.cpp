@@ -85,8 +85,8 @@ namespace {
 
 constexpr int n_parts = 6;  // number of vectors in a jet: the position and five derivatives
 
-/// Returns the factors by which the Bezier points of an element contribute to the jets (position and derivatives) at the nodes of its cell. Shape (n,
-/// 6, n): Bezier point, part of the jet, node.
+/// Returns the matrix that maps the Bezier points of an element to the jets (position and derivatives) at the nodes of its cell. An element of degree
+/// p has n = (p + 1)^2 Bezier points and n nodes. Shape (n, 6, n): Bezier point, component of the jet, node.
 std::vector<double> jet_table(int p) {
   constexpr std::array<std::array<int, 2>, n_parts> derivatives{{{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}}};
   const auto order = node_order(p);
@@ -102,10 +102,10 @@ std::vector<double> jet_table(int p) {
   return table;
 }
 
-/// Returns normals of an element, not normalised, from the jets at the nodes of its cell.
+/// Returns normals at the nodes of an element, not normalised. `jets`: position and derivatives at the nodes.
 std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surface::Jet> jets) {
-  constexpr double degenerate = 1e-6;  // nodes with a smaller |a1 x a2|, divided by |a1|_max |a2|_max of the element, are poles
-  constexpr double inset = 1e-4;       // fraction of the way to the middle of the element by which the evaluation point at a pole is moved
+  constexpr double degenerate = 1e-6;  // a node is a pole if |x_,s x x_,t| is below this fraction of max|x_,s| max|x_,t| of the element
+  constexpr double inset = 1e-4;       // normals at a pole are evaluated at a point moved by this fraction of the way to the element's middle
   double longest_1 = 0, longest_2 = 0;
   std::vector<Vec3> normals;
   for (const surface::Jet& here : jets) {
@@ -145,8 +145,8 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
   return points;
 }
 
-/// Calls use(patch, nodes, jets) for every element, the last element first. A node shared by several elements thus ends with the value of the first
-/// of these elements.
+/// Calls use(patch, nodes, jets) for every element, in reverse order. If `use` sets values at nodes, a node shared by several elements thus has the
+/// value from the first of them.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;

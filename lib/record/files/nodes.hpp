@@ -21,9 +21,9 @@ namespace tanktread::output {
 /// interior, i fastest. Nodes are numbered in the order in which they first occur, cell by cell.
 struct LagrangeMesh {
   std::vector<std::int64_t> connectivity;  ///< node numbers, cell after cell
-  std::vector<std::int64_t> offsets;       ///< (n_cells + 1) index in `connectivity` at which the nodes of each cell begin
-  std::vector<spline::Site> sites;         ///< site of every node on the first element that has it, for sampling quantities that are not spline
-                                           ///< fields
+  std::vector<std::int64_t> offsets;       ///< index in `connectivity` of the first node of each cell, and the total number at the end
+  std::vector<spline::Site> sites;         ///< parametric point of every node on the first element that has it, for sampling quantities that are not
+                                           ///< spline fields
 };
 
 /// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it

@@ -16,7 +16,7 @@ namespace tanktread::output {
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one value per row; row 0 is the initial state
-  std::string si;  ///< unit in SI units, if the deck sets its units
+  std::string si;  ///< unit of the series expressed in SI units, if the deck sets its units
 };
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
@@ -52,7 +52,7 @@ class RunRecord {
   /// Adds the estimated error of a series, one value per row.
   void add_error(Series error) { errors_.push_back(std::move(error)); }
 
-  /// Sets another path, to which `write` writes.
+  /// Changes the path to which `write` writes the file.
   void move(std::filesystem::path path) { path_ = std::move(path); }
 
   void write(Durable durable = Durable::no) const;

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint8_t lagrange_quadrilateral = 70;  // VTK_LAGRANGE_QUADRILATERAL
-constexpr const char* points = "Points";             // this field is stored outside of the group of all other fields
+constexpr const char* points = "Points";             // name of the positions; unlike other fields, they are not in the group PointData
 
 void write(hid_t file, const std::string& name, const Rows& rows, std::size_t dimensions = 2) {
   hdf::Shape shape{static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())};
