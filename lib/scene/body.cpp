@@ -56,8 +56,8 @@ FlowPlane plane_normal_to(Vec3 normal) {
 FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   if (flow.type != "linear" || flow.gradient->isZero(0)) return {};
   const Mat3& l = *flow.gradient;
-  // Matrix of the quadratic form |L n|^2 + |L^T n|^2 of a unit vector n, with the velocity gradient L. The form is zero if the velocity neither
-  // changes along n nor has a part along n.
+  // Matrix of the quadratic form |L n|^2 + |L^T n|^2 of a unit vector n, where L is the velocity gradient. The form is zero if the velocity has no
+  // component along n and does not change along n.
   const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());
   const Vec3 values = varies.eigenvalues();
   if (values[0] < 1e-12 * values[2]) return plane_normal_to(varies.eigenvectors().col(0));

@@ -52,7 +52,7 @@ struct Body {
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run
-  Net unstressed;  ///< control net of the unstressed shape, which is smaller by the pre-inflation
+  Net unstressed;  ///< control net of the unstressed shape: the stress-free shape, shrunk by the pre-inflation
   stokes::AmbientFlow flow;
   FlowPlane plane;     ///< plane in which the Taylor parameter D and tank-treading are measured
   membrane::Law law;
@@ -63,7 +63,7 @@ struct Body {
   double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
   double modulus = 1;  ///< G_s, or the surface tension sigma of an interface
-  surface::Symmetry symmetry;                       ///< symmetry that the scene and the particle, at all times, have in common
+  surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 

@@ -151,13 +151,14 @@ struct Scene : ParticleKind {
 
   /// Returns one scene for each particle, with the options of this particle only.
   std::vector<Scene> alone() const;
-  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions (2.40): Solvers/rigid bodies
+  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions, the integral equation of the first kind (2.40)
 
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem: `Particle/forces`, or its default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
   double least_radius() const;       ///< smallest R_C of all particles, by which gaps are divided
   double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time
-  double speed() const;              ///< speed in Ca: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient
+  double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
+                                     ///< gradient
   double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }

@@ -17,7 +17,8 @@
 namespace tanktread {
 
 /// Returns the rigid motions about the origin that leave the problem invariant: the Lie derivative of the flow along them is 0, the walls do not
-/// change, and the loads of all particles move with them. `size`: length scale of the particles, R_C. Q of (4.17) projects onto these motions.
+/// change, and the loads of all particles move with them. In (4.17), Q is the projector onto these motions. `size`: length scale of the particles,
+/// R_C.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles);
 

@@ -86,7 +86,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Elements to refine (marks) and elements to merge, according to the indicator on the current mesh.
+/// Elements to refine (marks) and elements to merge that the indicator finds on the current mesh.
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;

@@ -127,7 +127,7 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns those of the net q and its lattice images whose bounding boxes are within `reach` of the bounding box of the net p. If q is p itself
+/// Returns the net q and its lattice images, but only those with a bounding box within `reach` of the bounding box of the net p. If q is p itself
 /// (`same`), p is not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;

@@ -100,9 +100,9 @@ std::string Warnings::choice() const {
   return {};
 }
 
-/// Returns a warning when waves by compression have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave number k
-/// grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). Capsules show six tenths of that rate, and the flow carries waves out of the
-/// compressed part at its own rate.
+/// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave
+/// number k grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). On capsules they grow at six tenths of this rate. The flow carries them
+/// out of the compressed region at the rate of the flow.
 std::string Warnings::compression(const StepFindings& signs) {
   if (!scene_.elastic()) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);

@@ -36,7 +36,7 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
 };
 
-/// Calls act(name, kinds of particles that have it, description, count) for every count of a run. Checkpoints and the summary use these names.
+/// Calls act(name, kinds of particles with this count, description, count) for every count of a run. Checkpoints and the summary use these names.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";
