@@ -79,8 +79,8 @@ class Layer {
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
-  /// clusters, only the fundamental panels F are clustered, because the effect of the other panels on a target equals the effect of F on images of
-  /// the target:
+  /// clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F at the images g x_i of
+  /// each target x_i:
   ///
   ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
@@ -192,7 +192,8 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed, moved into the cell
-    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at the targets rest_at, due to the images that are not near
+    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer of constant unit densities over all images except the near
+                                                // ones
   };
 
   /// The unstressed surface.
@@ -259,8 +260,8 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
-  std::vector<double> density_[3], normal_[3];                     // at the far nodes: density f (in a single layer times weight_); normal times
-                                                                   // quadrature weight, area and factor k of (2.2)
+  std::vector<double> density_[3], normal_[3];                     // values at the far nodes: density f (in a single layer times weight_); normal
+                                                                   // times quadrature weight, area and the factor k_p of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall

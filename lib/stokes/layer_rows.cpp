@@ -16,9 +16,9 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Values of basis functions of some panels at the far nodes of the panels, for the sums over these nodes. Each function adds to one row of the sums,
-/// the row of its control point. The number of functions is padded to a multiple of `assembly_tile`. Padding functions, and functions of control
-/// points that are not requested, add to a spare row.
+/// Values of the basis functions of some panels at the far nodes of these panels. Each basis function adds to one row of the sums, the row of its
+/// control point. The number of basis functions is padded to a multiple of `assembly_tile`. Padding, and basis functions of control points that are
+/// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
   std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1
@@ -122,7 +122,7 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Adds the corrections by near-singular or singular quadrature for the target with index l in its block of sixteen.
+  /// Adds the corrections by near-singular or singular quadrature for one target. l: index of the target in its block of sixteen.
   void add_close_panels(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     const Vec3 x0 = place_of(target);

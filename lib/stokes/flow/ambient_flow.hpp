@@ -64,7 +64,7 @@ class AmbientFlow {
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
-  /// Returns the rate in Ca, units 1/time: the rate of the options, or in a duct the mean velocity over R_T.
+  /// Returns the rate in the capillary number, units 1/time: FlowOptions::rate(), or in a duct the mean velocity divided by R_T.
   double rate() const { return duct_ ? duct_->mean_velocity() / duct_->radius() : rate_; }
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last

@@ -166,7 +166,7 @@ Eigen::Vector4d functions(const OutlineElement& e, double t) {
   return e.bernstein * b;
 }
 
-/// One row of (2.15): the coefficients of a target and its right-hand side, integrated over the elements.
+/// One row of the collocation equations (2.15): the matrix entries and the right-hand side of one target, integrated over the elements.
 class Row {
  public:
   Row(const OutlineSpace& space, const Vec2& origin, const OutlineSite& site)

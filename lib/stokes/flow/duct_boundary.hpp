@@ -66,11 +66,11 @@ class OutlineSpace {
   std::vector<OutlineSite> sites_;
 };
 
-/// u = v_c - r^2/4, where r is the distance from the centroid of the section and v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
-/// The unknown is its flux q = dv_c/dn: sigma = q dl/dt, a cubic spline in the parameter of OutlineSpace, is collocated,
+/// Velocity u = v_c - r^2/4: r is the distance from the centroid of the section; v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
+/// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They are found by collocation of
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
-/// Without kappa and the zero-mean condition the matrix would be singular if the outline has logarithmic capacity 1, such as the circle of radius 1.
-/// Inside, v_c is the real part of the analytic function F with the boundary values v_c + i psi, psi = int q dl (2.17).
+/// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
+/// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is
 ///   int u dA = int r^2 x.n/16 dl + int psi x/2.dx                                                                              (2.16)
 class BoundaryProfile : public DuctProfile {
  public:

@@ -91,7 +91,7 @@ struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to G f
 /// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-struct StressletKernel {  ///< maps (S_jk + S_kj)/2, components ordered as in `stresses`, to T_ijk S_jk
+struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet strengths (S_jk + S_kj)/2, ordered as in `stresses`, to T_ijk S_jk
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };

@@ -22,7 +22,7 @@ struct ImageOfForce {
     normal = c * (i3 - 6 * h * r[2] * i5);
   }
 
-  /// Adds G^I f (2.35) to u. The components of f are registers or numbers.
+  /// Adds the image Stokeslet G^I (2.35) of the force f to u. The components of f are registers or numbers.
   template <class Number>
   void add(const Register (&r)[3], const Number& fx, const Number& fy, const Number& fz, Register (&u)[3]) const {
     const Register along = r[0] * fx + r[1] * fy + r[2] * fz, push = c * i3 * fz, of_r = along * dyadic - push;

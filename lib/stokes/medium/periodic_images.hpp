@@ -82,7 +82,7 @@ class PeriodicKernel {
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25) of the near images, or the same for T, to `values`
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25), or the corresponding term of T, of the near images to `values`
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

@@ -13,10 +13,10 @@
 
 namespace tanktread::stokes {
 
-/// Splits the kernel of a lattice into near images, which the far sum contains, and a smooth rest, the sum over all other images (PeriodicKernel).
-/// Each source and each target is first moved into the cell. The rest is interpolated at both sources and targets in lattice coordinates, as between
-/// clusters (TreeSum). Let y be the distance to the nearest image in the rest divided by half the length of the cell in one direction. With p nodes
-/// in this direction the error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9).
+/// Splits the kernel of a lattice into the near images, which the far sum contains, and a smooth sum over all other images (PeriodicKernel). Each
+/// source and each target is first moved into the cell. The smooth sum is interpolated at both sources and targets in lattice coordinates, as between
+/// clusters (TreeSum). With p nodes in one direction its error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9). Here y is the distance
+/// to the nearest of the other images divided by half the length of the cell in this direction.
 class PeriodicSum {
  public:
   /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all

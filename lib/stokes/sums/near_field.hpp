@@ -47,7 +47,7 @@ class NearField {
     quadrature::Patch flat;
     Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand, across;  ///< accuracy required for targets on the panel's own surface; for all other targets
+    quadrature::Demand demand, across;  ///< accuracy required for targets on the closed surface of the panel; accuracy required for all other targets
   };
   void view(int e);
   bool on_same_surface(int e, std::span<const SelfPair> own) const;
