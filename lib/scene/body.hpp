@@ -62,7 +62,7 @@ struct Body {
   double volume = 0;
   double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
-  double modulus = 1;  ///< G_s, or the surface tension sigma of an interface
+  double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
@@ -89,8 +89,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 /// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
-/// Returns whether the load is a density per reference or per current area. For a drop, which has no unstressed state, and for the strong form it is
-/// always per current area.
+/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and for the
+/// strong form.
 stokes::Measure load_measure(const Scene& scene);
 
 }  // namespace tanktread

@@ -65,8 +65,8 @@ class Packing {
     Vec3 image;  // lattice vector that is added to the neighbour's centre to get its nearest image
   };
 
-  /// Lists, for each sphere, the spheres that it may overlap before any sphere has moved by the skin, an additional search distance. Keeps the
-  /// previous lists until a sphere has moved by half the skin.
+  /// Lists for each sphere the spheres that it may overlap as long as no sphere has moved by more than the distance `skin_`. Keeps the previous lists
+  /// until a sphere has moved by half of `skin_`.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());

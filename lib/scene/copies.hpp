@@ -38,8 +38,8 @@ bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, 
 
 struct ParticleKind;
 
-/// `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The particle's orientation is applied
-/// before a copy's own.
+/// Options `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The orientation of the particle
+/// is applied first, then the orientation of the copy.
 struct CopiesOptions {
   std::optional<std::string> file;    ///< CSV file: per row a centre, and optionally a rotation vector in degrees
   std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3

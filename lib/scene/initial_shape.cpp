@@ -60,7 +60,7 @@ Net shape_of(const output::Checkpoint& run) {
   return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
 }
 
-/// Returns a mode from the Spectrum of a run, as a displacement of its control points.
+/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the control points.
 Net mode_of_run(const output::Checkpoint& run, int number) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
   if (found == run.arrays.end())

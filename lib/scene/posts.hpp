@@ -17,7 +17,7 @@ struct Scene;
 struct Post {
   std::string name;  ///< name of its section in Particles; empty for a single one
   double radius = 1;
-  int axis = 0;  ///< index of the coordinate axis that the post is parallel to
+  int axis = 0;  ///< index of the coordinate axis parallel to the post
   Vec3 center = Vec3::Zero();
   int around = 24;           ///< number of elements around it
   std::optional<int> along;  ///< number of elements along its period

@@ -84,11 +84,10 @@ struct ParticleKind {
 /// Options `Contact/*` of the deck: contacts between several particles or periodic images.
 struct ContactOptions {
   double limit = 1e-3;  ///< smallest allowed gap, divided by the R_C of the smallest particle
-  bool limiter = false;  ///< true if forces between the particles keep the gaps at this limit
+  bool limiter = false;  ///< true if contact forces keep the gaps between particles at `limit` or above
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of the smallest particle; the run ends if a gap is
-                                                                        ///< smaller
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the R_C of the smallest particle
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;
@@ -159,7 +158,7 @@ struct Scene : ParticleKind {
   double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time
   double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
                                      ///< gradient
-  double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
+  double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }

@@ -31,8 +31,8 @@ struct Subject {
   std::span<const double> films;
 };
 
-/// Returns the result with the body `target` and with the state, whose nets are all transferred to the new space. `move` transfers one net of this
-/// particle.
+/// Returns an Adapted with the body `target`, in which all nets of the particle and of the state are transferred to the new space. `move` transfers
+/// one net of this particle.
 template <class Move>
 Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};

@@ -67,8 +67,8 @@ class Warnings {
   Memory memory_;
 };
 
-/// Returns the stiffness rho of an elastic membrane on elements of size h, 1/time. This is the larger of two rates of the shortest waves on the mesh:
-/// the rate of in-plane deformation (4.5), and the rate of bending. The viscosity is the mean of the inner and the outer viscosity.
+/// Returns the stiffness of an elastic membrane on elements of size h, 1/time: the larger of two rates of the shortest waves on the mesh, by in-plane
+/// deformation (4.5) and by bending. Both use the mean viscosity of the inner and the outer fluid.
 double stiffness(const Scene& scene, double h);
 
 /// Computes the quality of the mesh in the shape x. Throws RunFailure on all ranks if an element is folded or a control point is NaN. The ranks share

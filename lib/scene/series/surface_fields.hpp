@@ -21,7 +21,7 @@ namespace tanktread {
 /// Data of a particle's surfactant for one row of the results.
 struct SurfactantRow {
   double mass = 0;                   ///< mass divided by the initial mass
-  double smallest = 0, largest = 0;  ///< concentration divided by the initial one
+  double smallest = 0, largest = 0;  ///< smallest and largest concentration, divided by the initial concentration
   void add_columns(Columns& to) const;
 };
 
@@ -71,7 +71,7 @@ class SurfaceFields {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
     membrane::Surfactant* surfactant = nullptr;  // this field if it is a surfactant, otherwise null
-    const membrane::FieldParts::Chosen* part = nullptr;  // registered part that made this field, or null for a built-in field
+    const membrane::FieldParts::Chosen* part = nullptr;  // registered part of the program that made this field, or null for a built-in field
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
@@ -84,8 +84,8 @@ class SurfaceFields {
   motion::State shapes_;
 };
 
-/// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several. `all`:
-/// stacked body of all members. x, load and velocity (of the fluids, or empty): control values of all members. Serial.
+/// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several particles.
+/// `all`: stacked body of all members. x, `load` and `velocity` (fluid velocity, may be empty): control values of all members. Serial.
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
