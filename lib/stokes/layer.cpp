@@ -24,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The tolerance of the clusters is halved for the double layer. The measured error of the double layer is half of this tolerance.
+  // For the double layer, the clusters get half of the layer's tolerance. The measured error of the double layer is half of what the clusters get.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
@@ -255,7 +255,7 @@ Vec3 Layer::mean_density() const {
   return mean;
 }
 
-/// Computes the moments moment_ = (f n + n f)/2 at the far nodes k, where f(k, component) is the density.
+/// Computes the stresslet moments moment_ = (f n + n f)/2 at the far nodes from the density f(node, component) and the weighted normals n = normal_.
 template <class Values>
 void Layer::take_moments_of(const Values& f) {
   for (int c = 0; c < 6; ++c) {

@@ -153,8 +153,8 @@ class Layer {
   /// near points of all its targets.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
 
-  /// Return the far nodes of the current shape: their number, positions, weights including area and k (single layer), and normals times area and k
-  /// (double layer).
+  /// Return the far nodes of the current shape: their number, positions, weights (single layer) and normals (double layer). Weights and normals
+  /// include the area of the node and the factor k_p of (2.1), (2.2).
   int n_nodes() const { return surface_.panels.n_nodes(); }
   const std::vector<double> (&nodes() const)[3] { return surface_.node; }
   const std::vector<double>& weights() const { return weight_; }
@@ -176,7 +176,7 @@ class Layer {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
     const Net& f0;                        ///< constants subtracted from the density of a double layer
-    std::span<const int> in_tree;         ///< indices of all targets in the tree of clusters, ascending
+    std::span<const int> in_tree;         ///< indices of the targets that are in the tree of clusters, ascending
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
@@ -259,7 +259,7 @@ class Layer {
   std::optional<Measure> measure_;                                 // area of the current weight_
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
-  std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
+  std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
   std::vector<double> density_[3], normal_[3];                     // values at the far nodes: density f (in a single layer times weight_); normal
                                                                    // times quadrature weight, area and the factor k_p of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
@@ -267,7 +267,7 @@ class Layer {
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // double layer of the images in the wall at the targets, for constant unit
                                                                    // densities
-  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
+  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are divided among callers by share()
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each

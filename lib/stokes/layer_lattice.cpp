@@ -9,8 +9,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Tolerance for the images that are not near, divided by the tolerance of the layer. It is small, because loads are in equilibrium, so that
-/// velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
+/// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. It is below 1 because the loads are in
+/// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_rest = 0.1;
 
 }  // namespace

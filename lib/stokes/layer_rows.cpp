@@ -73,7 +73,8 @@ void add_moments(const Panels& panels, int e, const int* rows, const double* mom
   }
 }
 
-/// Writes three rows of the operator from the sums 11, 12, 13, 22, 23, 33 of one target with every control point, divided by 8 pi.
+/// Writes the three rows of the operator for one target. `sums`: for each control point, the entries 11, 12, 13, 22, 23, 33 of the kernel's sums. The
+/// rows are the sums divided by 8 pi.
 template <class Real>
 void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};

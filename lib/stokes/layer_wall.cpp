@@ -114,7 +114,7 @@ Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrore
 }
 
 /// Computes the moments of the image of panel e at the target `at`: one matrix per Bernstein polynomial, in the laboratory axes, including the factor
-/// k.
+/// k_p (2.1) of the panel.
 void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];

@@ -27,7 +27,7 @@ std::vector<double> breaks(const surface::Outline& outline, int side) {
 /// Returns the outward normal of the outline times dl/du, l the arc length and u the parameter.
 Vec2 weighted_normal(const surface::PlaneJet& at) { return {at.d[1], -at.d[0]}; }
 
-/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per du.
+/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per unit of the curve parameter u.
 Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   const Vec2 rho = at.x - p, nu = weighted_normal(at);
   const double r = std::sqrt(rho.squaredNorm() + h * h);
@@ -35,7 +35,7 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// Returns the integrand r nu (distance times normal) of own_flow(), per du.
+/// Returns the integrand of own_flow(), distance times normal, per unit of the curve parameter u.
 Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
   return {0, nu[0], nu[1]};

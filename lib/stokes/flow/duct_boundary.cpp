@@ -56,8 +56,8 @@ std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) 
   return out;
 }
 
-/// Returns the number of elements of each side, at least two, proportional to the square root of its length, because a short side, all of which is
-/// near a corner, needs more elements per length.
+/// Returns the number of elements of each side, at least two, proportional to the square root of the side's length. A short side is close to a corner
+/// everywhere, and therefore needs more elements per length.
 std::vector<int> shares(const Outline& outline, int elements) {
   if (outline.smooth()) return {elements};
   double total = 0;
@@ -201,7 +201,7 @@ class Row {
     right_ -= weight * ((j.x - origin_).squaredNorm() / 4 - value_) * cross(r, j.d) / (2 * pi * square);
   }
 
-  /// Integrates from the parameter of the target to one end of the element with t = t0 + (end - t0) s^4.
+  /// Integrates from t0, the parameter of the target, to the end t = `end` of the element, with the substitution t = t0 + (end - t0) s^4.
   void logarithmic(double t0, double end) {
     const auto& rule = quadrature::gauss(points_log);
     for (int q = 0; q < rule.size(); ++q) {
@@ -266,7 +266,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // psi (2.17) at the start of the current element
+  double psi = 0;  // psi of (2.17) at the start of the current element: the integral of q dl up to there
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;

@@ -84,8 +84,8 @@ void DuctEnd::add(const Cell& cell, int order, Nodes& nodes) const {
   }
 }
 
-/// Returns whether a point is closer to a cell than the size of the cell. Sets `around` to whether the cell is longer in the angular direction about
-/// the centroid than along the rays. `at`: height of the point above the plane, and its position in the plane.
+/// Returns true if a point is closer to a cell than the size of the cell. Sets `around` to true if the cell is longer in the angular direction about
+/// the centroid than along the rays. `at`: height of the point above the plane of the end, then its position in this plane.
 bool DuctEnd::close(const Cell& cell, const Vec3& at, bool& around) const {
   const Vec2 a = ray(cell, cell.t[0], cell.r[0]), b = ray(cell, cell.t[1], cell.r[0]), c = ray(cell, cell.t[0], cell.r[1]),
              d = ray(cell, cell.t[1], cell.r[1]), middle = ray(cell, (cell.t[0] + cell.t[1]) / 2, (cell.r[0] + cell.r[1]) / 2);

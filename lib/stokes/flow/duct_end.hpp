@@ -60,7 +60,7 @@ class DuctEnd {
   double inward_;
   Sources far_;
   std::vector<Cell> cells_;
-  std::vector<Sources> close_;  // sources of each cell, for targets close to the plane but not to the cell
+  std::vector<Sources> close_;  // for each cell, its nodes as sources, for targets close to the plane of the end but not to the cell
 };
 
 }  // namespace tanktread::stokes

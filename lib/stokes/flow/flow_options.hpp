@@ -47,7 +47,7 @@ struct FlowOptions {
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
-  /// Returns the rate in Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. It depends on the type:
+  /// Returns the rate in the capillary number Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. By type:
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
   /// - `quiescent` between two plates: difference of the plates' velocities divided by the plates' distance; if the velocities do not differ, half
   ///   of the shear rate on the plates due to the pressure gradient;

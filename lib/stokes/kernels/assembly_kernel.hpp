@@ -31,8 +31,8 @@ void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::u
   far_moments(panel, target, skip, scratch, sums);
 }
 
-/// Returns two sums over the nodes (x, y, z) for a target x0 with the normal n0. N is the normal of a node times its quadrature weight, and r is the
-/// vector from the target to the node:
+/// Returns the sums for the two identities of the rule `desingularised` (see Layer), over the nodes (x, y, z) for a target x0 with the normal n0.
+/// N = (nx, ny, nz) is the normal of a node times its quadrature weight, and r is the vector from the target to the node:
 ///   pressure_i = sum G_ij N_j;   shear_ij = sum G_ij (n0.N) + (G n0)_i N_j - (n0.r) T_ijk N_k, row by row.
 struct IdentitySums {
   double pressure[3], shear[9];

@@ -84,7 +84,7 @@ using KernelSum = void (*)(const Charges& points, const double* target, double* 
 /// Computes a sum `kernel` that has three components per target, for any number of targets k; result u[3 k + c].
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
 
-struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to G f
+struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velocities G f
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
@@ -95,7 +95,7 @@ struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet stre
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
-struct NormalStressKernel {  ///< maps n_k to T_ijk n_k, components ij ordered as in `stresses`
+struct NormalStressKernel {  ///< kernel for TreeSum: maps normals n to T_ijk n_k, with the components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
   static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // evaluated only once per shape
 };

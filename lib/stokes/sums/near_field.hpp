@@ -24,8 +24,8 @@ class NearField {
   /// are not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
-  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. `rule` also needs the
-  /// points of its panel if it is an image.
+  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. If a panel is an
+  /// image, rule() also needs the Bezier points of this panel.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
   /// Includes periodic images of the panels. A periodic image of a panel is treated as part of a different surface. Must be called before update().
@@ -55,7 +55,7 @@ class NearField {
   bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;  ///< required accuracy, without the parts that depend on the area
+  quadrature::Demand demand_;  ///< accuracy required, without the members that update() computes from the surface area
   std::vector<int> surface_;   ///< for each panel, the index of the surface that contains it
   int n_surfaces_ = 1;
   bool steep_, across_gaps_;

@@ -88,8 +88,8 @@ class TreeSum {
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
   std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
-  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: sum to be computed. wanted_: target cluster with a target whose sum is to be computed.
-                                                // has_nodes_: target cluster with values at its Chebyshev nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: the sum of this row is to be computed. wanted_: the target cluster has such a row.
+                                                // has_nodes_: the target cluster has values at its Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;
