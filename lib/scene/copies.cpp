@@ -171,7 +171,7 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   return copies;
 }
 
-/// Returns the copies on a lattice about the origin.
+/// Returns the copies on a lattice whose centre is the origin.
 std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   std::vector<Copy> copies;
   for (int i = 0; i < counts[0]; ++i)

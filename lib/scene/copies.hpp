@@ -57,7 +57,7 @@ struct CopiesOptions {
   bool random() const { return number || volume_fraction; }
   bool in_cell() const { return random() && !box && !ball; }
 
-  /// Throws UserError, with one sentence, if keys contradict each other. `cell`: true if the lattice has three directions.
+  /// Throws UserError if keys contradict each other. The message is one sentence. `cell`: true if the lattice has three directions.
   void check(const std::string& list, bool cell) const;
 };
 

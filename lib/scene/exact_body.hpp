@@ -22,8 +22,8 @@ struct ExactBody {
   Vec3 force() const;   ///< returns the force on the body
   Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// Return the pressure p = -t.n up to a constant (t: traction on the body) and the unit normal, at the point of the exact surface in the direction
-  /// of x from the centre.
+  /// Return quantities at the point of the exact surface in the direction of x from the centre: the pressure p = -t.n up to a constant, with t the
+  /// traction on the body, and the unit normal.
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 

@@ -102,7 +102,7 @@ struct Scene : ParticleKind {
   DomainOptions domain;
   WallOptions wall;
   std::vector<Post> posts;    ///< cylinders among the particles of the deck, in their order
-  bool only_solids = false;   ///< true if all particles of the deck are posts, so that nothing moves
+  bool only_solids = false;   ///< true if all particles of the deck are posts; then nothing moves
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
@@ -130,7 +130,7 @@ struct Scene : ParticleKind {
   void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
   void reject_power(Rejections& to) const;  ///< adds the choices with which the power balance (6.11) of all particles is not available
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
-  /// Returns the section of the deck that replaces the simulation in time.
+  /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
   Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for messages about rejected
                                                                             ///< combinations
@@ -152,7 +152,7 @@ struct Scene : ParticleKind {
   std::vector<Scene> alone() const;
   bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions, the integral equation of the first kind (2.40)
 
-  bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem: `Particle/forces`, or its default
+  bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
   double least_radius() const;       ///< smallest R_C of all particles, by which gaps are divided
   double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time

@@ -15,8 +15,8 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the conditions that the loads of all particles impose on a rigid motion with which they move (Load::rigid_conditions), one row per
-/// condition.
+/// Returns the conditions that a rigid motion of the particles must satisfy so that all their loads move with them (Load::rigid_conditions), one row
+/// per condition.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
   membrane::RigidConditions all(0, 6);
   for (const coupling::Particle& particle : particles)

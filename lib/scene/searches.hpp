@@ -36,14 +36,14 @@ double steady_step(const Scene& scene);
 bool holds_centre(const Scene& scene);
 
 /// Moves the state so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an affine flow with
-/// gradient L, v(x + c) = v(x) + L c for any shape. So if x(t) is a motion, x(t) + c(t) with dc/dt = L c is one too; a time s earlier the
-/// displacement was exp(-L s) c.
+/// gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is therefore also a motion, and a time s
+/// earlier its displacement was exp(-L s) c.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
-/// Values of Continuation/parameter and of the second parameter, 0 if there is none.
+/// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// Returns the settings `Section/key=value` of these values of Continuation/parameter and the second parameter.
+/// Returns the settings `Section/key=value` for these values of Continuation/parameter and of the second parameter.
 std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values);
 
 /// Returns the parameter values at the start of the branch. Throws UserError if a parameter is not a number of the deck.

@@ -21,7 +21,7 @@ int elements_along(const Post& post, const Vec3& period) {
 
 Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
 
-/// Returns the plates, each with the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
+/// Returns the plates. Each plate moves at the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
@@ -153,8 +153,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
       row.mean_velocity += carried / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside
-                                                          // the post. Its force and its flow rate are removed here.
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside the
+                                                          // post. The force and the flow rate of this fictitious flow are removed here.
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];

@@ -39,7 +39,8 @@ class ParticleSystem {
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
-  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion with the fields on surfaces; null without fields
+  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion of the surfaces together with their fields; null without
+                                                                 ///< fields
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now

@@ -51,7 +51,7 @@ double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y)
 
 /// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // Keeps the parameters inside the element, because at a pole on its boundary the iteration would stop.
+  // Limits a Newton step so that the parameters stay inside the element, because at a pole on its boundary the iteration would stop.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);

@@ -72,7 +72,7 @@ bool strains(const Scene& scene);
 DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
                            const Net& slope, const coupling::Ranks& ranks);
 
-/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves by v.
+/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves at the velocity v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
 /// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, the

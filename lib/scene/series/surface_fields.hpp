@@ -61,7 +61,7 @@ class SurfaceFields {
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
   /// must be the state that was set last by set_state().
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
-  /// Returns the power of the loads of all fields if the material moves by v.
+  /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
   double power(const Net& v) const;
   /// Adds the values that fields and loads write to snapshots at the shape x, and corrects the tensions of interfaces with surfactant.
   void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
@@ -70,7 +70,7 @@ class SurfaceFields {
   struct One {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
-    membrane::Surfactant* surfactant = nullptr;  // this field if it is a surfactant, otherwise null
+    membrane::Surfactant* surfactant = nullptr;  // `field` if it is a surfactant, otherwise null
     const membrane::FieldParts::Chosen* part = nullptr;  // registered part of the program that made this field, or null for a built-in field
   };
 
