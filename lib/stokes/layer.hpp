@@ -57,12 +57,12 @@ struct Repetition {
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
 ///
 /// For a target on a surface, f(x0) is the density there, so that no principal value is needed. The contribution of the surface that contains the
-/// target equals k times the sum of the principal value and f/2. A rigid motion of all surfaces together gives 0. For a target off the surfaces,
+/// target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the surfaces,
 /// f(x0) is a constant given by the caller, by default 0. If the target is outside a closed surface, this constant does not change the result (2.3).
 ///
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
-/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's part of this sum. Its tolerance is
-/// relative to the surface of the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only
+/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. Its tolerance is
+/// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only
 /// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
 /// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
 /// Mech. 696, 2012, with a different flow.
@@ -129,14 +129,16 @@ class Layer {
   /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
   Near near(const Net& at, std::span<const int> targets);
 
-  /// Computes rows `targets` of u, shape of `at`, at points off the surfaces, given by the rows of `at`. `kept`: near(at, targets), or null.
+  /// Computes the rows `targets` of u. The points x0 are the rows of `at` and are off the surfaces; u has the shape of `at`. `kept`: near(at,
+  /// targets), or null.
   void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
   /// Computes the double layer with constants `f0`, one row per point, subtracted from f. Outside a closed surface the result does not change (2.3),
   /// but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Assembles A of u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 targets, 3 N).
+  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3
+  /// targets, 3 N).
   void assemble(std::span<const int> sites, Rows<float>& a);
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
@@ -199,7 +201,7 @@ class Layer {
   /// The unstressed surface.
   struct Reference {
     std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its weights at the far nodes, areas included
-    std::vector<bool> present;           // true for elements for which Measure::by_element means the current area
+    std::vector<bool> present;           // true for elements where Measure::by_element selects the current area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }

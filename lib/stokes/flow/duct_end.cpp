@@ -14,7 +14,8 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
-constexpr double far = 1.2, smallest = 1e-5;  // divided by the radius of the end: distance beyond which the far nodes suffice; smallest cell size
+constexpr double far = 1.2, smallest = 1e-5;  // distance beyond which the far nodes suffice, and smallest size of a cell, both divided by the radius
+                                              // of the end
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;
@@ -170,8 +171,8 @@ Net DuctEnd::velocities(const Net& x) const {
 
 DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
-  for (const Cell& cell : cells_)  // as many points on the outer quarter of each ray as on the rest, because the error of collocation extends about
-                                   // one wall element into the fluid
+  for (const Cell& cell : cells_)  // places as many points on the outer quarter of each ray as on the inner three quarters, because the error of
+                                   // collocation extends about one wall element into the fluid
     for (const auto& [inner, outer] : {std::pair(0., 0.75), std::pair(0.75, 1.)})
       add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, order_close, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());

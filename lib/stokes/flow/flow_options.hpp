@@ -11,7 +11,7 @@
 
 namespace tanktread::stokes {
 
-/// Plates that enclose a flow: one, or two a distance apart.
+/// One plate that bounds a flow, or two parallel plates at a distance.
 struct Plates {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
   std::optional<double> distance;                     ///< distance of the second plate; none if not set

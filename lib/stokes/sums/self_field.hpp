@@ -26,7 +26,7 @@ struct SelfPair {
                                    ///< Gauss of this order
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
-  std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site
+  std::vector<double> bernstein;  ///< Bernstein polynomials and their derivatives at the site: B_i(s), B_j(t), B_i'(s), B_j'(t)
   double s = 0, t = 0;
 };
 

@@ -50,8 +50,8 @@ class TreeSum {
     sum<Kernel>(carried, values);
   }
 
-  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, charges and rows add up to the
-  /// complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
+  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, source strengths and rows add up to
+  /// the complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
