@@ -40,7 +40,7 @@ std::string FlowPlane::description() const {
 FlowPlane plane_normal_to(Vec3 normal) {
   normal.normalize();
   for (double& component : normal)
-    if (std::abs(component) < 1e-12) component = 0;  // removes round-off, so that coordinate planes have exactly their normals
+    if (std::abs(component) < 1e-12) component = 0;  // removes round-off, so that normals along a coordinate axis are exact
   const Vec3 first = std::abs(normal[0]) < 1 - 1e-9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 a = (first - normal * normal.dot(first)).normalized();
   Vec3 b = a.cross(normal).normalized();

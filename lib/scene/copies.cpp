@@ -93,7 +93,7 @@ class Packing {
     PackedSphere &a = spheres_[i], &b = spheres_[other.number];
     const Vec3 between = apart(i, other);
     const double distance = between.norm(), least = least_distance(a, b);
-    if (distance >= least || (a.fixed && b.fixed)) return true;  // check_apart tests the surfaces of particles that cannot be moved
+    if (distance >= least || (a.fixed && b.fixed)) return true;  // spheres that must not move count as apart; check_apart tests their surfaces
     const Vec3 direction = distance > 1e-12 * least ? Vec3(between / distance) : direction_at_random();
     const double all = clear * least - distance, of_a = a.fixed ? 0 : b.fixed ? 1 : 0.5;
     a.centre -= of_a * all * direction;
@@ -291,8 +291,8 @@ void CopiesOptions::check(const std::string& list, bool cell) const {
 
 namespace {
 
-/// Returns the copies of all kinds. The copies at random positions in the cell, of all kinds, are moved by one call of pack() until they do not
-/// overlap.
+/// Returns the copies of every kind of particle. Copies at random positions in the cell, of all kinds together, are moved by one call of pack() until
+/// no two of them overlap.
 std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<std::vector<Copy>> all;
   std::vector<PackedSphere> taken;

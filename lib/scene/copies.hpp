@@ -32,8 +32,8 @@ inline double least_distance(const PackedSphere& a, const PackedSphere& b) { ret
 
 /// Moves spheres from arbitrary positions to an arrangement in which none overlaps another one or an image, distributed as hard spheres in thermal
 /// equilibrium. First, overlapping pairs are pushed apart until none overlap (after Jodrey & Tory 1985). Then all take random steps, and steps that
-/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres it works up to a volume fraction of about 0.6, gaps included. Returns
-/// false if the overlaps cannot be removed.
+/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres, pack() succeeds up to a volume fraction of about 0.6, gaps included.
+/// Returns false if overlaps remain.
 bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed);
 
 struct ParticleKind;
@@ -47,7 +47,8 @@ struct CopiesOptions {
   std::optional<int> number;          ///< number of copies placed at random
   std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
-  /// Radius of the ball that contains all copies. Without box and ball, copies at random fill the periodic cell of a lattice with three directions.
+  /// Radius of the ball that contains all copies. Without `box` and `ball`, copies at random positions fill the periodic cell. This requires three
+  /// periods.
   std::optional<double> ball;
   double least_gap = 0.05;            ///< least gap between the circumscribed spheres of two copies, divided by the larger radius
   int seed = 1;

@@ -1,5 +1,6 @@
 #pragma once
-// Initial shape of a run, if it is not the resting one: Particle/initial shape; and the stress-free shape of the membrane.
+// Initial shape of a run (Particle/initial shape), and stress-free shape of the membrane. Both are the resting shape if the deck gives no other
+// shape.
 
 #include <optional>
 

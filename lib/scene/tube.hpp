@@ -48,8 +48,8 @@ double least_way(const Scene& scene, const Body& body, const Columns& row);
 /// wall traction then exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
-/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing in a
-/// channel, in a periodic tube, or for a single particle.
+/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing for a
+/// single particle, in a channel, or in a periodic tube.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 }  // namespace tanktread

@@ -154,7 +154,7 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
                                   fields_at));
   surface::MetricFields fields;
   if (options.reference_traction_variation) fields.traction = traction;
-  const Net slope = state.history.empty() ? Net() : Net(block.rows(state.history.front()));  // outlives `fields`, which refers to it
+  const Net slope = state.history.empty() ? Net() : Net(block.rows(state.history.front()));  // must outlive `fields`, which stores a reference to it
   if (options.reference_velocity_variation && slope.rows() > 0) fields.velocity = surface::field_of_net(body.nested(), slope);
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }

@@ -48,8 +48,8 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 
-/// Returns "Particles/a and Particles/b touch", or that a particle touches its image. `first`, `second`: particle numbers from 1 in the order of the
-/// deck.
+/// Returns a sentence that two particles touch, such as "Particles/a and Particles/b touch", or that a particle touches its periodic image. `first`,
+/// `second`: numbers of the particles, from 1 in the order of the deck.
 std::string touching(const Scene& scene, int first, int second);
 
 }  // namespace tanktread

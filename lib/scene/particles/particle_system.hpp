@@ -59,7 +59,8 @@ class ParticleSystem {
   virtual coupling::Work work() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, with time and work added to `progress`
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, including the time and work of the run,
+                                                                              ///< which are set in `progress`
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };
@@ -67,7 +68,7 @@ class ParticleSystem {
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// Build a coupled system of particles, or the system of one free rigid body.
+/// Build a coupled system of particles, or a system that consists of one free rigid body.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 

@@ -193,7 +193,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // true if the run has one particle, whose own columns already have these names
+  const bool only = scene.particles.empty();  // true if the run has only one particle; this particle already adds columns with the names used here
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);

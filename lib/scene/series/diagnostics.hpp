@@ -46,7 +46,7 @@ struct RigidRow : ParticleRow {
   void add_columns(const Scene& one, Columns& to) const override;
 };
 
-/// Totals over all particles: control points, energy and stresslet. Also their mean velocity.
+/// Totals over all particles (control points, energy and stresslet), and the mean velocity of all particles.
 struct Together {
   int n_points = 0;
   double energy = 0;
