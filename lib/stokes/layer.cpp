@@ -24,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // For the double layer, the clusters get half of the layer's tolerance. The measured error of the double layer is half of what the clusters get.
+  // The tolerance of the clusters is halved for the double layer. With it, the measured error of the double layer is half of the halved tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
@@ -189,9 +189,9 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. Both are reused if nothing has
-/// changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums belongs to image g of target k, where n is the
-/// number of targets.
+/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. The tree and these sums are
+/// reused if the shape and the targets have not changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums
+/// belongs to image g of target k, where n is the number of targets.
 void Layer::place_tree(const Targets& targets) {
   std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;

@@ -82,7 +82,7 @@ class Layer {
   /// clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F at the images g x_i of
   /// each target x_i:
   ///
-  ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
+  ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
@@ -162,8 +162,8 @@ class Layer {
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG of a function h for every spline
-  /// function N_A. `g`: h times area and quadrature weight at each far node.
+  /// Evaluate a field at the far nodes (`values`), or integrate a function h against each basis function, int N_A h dG (`moments`, the transpose of
+  /// `values`). `g`: h times area and quadrature weight at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
@@ -173,7 +173,7 @@ class Layer {
   const Phases& phases() const { return phases_; }
 
  private:
-  /// Targets of one evaluation of the layer, and their positions.
+  /// Targets of one evaluation of the layer: their positions, and the rows of the result to compute.
   struct Targets {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions

@@ -94,7 +94,7 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
 
 }  // namespace
 
-/// Sums over the panels of a basis, for up to sixteen targets at a time.
+/// Assembles sums over the panels, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
 class Layer::RowSums {
  public:

@@ -86,7 +86,7 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the contribution of the image of panel e by the near-singular rule `table` minus its contribution to the far sum.
+/// Returns the contribution of the image of panel e by the near-singular rule `table`, minus the contribution of this image to the far sum.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];

@@ -41,8 +41,8 @@ void far_sum(const PointForces& forces, const double* target, double* u);
 /// Computes the far_sum() of point forces for any number of targets k; result u[3 k + c].
 void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
 
-/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. The caller subtracts it from the far sum when a better quadrature
-/// rule replaces these nodes.
+/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
+/// subtracts this sum from the far sum.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
 /// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 for the position, 3, 4, 5 for the velocity v0

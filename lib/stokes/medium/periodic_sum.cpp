@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns how many images count as near: for each lattice vector, the largest number of steps along it. Also returns the distance of the nearest
-/// image that is not near. For any two points in the box this distance is about `far` box lengths.
+/// Returns which images count as near: for each lattice vector, the largest number of steps along it. Also returns the distance of the nearest other
+/// image. For any two points in the box, this distance is at least about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -109,7 +109,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Finds the table index of the difference between two nodes.
+/// Data to find the table index of the difference between two interpolation nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;

@@ -29,8 +29,8 @@ class PeriodicSum {
   /// Returns whether a PeriodicSum constructed for `extent` would be equal to this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
-  /// Returns the position moved into the cell. The cell is displaced from the origin. Kernels take a node and a target for coincident if their
-  /// distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
+  /// Returns the position moved into the cell. The cell is displaced from the origin, because kernels take a node and a target for coincident if
+  /// their distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
   /// Adds the smooth sum over all images that are not near, at targets in the cell: u[3 k + c]. Sources are positions in the cell, with the 3

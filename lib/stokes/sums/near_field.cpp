@@ -89,7 +89,7 @@ void NearField::view(int e) {
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
   view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // equal at all corners
-  for (int j = 1; j < t.degree; ++j)  // over all inner Bezier points, so that the result does not depend on the directions of s and t
+  for (int j = 1; j < t.degree; ++j)  // includes all inner Bezier points, so that the result does not depend on the directions of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }

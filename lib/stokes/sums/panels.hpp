@@ -21,7 +21,7 @@ struct Panel {
   const NodeTable* table = nullptr;
   int functions = 0;                 ///< number m of basis functions
   std::size_t first_point = 0;       ///< index of the first of its m control-point indices
-  std::size_t first_extraction = 0;  ///< index of the first entry of its extraction matrix, (m, n_bernstein) row by row
+  std::size_t first_extraction = 0;  ///< index of the first entry of the element's extraction matrix, shape (m, n_bernstein), stored row by row
   std::size_t first_bezier = 0;      ///< index of the first of its 3 n_bernstein Bezier coordinates
   int first_node = 0;                ///< index of the first of its far nodes
 };

@@ -79,7 +79,7 @@ class TreeSum {
 
   Precision precision_;
   int part_ = 0, parts_ = 1;
-  int in_ = 3, out_ = 3;  // numbers of components of a source strength, and of the sum at a target
+  int in_ = 3, out_ = 3;  // numbers of components: of the strength of a source, and of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources

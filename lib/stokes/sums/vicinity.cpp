@@ -28,7 +28,8 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
   holds_.resize(leaf);
 }
 
-/// Appends the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's order.
+/// Appends to the tree the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's
+/// order.
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {
