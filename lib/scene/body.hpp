@@ -67,8 +67,7 @@ struct Body {
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// Returns the space that is nested: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this
-  /// space.
+  /// Returns the nested space: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this space.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 

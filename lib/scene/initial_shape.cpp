@@ -41,7 +41,8 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-/// Throws UserError if the run's mesh options differ from the scene's or, if the mesh adapts, its resting shape. Material properties may differ.
+/// Throws UserError if the mesh options of the run and the scene differ or, if the mesh adapts, their resting shapes differ. Material properties may
+/// differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene before(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);

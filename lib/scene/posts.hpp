@@ -22,7 +22,7 @@ struct Post {
   int around = 24;           ///< number of elements around it
   std::optional<int> along;  ///< number of elements of the post along its period
 
-  std::string path(const std::string& key = {}) const;  ///< returns the path of its section or of a key in it, for messages
+  std::string path(const std::string& key = {}) const;  ///< returns the path of the post's section or of a key in it, for messages
 };
 
 /// Returns the lattice vector along the axis of a post, units length; zero if there is none.

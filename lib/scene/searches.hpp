@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a scene that searches for steady shapes, periodic motions and branches need: the rigid motions that the scene leaves free, the rule that
+// Data that searches for steady shapes, periodic motions and branches need from a scene: the rigid motions that the scene leaves free, the rule that
 // holds a particle's centre, the step of a search, and the parameters of a branch.
 
 #include <array>

@@ -135,7 +135,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
     row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
   } else {
     const Vec3& n = of.planes.front().normal();
-    Vec3 across = particle_force;  // force of particles and posts on the fluid; only its component along n is used
+    Vec3 across = particle_force;  // force of particles and posts on the fluid; only its component along the wall normal n is used
     for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {

@@ -14,7 +14,7 @@ namespace tanktread {
 /// (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
-/// Adds the choices that contradict a tube or channel, and those that require one.
+/// Adds the choices that contradict a tube or channel, and the choices that require one.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
 /// Throws UserError, with the lengths that do not fit, if the scene has a tube and the particle does not fit into it.

@@ -227,7 +227,7 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell) {
-  constexpr int n = 7;  // numbers sent per pair: 1 if the gap is smaller than `reach`, then the two sites
+  constexpr int n = 7;  // count of numbers sent per pair: whether the gap is smaller than `reach`, then element, s and t of each of the two sites
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());

@@ -22,7 +22,7 @@ struct Nearest {
 };
 
 
-/// Throws UserError, which names the particles and the place, if two particles overlap in their initial shapes, or one is inside another.
+/// Throws UserError if two particles overlap in their initial shapes, or if one is inside another. The message names the particles and the position.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
 
 /// Pair of particles close to each other: their contact (the two nearest points and the normal), without a force, and their gap.

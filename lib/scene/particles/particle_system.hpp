@@ -52,7 +52,7 @@ class ParticleSystem {
   /// fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
-  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of these contacts, on the current mesh, from now on
+  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of the given contacts, on the current mesh, from now on
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has changed its mesh
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once

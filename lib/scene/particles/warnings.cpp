@@ -13,8 +13,10 @@ namespace tanktread {
 
 namespace {
 
-constexpr double grown = 5;         // growth of waves on a compressed membrane at which the user is warned, in e-folds: they soon become visible
-constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; fewer can occur at the start
+constexpr double grown = 5;         // growth of waves on a compressed membrane, in e-folds, above which the user is warned; the waves soon become
+                                    // visible
+constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; a few such steps can occur at
+                                    // the start
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;

@@ -94,8 +94,8 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest |v.n| at these collocation sites divided by Scene::rate() R_C. It is zero if the shape is steady. In a tube, v is relative to
-/// the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
+/// Returns the largest normal velocity |v.n| at the collocation sites `sites` divided by Scene::rate() R_C, with v = `slope`. It is zero if the shape
+/// is steady. In a tube, v is relative to the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 
