@@ -67,7 +67,7 @@ void Layer::place(const Net& x, Measure measure) {
   if (images_) images_->place(surface_.node);
 }
 
-/// Multiplies values at the far nodes by the factors k (2.1) of the panels.
+/// Multiplies values at the far nodes by the factor k_p (2.1) of their panel.
 void Layer::scale(std::span<std::vector<double>> at_nodes) const {
   for (int e = 0; e < surface_.panels.size(); ++e)
     for (std::vector<double>& values : at_nodes)

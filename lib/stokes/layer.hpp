@@ -133,8 +133,8 @@ class Layer {
   /// targets), or null.
   void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Computes the double layer with constants `f0`, one row per point, subtracted from f. Outside a closed surface the result does not change (2.3),
-  /// but the integrand is smaller if f0 is the density nearby.
+  /// Computes the double layer after a constant, row k of `f0`, is subtracted from f for target k. Outside a closed surface the result does not
+  /// change (2.3), but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
   /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3
@@ -200,7 +200,7 @@ class Layer {
 
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its weights at the far nodes, areas included
+    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its quadrature weights at the far nodes, areas included
     std::vector<bool> present;           // true for elements where Measure::by_element selects the current area
   };
 

@@ -24,7 +24,7 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Returns for each element its parametric size divided by the distance between control points around it, which is 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the distance between the control points around it. The ratio is 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {

@@ -46,8 +46,8 @@ class OutlineSpace {
   int size() const { return static_cast<int>(sites_.size()); }  ///< number of functions, equal to the number of collocation points
   const std::vector<OutlineElement>& elements() const { return elements_; }
 
-  /// Returns the sites: on a closed side the knots, on an open side the Greville abscissae with the end points moved inwards by half the first
-  /// spacing.
+  /// Returns the collocation sites: on a closed side the knots, on an open side the Greville abscissae with the end points moved inwards by half the
+  /// first spacing.
   const std::vector<OutlineSite>& sites() const { return sites_; }
 
   /// Returns the position and its derivative with respect to t. The second derivative is not set.

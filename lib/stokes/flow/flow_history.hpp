@@ -37,8 +37,8 @@ struct FlowHistory {
     double angle = 0;  ///< angle of `turn` in degrees
   };
 
-  /// Returns amplitude and rotation at a time, in a step that began at `start`. If they jump at this time, returns the values before the jump, or
-  /// after it if the step starts at the jump.
+  /// Returns amplitude and rotation at a time, in a step that began at `start`. If they jump at this time, returns the values after the jump if the
+  /// step starts at the jump, and otherwise the values before the jump.
   Moment at(double time, double start) const;
 
   /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.51). Exact up to

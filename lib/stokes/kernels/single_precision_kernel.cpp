@@ -10,7 +10,7 @@ namespace {
 
 constexpr int wide = RegisterOf<float>::lanes;
 
-/// Coordinates of n points relative to an origin, scaled by a power of two: the part in single precision, and the remainder.
+/// Coordinates of n points relative to an origin, scaled by a power of two and split into a single-precision part and the remainder.
 template <int size>
 struct Split {
   alignas(register_bytes) float place[3][size], rest[3][size];

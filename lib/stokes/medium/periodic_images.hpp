@@ -8,8 +8,8 @@
 
 namespace tanktread::stokes {
 
-/// Periodic cell with n = 1, 2 or 3 lattice vectors, reduced to the shortest ones of the lattice. The other directions have unit vectors normal to
-/// them.
+/// Periodic cell with n = 1, 2 or 3 lattice vectors, reduced to the shortest vectors of the lattice. The other directions have unit vectors normal to
+/// the lattice vectors.
 class PeriodicCell {
  public:
   /// `vectors`: the first n columns are linearly independent lattice vectors. `reference` fixes the constant of the Stokeslet with one period. It is

@@ -85,7 +85,7 @@ std::vector<double> differences(const std::vector<double>& nodes, std::vector<in
 
 /// Interpolates values [component][x][y][z] at nodes to values [x][y][z][component] at other positions.
 std::vector<double> interpolated(std::vector<double> values, const std::array<Eigen::MatrixXd, 3>& by) {
-  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // multiplies by a matrix along the last index, and moves it to the front
+  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // multiplies by a matrix along the last index, and moves this index to the front
     const Eigen::Index rest = static_cast<Eigen::Index>(values.size()) / matrix.cols();
     const Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(values.data(), matrix.cols(), rest).transpose() * matrix.transpose();
     values.assign(result.data(), result.data() + result.size());
