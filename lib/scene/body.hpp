@@ -61,7 +61,7 @@ struct Body {
   /// and does not change if the mesh changes.
   double volume = 0;
   double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
-  double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
+  double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one

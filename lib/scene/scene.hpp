@@ -83,7 +83,7 @@ struct ParticleKind {
 
 /// Options `Contact/*` of the deck: contacts between several particles or periodic images.
 struct ContactOptions {
-  double limit = 1e-3;  ///< smallest allowed gap, divided by the R_C of the smallest particle
+  double limit = 1e-3;  ///< smallest allowed gap, divided by the radius R_C of the smallest particle
   bool limiter = false;  ///< true if contact forces keep the gaps between particles at `limit` or above
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
@@ -154,7 +154,7 @@ struct Scene : ParticleKind {
 
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
-  double least_radius() const;       ///< smallest R_C of all particles, by which gaps are divided
+  double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
   double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time
   double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
                                      ///< gradient

@@ -25,7 +25,7 @@ struct WallOptions {
   std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the flow
   std::optional<int> elements_per_period;         ///< number of elements of a plate along the longest period
   bool solid = false;         ///< true if the walls are plates in a periodic cell, solved for by their tractions; false if the wall acts by images
-  double contact_gap = 1e-3;  ///< gap divided by R_C; the run ends if the gap is smaller
+  double contact_gap = 1e-3;  ///< gap divided by the radius R_C; the run ends if the gap is smaller
 
   void declare(deck::Section& section);
 

@@ -57,7 +57,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by R_C.
+/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by the radius R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
@@ -119,7 +119,7 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest width at any of these.
+/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest of their widths.
 std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
   std::vector<double> widths;
   if (films.empty()) return widths;

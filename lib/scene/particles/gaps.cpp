@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by R_C
+constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by the particle radius R_C
 
 /// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
@@ -254,7 +254,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
-  double longest = 0;  // longest diagonal of an element of the surface, length
+  double longest = 0;  // longest diagonal of all elements of the surface, length
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;

@@ -13,7 +13,7 @@
 
 namespace tanktread {
 
-/// Pair of particles with the smallest gap, numbered from 1 in the order of the deck, and the midpoint of the gap.
+/// Pair of particles with the smallest gap: their numbers, from 1 in the order of the deck, the gap, and its midpoint.
 struct Nearest {
   double gap = std::numeric_limits<double>::infinity();
   int first = 0, second = 0;
@@ -39,7 +39,7 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
+/// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest radius R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
 /// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the width exceeds a limit that every element of

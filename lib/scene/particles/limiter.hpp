@@ -14,7 +14,7 @@
 namespace tanktread {
 
 /// Moves the particles after a step so that no gap between two of them is below `limit`. The forces are non-negative and act along the normals at the
-/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, which is repeated until the
+/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, and this is repeated until the
 /// true gaps satisfy it. If a pair with a contact is also below the limit at other positions, contacts are added there. If the gap at such an
 /// additional contact is less than 1 % below the limit, it returns to the limit gradually, at the rate of the motion. During a step, the forces found
 /// after the previous step act. They are corrected after the step, and the corrected forces act during the next step. The error per step by lasting

@@ -45,7 +45,7 @@ class ParticleSystem {
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
-  /// Discards the data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
+  /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.
   virtual void forget_recycled() {}
   /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that

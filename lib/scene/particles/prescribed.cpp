@@ -11,7 +11,7 @@ namespace tanktread {
 
 namespace {
 
-/// Returns seven integrals of the velocity residual of the force density f, that is, of the error of the velocity between collocation points
+/// Returns seven integrals of the velocity residual of the force density f, which is the error of the velocity between collocation points
 /// (Resistance::residual_work). The first six are the errors of the force and of the torque on the fluid, by the reciprocal theorem. The seventh is
 /// the work of f on the velocity residual.
 Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {

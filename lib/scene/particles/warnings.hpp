@@ -17,10 +17,10 @@ namespace tanktread {
 /// Data of a finished step from which warnings are derived. Lengths and times are in the deck's units.
 struct StepFindings {
   double time = 0, step = 0;
-  double smallest_tension = 0, compressed_area = 0;  ///< values of the series with these names
+  double smallest_tension = 0, compressed_area = 0;  ///< values of the columns `smallest_tension` and `compressed_area`
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
-  double element = 1;                           ///< mean element size: the square root of the area divided by the number of elements
+  double element = 1;                           ///< mean element size: the square root of (area divided by number of elements)
   std::optional<double> gap;                    ///< gap to a wall
 
   StepFindings() = default;
