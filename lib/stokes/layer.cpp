@@ -293,8 +293,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the weights of a rule on panel e, including area. If the panel contains the target and areas refer to the unstressed surface, the weights
-/// are cached.
+/// Returns the weights of a rule on panel e, area included. If the panel contains the target and the areas are unstressed areas, the weights are
+/// cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
@@ -337,7 +337,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   return kept;
 }
 
-/// Computes the Bernstein moments of panel e by a rule minus the moments of its far nodes.
+/// Computes the Bernstein moments of panel e by the rule `table`, minus the moments by the far nodes of the panel.
 void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const Panel& panel = surface_.panels[e];
   const NodeTable& t = *panel.table;

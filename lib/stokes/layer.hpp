@@ -65,7 +65,7 @@ struct Repetition {
 /// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only
 /// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
 /// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012, with a different flow.
+/// Mech. 696, 2012, who use another linear flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -167,8 +167,8 @@ class Layer {
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Return the number of kernel evaluations and the times of all calls so far. Times are divided into `setup`, `far`, `near`, `self` and `assembly`,
-  /// and further phases for a lattice or a wall.
+  /// Return the number of kernel evaluations and the computing times since construction. Times are divided into `setup`, `far`, `near`, `self` and
+  /// `assembly`, and further phases for a lattice or a wall.
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }
 
@@ -273,7 +273,7 @@ class Layer {
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each
-  std::vector<double> moment_[6];                                  // symmetric part of density times normal at the far nodes
+  std::vector<double> moment_[6];                                  // stresslet moments at the far nodes: symmetric part of density times normal
   std::vector<Pack> point_weights_, scratch_;
   Evaluations evaluations_;
   Phases phases_;

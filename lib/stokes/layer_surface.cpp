@@ -43,7 +43,7 @@ std::vector<double> shares(const spline::Space& space) {
 /// Returns the number of Gauss points per direction of the far rule for each element. Some elements are small compared with the distance of the
 /// surrounding targets: elements next to extraordinary points of Catmull-Clark surfaces, and bisected elements at T-junctions. They need fewer
 /// points, because the integrand is smoother on a small element and its part of the area is small. They keep enough points for half the digits of the
-/// tolerance, because the shape of elements next to extraordinary points requires these (tests/verify/layers.cpp).
+/// tolerance, because the shape of elements next to extraordinary points requires them (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;

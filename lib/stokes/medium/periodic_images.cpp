@@ -116,7 +116,7 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
 }
 
-/// Returns the sum over wave vectors k != 0 in (2.25), or the corresponding part of the stresslet (2.26).
+/// Returns the sum over wave vectors k != 0 in (2.25), or the corresponding sum for the stresslet (2.26).
 std::vector<double> PeriodicKernel::waves(const std::array<std::vector<double>, 3>& s) const {
   using Complex = std::complex<double>;
   using Matrix = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic>;

@@ -1,5 +1,5 @@
 #pragma once
-// Selects the panels on which a target needs a near-singular quadrature rule, and their rules.
+// Selects the panels on which a target needs a near-singular quadrature rule, and selects this rule.
 
 #include <map>
 #include <span>

@@ -45,7 +45,7 @@ class SelfField {
   /// Discards all stored weights.
   void forget_weights();
 
-  /// Returns the value at site i of the field with these Bezier points, and its derivatives with respect to s and t, on its first panel.
+  /// Returns the value at site i of the field with the Bezier points `bezier`, and its derivatives with respect to s and t, on its first panel.
   Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
   std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
 
