@@ -65,7 +65,7 @@ struct Repetition {
 /// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only
 /// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
 /// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012, who use another linear flow.
+/// Mech. 696, 2012, where the flow is a different one.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
