@@ -180,7 +180,7 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Draws random positions one by one and discards those too close to an earlier one.
+/// Draws random positions one by one and discards positions that are too close to an earlier one.
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));

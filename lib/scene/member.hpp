@@ -68,7 +68,7 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
 bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
-/// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
+/// Returns the mesh with the edges stored in the checkpoint, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});
 
 }  // namespace tanktread

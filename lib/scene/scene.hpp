@@ -87,7 +87,7 @@ struct ContactOptions {
   bool limiter = false;  ///< true if contact forces keep the gaps between particles at `limit` or above
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the R_C of the smallest particle
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the smallest radius R_C
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;
@@ -97,7 +97,7 @@ struct ContactOptions {
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
-  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, whose options are in the base class
+  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, with its options in the base class
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
@@ -128,7 +128,7 @@ struct Scene : ParticleKind {
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
-  void reject_power(Rejections& to) const;  ///< adds the choices with which the power balance (6.11) of all particles is not available
+  void reject_power(Rejections& to) const;  ///< adds the choices that exclude the power balance (6.11) of all particles
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
   /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
@@ -138,8 +138,8 @@ struct Scene : ParticleKind {
                                                                            ///< combinations
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does
-  /// not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
+  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body. Such a
+  /// scene does not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
   bool in_system() const {
     if (only_solids) return false;
     return !particles.empty() || !name.empty() || !particle.rigid() || (domain.present && !tube.present) || output.power_balance || !runs_in_time() ||

@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// Returns the directions in which the mean velocity over the cell is not prescribed (2.46).
+/// x
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)

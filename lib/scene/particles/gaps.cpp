@@ -159,7 +159,7 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another one, which the gap between their surfaces does not show.
+/// Throws UserError if one particle is inside another one. The gap between their surfaces does not show this.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);

@@ -46,7 +46,7 @@ void add_centroid(const Vec3& centroid, Columns& to) {
           "component # of the position of the particle's centroid; in a tube, x1 is the distance travelled since the start"});
 }
 
-/// Returns the cosine of the angle between y and the first direction of the plane.
+/// Returns the cosine of the angle between the vector y and the first direction of the plane.
 double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
 
 /// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
@@ -245,7 +245,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
       const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
       if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
     }
-    if (nearest < 0.5) continue;  // skips elements whose points are all more than about 60 degrees off the direction (0.5 is the cosine)
+    if (nearest < 0.5) continue;  // skips elements with all points more than about 60 degrees off the direction (0.5 is the cosine)
     for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
       if (const double here = of(site); here > most + 1e-12) best = site, most = here;
   }
