@@ -118,8 +118,8 @@ class Layer {
   /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
-  /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
-  /// panel, 6 per Bernstein polynomial of the panel.
+  /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
+  /// they are stored as moments: 6 per Bernstein polynomial of the panel.
   struct Near {
     std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of its close panels begins
     std::vector<int> panels;
@@ -144,7 +144,7 @@ class Layer {
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
-  /// Adds the images that are not near (PeriodicSum) of a periodic single layer to the rows of `a`, which are assembled rows at `sites`.
+  /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles the rows at `sites` of the contribution of the images in the plane wall only.

@@ -57,7 +57,7 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
 }
 
 /// Returns the number of far nodes above which clusters are faster. It is about twice the number of kernel evaluations per target that clusters need
-/// on a large surface, which grows with the square of the number of digits of the tolerance. Measured (tests/benchmark/growth.cpp).
+/// on a large surface. That number grows with the square of the number of digits of the tolerance. Measured (tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 
 }  // namespace

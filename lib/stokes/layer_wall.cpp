@@ -37,8 +37,8 @@ void Layer::set_wall(const PlaneWall& wall) {
   measure_.reset();
 }
 
-/// Adds the far sum over the images in the wall. For a double layer this is sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) over the nodes k. T^I is the
-/// kernel of the images, m the mean of the density f, and f0 the density at the target, which is subtracted from f.
+/// Adds the far sum over the images in the wall. For a double layer this is sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) over the nodes k, with the
+/// image stresslet T^I (2.36), the mean m of the density f, and the constant f0 that is subtracted from f at the target.
 void Layer::add_images(const Targets& targets, Net& u) {
   {
     const auto clock = phases_.time("images in the wall");

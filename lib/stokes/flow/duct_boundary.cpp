@@ -92,7 +92,7 @@ OutlineSpace::OutlineSpace(const Outline& outline, int elements) : outline_(outl
   }
 }
 
-/// Adds an element. `knots`: the eight knots around the element, which lies between the fourth and the fifth knot.
+/// Adds an element. `knots`: the eight knots around the element. The element lies between the fourth and the fifth knot.
 void OutlineSpace::add_element(int side, double begin, double end, const std::array<int, 4>& functions,
                                const std::array<double, 8>& knots) {
   OutlineElement element{side, begin, end, functions, {}};
@@ -295,7 +295,7 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
 /// integral is the sum over the nodes j; its term at j = i is the increment dF_i = dv_c + i q dl of F along the node's length. Only psi is changed,
 /// not v_c:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
-/// The coefficients of psi in this sum are smooth, so that the error of the spline, which alternates in sign from knot to knot, averages out.
+/// The coefficients of psi in this sum are smooth, so that the error of the spline averages out: it alternates in sign from knot to knot.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {
   using Complex = std::complex<double>;
   const std::size_t n = x_.size();

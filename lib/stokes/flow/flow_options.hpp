@@ -51,7 +51,7 @@ struct FlowOptions {
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
   /// - `quiescent` between two plates: difference of the plates' velocities divided by the plates' distance; if the velocities do not differ, half
   ///   of the shear rate on the plates due to the pressure gradient;
-  /// - `uniform`, `quiescent` without two plates, and `duct`, for which the speed is used instead: 0;
+  /// - 0 for `uniform`, `quiescent` without two plates, and `duct`, because the speed is used instead;
   /// - a user-defined type: its own rate; any other type: the shear rate.
   double rate() const;
 

@@ -133,8 +133,8 @@ bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
 }
 
 /// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation of the panel is therefore reduced
-/// by the height of the bulge, which costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface
-/// needs no such reduction.
+/// by the height of the bulge. This costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs
+/// no such reduction.
 quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
   if (!across) return quadrature::sight(view.flat, target);
   const double height = (target - view.flat.centre).dot(view.normal);

@@ -62,7 +62,7 @@ class NearField {
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
-  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from it beyond which the far rule suffices
+  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from the centre beyond which the far rule suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)

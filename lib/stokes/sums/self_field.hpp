@@ -30,8 +30,8 @@ struct SelfPair {
   double s = 0, t = 0;
 };
 
-/// All pairs of a site and a panel that contains it, for a set of sites, and the polar rules that the pairs share: one rule for each position on a
-/// panel, degree and rounded metric.
+/// All pairs of a site and a panel that contains it, for a set of sites. The pairs share polar rules: one rule for each combination of position on
+/// the panel, degree and rounded metric.
 class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);
