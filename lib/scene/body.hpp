@@ -75,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if body() can copy the mesh and the resting shape of one scene's particle for the other scene.
+/// Returns true if the particles of the two scenes have the same mesh and resting shape, so that body() can copy them.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.

@@ -24,7 +24,7 @@ void check_fit(const Scene& scene, const Body& body);
 /// particles or its period is too long.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
-/// Returns the tube around `body`, the stacked body of all particles of the scene; null if there is no tube.
+/// Returns the tube around `body`, the body of all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.

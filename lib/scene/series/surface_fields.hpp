@@ -89,7 +89,7 @@ class SurfaceFields {
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns, for each node, the lattice vector that moves the particle of the node so that the mean of its control points is in the cell around the
+/// Returns one lattice vector per node. It moves the particle of the node so that the mean of the particle's control points is in the cell around the
 /// origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 
