@@ -9,8 +9,8 @@
 
 namespace tanktread::stokes {
 
-/// Velocity in the fluid due to a plane end of a channel, through which the duct flow u(y2, y3) passes in the direction `along`, without the
-/// contribution of the pressure at the end:
+/// Velocity in the fluid due to a plane end of a channel, without the contribution of the pressure at the end. The duct flow u(y2, y3) passes through
+/// the end in the direction `along`:
 ///
 ///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
 ///

@@ -76,8 +76,8 @@ class PeriodicKernel {
   /// components with j != k are doubled.
   int components() const { return kind_ == Kind::stokeslet ? 6 : 18; }
 
-  /// Returns the sum on a grid of positions s = (s[0][k_0], s[1][k_1], s[2][k_2]): component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2, with
-  /// n_d the size of s[d].
+  /// Returns the sum at all positions s = (s[0][k_0], s[1][k_1], s[2][k_2]) of a grid. Component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2,
+  /// where n_d is the size of s[d].
   std::vector<double> values(const std::array<std::vector<double>, 3>& s) const;
 
  private:

@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns which images count as near: for each lattice vector, the largest number of steps along it. Also returns the distance of the nearest other
-/// image. For any two points in the box, this distance is at least about `far` box lengths.
+/// Returns how many images are near: all images up to this number of steps along each lattice vector, in both directions. Also returns the distance
+/// of the nearest of all other images. For any two points in the box, this distance is at least about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};

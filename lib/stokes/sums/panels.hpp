@@ -23,7 +23,7 @@ struct Panel {
   std::size_t first_point = 0;       ///< index of the first of its m control-point indices
   std::size_t first_extraction = 0;  ///< index of the first entry of the element's extraction matrix, shape (m, n_bernstein), stored row by row
   std::size_t first_bezier = 0;      ///< index of the first of its 3 n_bernstein Bezier coordinates
-  int first_node = 0;                ///< index of the first of its far nodes
+  int first_node = 0;                ///< index of the first far node of the panel among the far nodes of all panels
 };
 
 /// All panels of a space. The far rule of element e has `orders[e]` Gauss points per direction.
