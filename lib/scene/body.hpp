@@ -75,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if the particles of the two scenes have the same mesh and resting shape, so that body() can copy them.
+/// Returns true if body() can copy the mesh and the resting shape of the particle of one scene to the particle of the other.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.
