@@ -40,7 +40,7 @@ std::string FlowPlane::description() const {
 FlowPlane plane_normal_to(Vec3 normal) {
   normal.normalize();
   for (double& component : normal)
-    if (std::abs(component) < 1e-12) component = 0;  // removes round-off, so that coordinate planes have exactly their normals
+    if (std::abs(component) < 1e-12) component = 0;  // removes round-off, so that normals along a coordinate axis are exact
   const Vec3 first = std::abs(normal[0]) < 1 - 1e-9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 a = (first - normal * normal.dot(first)).normalized();
   Vec3 b = a.cross(normal).normalized();
@@ -56,8 +56,8 @@ FlowPlane plane_normal_to(Vec3 normal) {
 FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   if (flow.type != "linear" || flow.gradient->isZero(0)) return {};
   const Mat3& l = *flow.gradient;
-  // Matrix of the quadratic form |L n|^2 + |L^T n|^2 of a unit vector n, with the velocity gradient L. The form is zero if the velocity neither
-  // changes along n nor has a part along n.
+  // Matrix of the quadratic form |L n|^2 + |L^T n|^2 of a unit vector n, where L is the velocity gradient. The form is zero if the velocity has no
+  // component along n and does not change along n.
   const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());
   const Vec3 values = varies.eigenvalues();
   if (values[0] < 1e-12 * values[2]) return plane_normal_to(varies.eigenvectors().col(0));

@@ -52,7 +52,7 @@ struct Body {
   std::shared_ptr<const spline::Space> plain;
   Net rest;        ///< control net of the resting shape
   Net initial;     ///< control net of the shape at the start of the run
-  Net unstressed;  ///< control net of the unstressed shape, which is smaller by the pre-inflation
+  Net unstressed;  ///< control net of the unstressed shape: the stress-free shape, shrunk by the pre-inflation
   stokes::AmbientFlow flow;
   FlowPlane plane;     ///< plane in which the Taylor parameter D and tank-treading are measured
   membrane::Law law;
@@ -61,14 +61,13 @@ struct Body {
   /// and does not change if the mesh changes.
   double volume = 0;
   double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
-  double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by R_C
-  double modulus = 1;  ///< G_s, or the surface tension sigma of an interface
-  surface::Symmetry symmetry;                       ///< symmetry that the scene and the particle, at all times, have in common
+  double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
+  double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
+  surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
   std::shared_ptr<const stokes::DuctFlow> duct;     ///< duct flow of the tube, if there is one
   std::shared_ptr<const surface::TubeWall> wall;
 
-  /// Returns the space that is nested: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this
-  /// space.
+  /// Returns the nested space: on a refined mesh it contains the space on the coarser mesh. Fields are transferred between meshes in this space.
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
@@ -76,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if body() can copy the mesh and the resting shape of one scene's particle for the other scene.
+/// Returns true if body() can copy the mesh and the resting shape of the particle of one scene to the particle of the other.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.
@@ -89,8 +88,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 /// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
-/// Returns whether the load is a density per reference or per current area. For a drop, which has no unstressed state, and for the strong form it is
-/// always per current area.
+/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and for the
+/// strong form.
 stokes::Measure load_measure(const Scene& scene);
 
 }  // namespace tanktread

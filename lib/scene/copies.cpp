@@ -65,8 +65,8 @@ class Packing {
     Vec3 image;  // lattice vector that is added to the neighbour's centre to get its nearest image
   };
 
-  /// Lists, for each sphere, the spheres that it may overlap before any sphere has moved by the skin, an additional search distance. Keeps the
-  /// previous lists until a sphere has moved by half the skin.
+  /// Lists for each sphere the spheres that it may overlap as long as no sphere has moved by more than the distance `skin_`. Keeps the previous lists
+  /// until a sphere has moved by half of `skin_`.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());
@@ -93,7 +93,7 @@ class Packing {
     PackedSphere &a = spheres_[i], &b = spheres_[other.number];
     const Vec3 between = apart(i, other);
     const double distance = between.norm(), least = least_distance(a, b);
-    if (distance >= least || (a.fixed && b.fixed)) return true;  // check_apart tests the surfaces of particles that cannot be moved
+    if (distance >= least || (a.fixed && b.fixed)) return true;  // spheres that must not move count as apart; check_apart tests their surfaces
     const Vec3 direction = distance > 1e-12 * least ? Vec3(between / distance) : direction_at_random();
     const double all = clear * least - distance, of_a = a.fixed ? 0 : b.fixed ? 1 : 0.5;
     a.centre -= of_a * all * direction;
@@ -171,7 +171,7 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   return copies;
 }
 
-/// Returns the copies on a lattice about the origin.
+/// Returns the copies on a lattice whose centre is the origin.
 std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   std::vector<Copy> copies;
   for (int i = 0; i < counts[0]; ++i)
@@ -180,7 +180,7 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Draws random positions one by one and discards those too close to an earlier one.
+/// Draws random positions one by one and discards positions that are too close to an earlier one.
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
@@ -291,8 +291,8 @@ void CopiesOptions::check(const std::string& list, bool cell) const {
 
 namespace {
 
-/// Returns the copies of all kinds. The copies at random positions in the cell, of all kinds, are moved by one call of pack() until they do not
-/// overlap.
+/// Returns the copies of every kind of particle. Copies at random positions in the cell, of all kinds together, are moved by one call of pack() until
+/// no two of them overlap.
 std::vector<std::vector<Copy>> all_places(const std::vector<ParticleKind>& kinds, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<std::vector<Copy>> all;
   std::vector<PackedSphere> taken;

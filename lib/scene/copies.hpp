@@ -32,14 +32,14 @@ inline double least_distance(const PackedSphere& a, const PackedSphere& b) { ret
 
 /// Moves spheres from arbitrary positions to an arrangement in which none overlaps another one or an image, distributed as hard spheres in thermal
 /// equilibrium. First, overlapping pairs are pushed apart until none overlap (after Jodrey & Tory 1985). Then all take random steps, and steps that
-/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres it works up to a volume fraction of about 0.6, gaps included. Returns
-/// false if the overlaps cannot be removed.
+/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres, pack() succeeds up to a volume fraction of about 0.6, gaps included.
+/// Returns false if overlaps remain.
 bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed);
 
 struct ParticleKind;
 
-/// `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The particle's orientation is applied
-/// before a copy's own.
+/// Options `Particles/<name>/copies`. Positions from file, lattice and packing are relative to the particle's centre. The orientation of the particle
+/// is applied first, then the orientation of the copy.
 struct CopiesOptions {
   std::optional<std::string> file;    ///< CSV file: per row a centre, and optionally a rotation vector in degrees
   std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3
@@ -47,7 +47,8 @@ struct CopiesOptions {
   std::optional<int> number;          ///< number of copies placed at random
   std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
-  /// Radius of the ball that contains all copies. Without box and ball, copies at random fill the periodic cell of a lattice with three directions.
+  /// Radius of the ball that contains all copies. Without `box` and `ball`, copies at random positions fill the periodic cell. This requires three
+  /// periods.
   std::optional<double> ball;
   double least_gap = 0.05;            ///< least gap between the circumscribed spheres of two copies, divided by the larger radius
   int seed = 1;
@@ -57,7 +58,7 @@ struct CopiesOptions {
   bool random() const { return number || volume_fraction; }
   bool in_cell() const { return random() && !box && !ball; }
 
-  /// Throws UserError, with one sentence, if keys contradict each other. `cell`: true if the lattice has three directions.
+  /// Throws UserError if keys contradict each other. The message is one sentence. `cell`: true if the lattice has three directions.
   void check(const std::string& list, bool cell) const;
 };
 

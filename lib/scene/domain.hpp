@@ -37,7 +37,7 @@ struct DomainOptions {
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
-  /// Returns whether the flow, with the amplitude 1 (without its history in time), changes the lattice vectors.
+  /// Returns whether the flow at amplitude 1 changes the lattice vectors. The time dependence `Flow/history` is not considered.
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;
@@ -49,13 +49,13 @@ struct DomainRow {
   Mat3 cell = Mat3::Zero();  ///< lattice vectors of the cell as columns
   double volume_fraction = 0, relative_viscosity = 1;
   Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
-  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< S_aa - S_bb and S_bb - S_cc of `stress` S; a, b: axes in the plane of the
-                                                                        ///< flow, c: normal
+  Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S =
+                                                                        ///< `stress`. Axes a and b are in the plane of the flow, c is its normal
   Vec3 pressure_gradient = Vec3::Zero();
 
-  /// Computes all members except `cell` (6.9), (6.10) from the total volume and stresslet of all particles and their total force on the fluid. `of`:
-  /// periodic cell. `plane`: axes of the plane of the flow, as rows. `gradient`: velocity gradient of the flow at this time. The relative viscosity
-  /// is NaN if the flow does not strain at this time.
+  /// Computes all data except `cell`, by (6.9) and (6.10), from the total volume, the total stresslet and the total force of the particles on the
+  /// fluid. `of`: periodic cell. `plane`: axes of the plane of the flow, as rows. `gradient`: velocity gradient of the flow at this time. The
+  /// relative viscosity is NaN if the rate of strain is zero at this time.
   void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
                   const Vec3& force);
 

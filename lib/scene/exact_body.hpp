@@ -22,8 +22,8 @@ struct ExactBody {
   Vec3 force() const;   ///< returns the force on the body
   Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// Return the pressure p = -t.n up to a constant (t: traction on the body) and the unit normal, at the point of the exact surface in the direction
-  /// of x from the centre.
+  /// Return quantities at the point of the exact surface in the direction of x from the centre: the pressure p = -t.n up to a constant, with t the
+  /// traction on the body, and the unit normal.
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
@@ -37,7 +37,7 @@ struct ExactBody {
 /// Returns the motion given by `Particle/velocity` and `Particle/angular velocity`.
 coupling::RigidMotion prescribed_motion(const Scene& scene);
 
-/// Returns the exact solution of a body with prescribed motion; nothing if none is known: for another shape, a flow with strain, a tube or a wall.
+/// Returns the exact solution of a body with prescribed motion. Returns nothing for other shapes, a flow with strain, a tube or a wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
 /// Errors of the force density f on the fluid (control values) and of the normal n_h of the numerical surface, whose control net is `surface`.

@@ -41,7 +41,8 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-/// Throws UserError if the run's mesh options differ from the scene's or, if the mesh adapts, its resting shape. Material properties may differ.
+/// Throws UserError if the mesh options of the run and the scene differ or, if the mesh adapts, their resting shapes differ. Material properties may
+/// differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene before(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
@@ -53,14 +54,14 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
-/// Returns the shape of a run. The rows of x after the shape, if any, are coefficients of the surfactant.
+/// Returns the shape in the last state of a run. The rows of x after the shape, if any, are coefficients of the surfactant.
 Net shape_of(const output::Checkpoint& run) {
   const Eigen::MatrixXd& x = run.arrays.at("x");
   const auto alone = run.arrays.find("unstressed");
   return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
 }
 
-/// Returns a mode from the Spectrum of a run, as a displacement of its control points.
+/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the control points.
 Net mode_of_run(const output::Checkpoint& run, int number) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
   if (found == run.arrays.end())

@@ -1,5 +1,6 @@
 #pragma once
-// Initial shape of a run, if it is not the resting one: Particle/initial shape; and the stress-free shape of the membrane.
+// Initial shape of a run (Particle/initial shape), and stress-free shape of the membrane. Both are the resting shape if the deck gives no other
+// shape.
 
 #include <optional>
 
@@ -13,8 +14,8 @@ namespace tanktread {
 /// if its surface differs from the scene's.
 std::optional<output::Checkpoint> run_before(const Scene& scene);
 
-/// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: result of run_before, or null. Throws
-/// UserError if a file or run holds another surface.
+/// Returns the control net of the initial shape on the body's mesh; by default the resting shape. `before`: checkpoint that run_before() returned, or
+/// null. Throws UserError if the file or checkpoint holds another surface.
 Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before);
 
 /// Returns the control net of the membrane's stress-free shape on the body's mesh, before any pre-inflation; by default the resting shape. Throws

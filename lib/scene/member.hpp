@@ -25,7 +25,7 @@ struct Member {
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
   std::shared_ptr<const membrane::Membrane> membrane;
-  spline::Place place;    ///< material point whose phase angle is recorded, as a parametric point of Body::nested()
+  spline::Place place;    ///< material point whose phase angle is recorded; a parametric point of Body::nested()
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 
@@ -50,12 +50,12 @@ void follow(Member& member);
 /// Sets the blocks (rows in the nets of all particles), the geometries and the membranes of all members. Their bodies must exist.
 void arrange(std::vector<Member>& members);
 
-/// Returns one body that stands for all members: its nets are the nets of the members one below the other, its radius is the largest R_C, and its
-/// volume is the total volume. Returns null if there is only one member.
+/// Returns one body that represents all members: its nets are the stacked nets of the members, its radius is the largest R_C, and its volume is the
+/// total volume. Returns null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
 /// Builds the coupled system of all members, in a tube or among plates and posts if there are any, with only the operators that they need. `all`:
-/// their common space and nets.
+/// body of all members (see stacked_body).
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);
@@ -68,7 +68,7 @@ std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& memb
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
 bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
-/// Returns the mesh whose edges the checkpoint holds, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
+/// Returns the mesh with the edges stored in the checkpoint, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});
 
 }  // namespace tanktread

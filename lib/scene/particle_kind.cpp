@@ -116,8 +116,8 @@ struct InterfaceList {
 void ParticleKind::declare_lists(deck::Section& section) {
   surface.of_cylinder = particle.shape.shape == "cylinder";
   const bool deforms = !particle.rigid() && !surface.of_cylinder;
-  if (!deforms) section.leave_out("Membrane");  // removes keys of Membrane that come from sections shared by particles: a particle without a membrane
-                                                // ignores them
+  if (!deforms) section.leave_out("Membrane");  // removes the keys of Membrane that come from sections shared by several particles, because a
+                                                // particle without a membrane ignores them
   membrane_given = section.given("Membrane");
   if (MembraneList list{*this}; deforms || membrane_given)
     section.section("Membrane", list, "mechanical properties of the particle's membrane or interface");

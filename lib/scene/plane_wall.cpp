@@ -17,7 +17,7 @@ Vec3 nearest(const stokes::PlaneWall& wall, const spline::Space& space, const Ne
   return wall.point() + wall.axes().transpose() * surface::lowest(surface::Patches(map, own), 2);
 }
 
-/// Returns the data of the particle with this number for the wall that is nearest to it.
+/// Returns the data of one particle for the wall that is nearest to it. `number`: number of the particle in the deck, from 1.
 WallRow row_of(std::span<const stokes::PlaneWall> walls, const spline::Space& space, const Net& x, int number) {
   WallRow row;
   for (const stokes::PlaneWall& wall : walls)

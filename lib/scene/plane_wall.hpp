@@ -22,7 +22,7 @@ struct WallRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the smallest gap to the walls and where it is, for the shapes x of all particles or of one body.
+/// Returns the smallest gap to the walls and its position, for the shapes x of all particles or of one body.
 WallRow wall_row(std::span<const stokes::PlaneWall> walls, const std::vector<Member>& members, const Net& x);
 WallRow wall_row(std::span<const stokes::PlaneWall> walls, const Body& body, const Net& x);
 

@@ -15,20 +15,20 @@ struct Scene;
 
 /// A circular cylinder along a periodic direction, at rest. One period of the cylinder is in the cell.
 struct Post {
-  std::string name;  ///< name of its section in Particles; empty for a single one
+  std::string name;  ///< name of the post's section in Particles; empty if the deck has only one particle
   double radius = 1;
-  int axis = 0;  ///< index of the coordinate axis that the post is parallel to
+  int axis = 0;  ///< index of the coordinate axis parallel to the post
   Vec3 center = Vec3::Zero();
   int around = 24;           ///< number of elements around it
-  std::optional<int> along;  ///< number of elements along its period
+  std::optional<int> along;  ///< number of elements of the post along its period
 
-  std::string path(const std::string& key = {}) const;  ///< returns the path of its section or of a key in it, for messages
+  std::string path(const std::string& key = {}) const;  ///< returns the path of the post's section or of a key in it, for messages
 };
 
 /// Returns the lattice vector along the axis of a post, units length; zero if there is none.
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
-/// Moves the cylinders from the particles of a scene to its posts. Also sets whether the walls are plates, in the options of wall and flow, and the
+/// Moves the cylinders from the particles of a scene to its posts. Sets in the options of wall and flow whether the walls are plates. Sets the
 /// default of Adaptation/film resolution if the scene has a wall, tube or lattice. Throws UserError if a cylinder has keys that only particles have.
 void take_posts(Scene& scene);
 

@@ -12,7 +12,7 @@ namespace tanktread {
 
 namespace {
 
-/// Adds the choices with which user-defined loads, fields, series and flows are not available.
+/// Adds the choices that exclude user-defined loads, fields, series and flows.
 void reject_registered(const Scene& scene, Rejections& to) {
   const Chosen flow(scene.flow.choice(), "Flow/type of an added flow"), motion(scene.particle.choice(), "Particle/motion `prescribed` or `free`");
   const bool alone = !scene.in_system();

@@ -286,9 +286,10 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// For Solvers/rigid bodies `auto`, chooses `first kind` (tractions) for two or more bodies with up to 4500 unknowns. To resolve a film of a tenth of
-/// the radius between bodies, it needs a third of the control points of `second kind`, and factorising up to 4500 unknowns takes less time than the
-/// iterations on the finer mesh. One body beside a drop of viscosity ratio 5 errs nearly as much by either, and takes twice the time by tractions.
+/// Returns true if rigid bodies are solved for by tractions (`first kind`). `auto` selects `first kind` for two or more bodies with up to 4500
+/// unknowns. To resolve a film of a tenth of the radius, `first kind` needs a third of the control points of `second kind`; factorising up to 4500
+/// unknowns is faster than iterating on the finer mesh. For one body beside a drop of viscosity ratio 5, both have nearly the same error, and `first
+/// kind` takes twice the time.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";

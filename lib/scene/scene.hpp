@@ -83,12 +83,11 @@ struct ParticleKind {
 
 /// Options `Contact/*` of the deck: contacts between several particles or periodic images.
 struct ContactOptions {
-  double limit = 1e-3;  ///< smallest allowed gap, divided by the R_C of the smallest particle
-  bool limiter = false;  ///< true if forces between the particles keep the gaps at this limit
+  double limit = 1e-3;  ///< smallest allowed gap, divided by the radius R_C of the smallest particle
+  bool limiter = false;  ///< true if contact forces keep the gaps between particles at `limit` or above
 
   static constexpr double slack = 1e-2;  ///< fraction of `limit` by which gaps adjacent to a contact may be smaller than `limit`
-  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap divided by the R_C of the smallest particle; the run ends if a gap is
-                                                                        ///< smaller
+  double end() const { return (limiter ? 1 - 2 * slack : 1) * limit; }  ///< gap below which the run ends, divided by the smallest radius R_C
 
   void declare(deck::Section& section);
   void reject(const Scene& scene, Rejections& to) const;
@@ -98,12 +97,12 @@ struct ContactOptions {
 struct Scene : ParticleKind {
   stokes::FlowOptions flow;
   std::shared_ptr<const deck::Units> units;  ///< units of the deck's values; null if the deck does not set them
-  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, whose options are in the base class
+  std::vector<ParticleKind> particles;  ///< sections Particles/<name>; if empty, the scene has one particle, with its options in the base class
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
   std::vector<Post> posts;    ///< cylinders among the particles of the deck, in their order
-  bool only_solids = false;   ///< true if all particles of the deck are posts, so that nothing moves
+  bool only_solids = false;   ///< true if all particles of the deck are posts; then nothing moves
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
   quadrature::Options quadrature;
@@ -129,9 +128,9 @@ struct Scene : ParticleKind {
   /// Throws UserError if options of one or several sections contradict each other, or if the problem is too large.
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of choices that the program rejects in a scene with one particle
-  void reject_power(Rejections& to) const;  ///< adds the choices with which the power balance (6.11) of all particles is not available
+  void reject_power(Rejections& to) const;  ///< adds the choices that exclude the power balance (6.11) of all particles
   bool runs_in_time() const { return !spectrum.present && !steady.present && !periodic.present; }  ///< false for searches and spectra
-  /// Returns the section of the deck that replaces the simulation in time.
+  /// Returns the section of the deck (Steady, Periodic or Spectrum) that replaces the simulation in time.
   Chosen sought() const { return {steady.present ? "Steady" : periodic.present ? "Periodic" : "Spectrum", "Steady, Periodic or Spectrum"}; }
   Chosen flow_choice() const { return {flow.choice(), "Flow/type"}; }       ///< returns the type of the flow, for messages about rejected
                                                                             ///< combinations
@@ -139,8 +138,8 @@ struct Scene : ParticleKind {
                                                                            ///< combinations
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body, which does
-  /// not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
+  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body. Such a
+  /// scene does not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
   bool in_system() const {
     if (only_solids) return false;
     return !particles.empty() || !name.empty() || !particle.rigid() || (domain.present && !tube.present) || output.power_balance || !runs_in_time() ||
@@ -151,14 +150,15 @@ struct Scene : ParticleKind {
 
   /// Returns one scene for each particle, with the options of this particle only.
   std::vector<Scene> alone() const;
-  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions (2.40): Solvers/rigid bodies
+  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions, the integral equation of the first kind (2.40)
 
-  bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem: `Particle/forces`, or its default
+  bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
-  double least_radius() const;       ///< smallest R_C of all particles, by which gaps are divided
+  double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
   double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time
-  double speed() const;              ///< speed in Ca: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without gradient
-  double modulus() const;            ///< G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
+  double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
+                                     ///< gradient
+  double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
   bool viscous_membrane() const { return !particle.rigid() && membrane.viscosity.any(); }
   bool maxwell_membrane() const { return viscous_membrane() && membrane.relaxation_time; }

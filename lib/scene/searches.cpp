@@ -15,8 +15,8 @@ namespace tanktread {
 
 namespace {
 
-/// Returns the conditions that the loads of all particles impose on a rigid motion with which they move (Load::rigid_conditions), one row per
-/// condition.
+/// Returns the conditions that a rigid motion of the particles must satisfy so that all their loads move with them (Load::rigid_conditions), one row
+/// per condition.
 membrane::RigidConditions conditions(std::span<const coupling::Particle> particles) {
   membrane::RigidConditions all(0, 6);
   for (const coupling::Particle& particle : particles)
@@ -133,8 +133,8 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
 
 namespace {
 
-/// Returns the number that the deck sets for the key at `path`. `of`: name, for the error message, of the key whose value is `path`, for example
-/// Continuation/parameter. Throws UserError if the deck has no such number.
+/// Returns the number that the deck sets for the key at `path`. `of`: key with the value `path`, for example Continuation/parameter, for the error
+/// message. Throws UserError if the deck has no such number.
 double number_of(const Scene& scene, const std::string& deck, const std::string& path, const std::string& of) {
   deck::Document read = deck::read_text(deck);
   Scene again = scene;

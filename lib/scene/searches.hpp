@@ -1,5 +1,5 @@
 #pragma once
-// Parts of a scene that searches for steady shapes, periodic motions and branches need: the rigid motions that the scene leaves free, the rule that
+// Data that searches for steady shapes, periodic motions and branches need from a scene: the rigid motions that the scene leaves free, the rule that
 // holds a particle's centre, the step of a search, and the parameters of a branch.
 
 #include <array>
@@ -17,7 +17,8 @@
 namespace tanktread {
 
 /// Returns the rigid motions about the origin that leave the problem invariant: the Lie derivative of the flow along them is 0, the walls do not
-/// change, and the loads of all particles move with them. `size`: length scale of the particles, R_C. Q of (4.17) projects onto these motions.
+/// change, and the loads of all particles move with them. In (4.17), Q is the projector onto these motions. `size`: length scale of the particles,
+/// R_C.
 std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes::AmbientFlow& flow, double size,
                                                 std::span<const coupling::Particle> particles);
 
@@ -35,14 +36,14 @@ double steady_step(const Scene& scene);
 bool holds_centre(const Scene& scene);
 
 /// Moves the state so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an affine flow with
-/// gradient L, v(x + c) = v(x) + L c for any shape. So if x(t) is a motion, x(t) + c(t) with dc/dt = L c is one too; a time s earlier the
-/// displacement was exp(-L s) c.
+/// gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is therefore also a motion, and a time s
+/// earlier its displacement was exp(-L s) c.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
-/// Values of Continuation/parameter and of the second parameter, 0 if there is none.
+/// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;
 
-/// Returns the settings `Section/key=value` of these values of Continuation/parameter and the second parameter.
+/// Returns the settings `Section/key=value` for these values of Continuation/parameter and of the second parameter.
 std::vector<std::string> settings_of(const motion::ContinuationOptions& branch, const Parameters& values);
 
 /// Returns the parameter values at the start of the branch. Throws UserError if a parameter is not a number of the deck.

@@ -21,7 +21,7 @@ int elements_along(const Post& post, const Vec3& period) {
 
 Vec3 lattice_vector(const stokes::PeriodicCell& cell, int d) { return cell.vectors().col(d); }
 
-/// Returns the plates, each with the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
+/// Returns the plates. Each plate moves at the velocity of the ambient flow on it, because the ambient flow satisfies no-slip on the plates.
 std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell& cell, const stokes::AmbientFlow& flow) {
   std::vector<Solids::Solid> all;
   for (const stokes::PlaneWall& wall : scene.wall.planes()) {
@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// Returns the directions in which the mean velocity over the cell is not prescribed (2.46).
+/// x
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
@@ -135,7 +135,7 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
     row.mean_velocity = ambient.velocity(Vec3::Zero()) + flow.drift;
   } else {
     const Vec3& n = of.planes.front().normal();
-    Vec3 across = particle_force;  // force of particles and posts on the fluid; only its component along n is used
+    Vec3 across = particle_force;  // force of particles and posts on the fluid; only its component along the wall normal n is used
     for (std::size_t k = of.planes.size(); k < forces.size(); ++k) across += forces[k];
     const Vec3 each = n.dot(across) / static_cast<double>(of.planes.size()) * n;
     const auto on_wall = [&](std::size_t k) -> Vec3 {
@@ -153,8 +153,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const S
       row.mean_velocity += carried / volume;
     }
   }
-  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside
-                                                          // the post. Its force and its flow rate are removed here.
+  for (std::size_t k = 0; k < scene.posts.size(); ++k) {  // In the integral equation, the pressure gradient also drives a fictitious flow inside the
+                                                          // post. The force and the flow rate of this fictitious flow are removed here.
     const Post& post = scene.posts[k];
     const Vec3 along = Vec3::Unit(post.axis);
     const double section = std::numbers::pi * post.radius * post.radius, length = period_of(post, solids.cell()).norm(), slope = gradient[post.axis];

@@ -225,7 +225,7 @@ TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, dou
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
   if (wall.channel || wall.period > 0 || scene.particles.empty()) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
-  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // a distance of R_T must remain between the particles and each end, because
+  const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // a tube radius R_T must remain between the particles and each end, because
                                                                          // the disturbance decays over about R_T
   if (wall.length() < needed)
     throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "

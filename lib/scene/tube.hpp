@@ -14,7 +14,7 @@ namespace tanktread {
 /// (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
-/// Adds the choices that contradict a tube or channel, and those that require one.
+/// Adds the choices that contradict a tube or channel, and the choices that require one.
 void reject_with_tube(const Scene& scene, Rejections& to);
 
 /// Throws UserError, with the lengths that do not fit, if the scene has a tube and the particle does not fit into it.
@@ -24,7 +24,7 @@ void check_fit(const Scene& scene, const Body& body);
 /// particles or its period is too long.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
-/// Returns the tube around `body`, which contains all particles of the scene; null if there is no tube.
+/// Returns the tube around `body`, the body of all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.
@@ -48,8 +48,8 @@ double least_way(const Scene& scene, const Body& body, const Columns& row);
 /// wall traction then exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
-/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing in a
-/// channel, in a periodic tube, or for a single particle.
+/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing for a
+/// single particle, in a channel, or in a periodic tube.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 }  // namespace tanktread

@@ -24,13 +24,13 @@ struct WallOptions {
   std::optional<double> distance;                 ///< distance of a second plate along the normal
   std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the flow
   std::optional<int> elements_per_period;         ///< number of elements of a plate along the longest period
-  bool solid = false;         ///< true if the walls are plates in a periodic cell, whose tractions are solved for, and no image plane
-  double contact_gap = 1e-3;  ///< gap divided by R_C; the run ends if the gap is smaller
+  bool solid = false;         ///< true if the walls are plates in a periodic cell, solved for by their tractions; false if the wall acts by images
+  double contact_gap = 1e-3;  ///< gap divided by the radius R_C; the run ends if the gap is smaller
 
   void declare(deck::Section& section);
 
-  /// Throws UserError, with one sentence, if the normal is zero, if the flow is not tangential to the walls and uniform on them, or if the cell does
-  /// not repeat along both directions in the walls. `cell`: periodic cell of the scene, if any.
+  /// Throws UserError if the normal is zero, if the flow is not tangential to the walls and uniform on them, or if the cell does not repeat along
+  /// both directions in the walls. The message is one sentence. `cell`: periodic cell of the scene, if any.
   void check(const stokes::FlowOptions& flow, const std::optional<stokes::PeriodicCell>& cell) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the combinations of keys that a wall excludes

@@ -24,7 +24,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The tolerance of the clusters is halved for the double layer. The measured error of the double layer is half of this tolerance.
+  // The tolerance of the clusters is halved for the double layer. With it, the measured error of the double layer is half of the halved tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_.resize(sites.size());
@@ -67,7 +67,7 @@ void Layer::place(const Net& x, Measure measure) {
   if (images_) images_->place(surface_.node);
 }
 
-/// Multiplies values at the far nodes by the factors k (2.1) of the panels.
+/// Multiplies values at the far nodes by the factor k_p (2.1) of their panel.
 void Layer::scale(std::span<std::vector<double>> at_nodes) const {
   for (int e = 0; e < surface_.panels.size(); ++e)
     for (std::vector<double>& values : at_nodes)
@@ -189,9 +189,9 @@ void Layer::add_far(const Targets& targets, Net& u) {
   evaluations_.far += static_cast<long long>(images.size() * places.size()) * n_nodes();
 }
 
-/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. Both are reused if nothing has
-/// changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums belongs to image g of target k, where n is the
-/// number of targets.
+/// Sets the nodes and targets of the tree of clusters, and for a double layer computes sum_q T_ijk n_k at the targets. The tree and these sums are
+/// reused if the shape and the targets have not changed, because a Krylov solver applies the layer of one shape many times. Row k + g n of the sums
+/// belongs to image g of target k, where n is the number of targets.
 void Layer::place_tree(const Targets& targets) {
   std::vector<Vec3> at = far_targets(targets, targets.in_tree);
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
@@ -255,7 +255,7 @@ Vec3 Layer::mean_density() const {
   return mean;
 }
 
-/// Computes the moments moment_ = (f n + n f)/2 at the far nodes k, where f(k, component) is the density.
+/// Computes the stresslet moments moment_ = (f n + n f)/2 at the far nodes from the density f(node, component) and the weighted normals n = normal_.
 template <class Values>
 void Layer::take_moments_of(const Values& f) {
   for (int c = 0; c < 6; ++c) {
@@ -293,8 +293,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the weights of a rule on panel e, including area. If the panel contains the target and areas refer to the unstressed surface, the weights
-/// are cached.
+/// Returns the weights of a rule on panel e, area included. If the panel contains the target and the areas are unstressed areas, the weights are
+/// cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;
@@ -337,7 +337,7 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   return kept;
 }
 
-/// Computes the Bernstein moments of panel e by a rule minus the moments of its far nodes.
+/// Computes the Bernstein moments of panel e by the rule `table`, minus the moments by the far nodes of the panel.
 void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const Panel& panel = surface_.panels[e];
   const NodeTable& t = *panel.table;

@@ -57,15 +57,15 @@ struct Repetition {
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
 ///
 /// For a target on a surface, f(x0) is the density there, so that no principal value is needed. The contribution of the surface that contains the
-/// target equals k times the sum of the principal value and f/2. A rigid motion of all surfaces together gives 0. For a target off the surfaces,
+/// target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the surfaces,
 /// f(x0) is a constant given by the caller, by default 0. If the target is outside a closed surface, this constant does not change the result (2.3).
 ///
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
-/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's part of this sum. Its tolerance is
-/// relative to the surface of the panel. A row depends only on the shape, not on which other rows are requested. The rule `desingularised` uses only
+/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. Its tolerance is
+/// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only
 /// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
 /// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012, with a different flow.
+/// Mech. 696, 2012, where the flow is a different one.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -79,10 +79,10 @@ class Layer {
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
-  /// clusters, only the fundamental panels F are clustered, because the effect of the other panels on a target equals the effect of F on images of
-  /// the target:
+  /// clusters, it is computed as the sum u_F over the fundamental panels only. The sum over all panels then follows from u_F at the images g x_i of
+  /// each target x_i:
   ///
-  ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(signs)                                                      (2.19)
+  ///   u(x_i) = sum over images g of S_g u_F(g x_i),   S_g = diag(+-1)                                                         (2.19)
   void set_symmetry(const surface::Symmetry& symmetry);
 
   /// Sets the lattice `cell` on which the surfaces repeat, so that G and T become the kernels of PeriodicKernel. Must be called again when the cell
@@ -118,8 +118,8 @@ class Layer {
   /// Computes rows `sites` of u for the density with control values f. `u`: shape (number of all sites, 3).
   void apply(const Net& f, std::span<const int> sites, Net& u);
 
-  /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density: moments for each pair of a point and a close
-  /// panel, 6 per Bernstein polynomial of the panel.
+  /// Corrections of the far sum by near-singular quadrature at points off the surfaces, for any density. For each pair of a point and a close panel,
+  /// they are stored as moments: 6 per Bernstein polynomial of the panel.
   struct Near {
     std::vector<std::size_t> first;  ///< for each target, index in `panels` at which the list of its close panels begins
     std::vector<int> panels;
@@ -129,20 +129,22 @@ class Layer {
   /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
   Near near(const Net& at, std::span<const int> targets);
 
-  /// Computes rows `targets` of u, shape of `at`, at points off the surfaces, given by the rows of `at`. `kept`: near(at, targets), or null.
+  /// Computes the rows `targets` of u. The points x0 are the rows of `at` and are off the surfaces; u has the shape of `at`. `kept`: near(at,
+  /// targets), or null.
   void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Computes the double layer with constants `f0`, one row per point, subtracted from f. Outside a closed surface the result does not change (2.3),
-  /// but the integrand is smaller if f0 is the density nearby.
+  /// Computes the double layer after a constant, row k of `f0`, is subtracted from f for target k. Outside a closed surface the result does not
+  /// change (2.3), but the integrand is smaller if f0 is the density nearby.
   void apply(const Net& f, const Net& f0, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
-  /// Assembles A of u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3 targets, 3 N).
+  /// Assembles the matrix A of the layer potential u_i = sum_B A_iB f_B: three rows per target, in the order of `sites` or `targets`; shape (3
+  /// targets, 3 N).
   void assemble(std::span<const int> sites, Rows<float>& a);
   void assemble(std::span<const int> sites, Rows<double>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<float>& a);
   void assemble(const Net& at, std::span<const int> targets, Rows<double>& a);
 
-  /// Adds the images that are not near (PeriodicSum) of a periodic single layer to the rows of `a`, which are assembled rows at `sites`.
+  /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles the rows at `sites` of the contribution of the images in the plane wall only.
@@ -153,30 +155,30 @@ class Layer {
   /// near points of all its targets.
   void assemble(std::span<const int> sites, const NearPoints& near, std::vector<double>& entries);
 
-  /// Return the far nodes of the current shape: their number, positions, weights including area and k (single layer), and normals times area and k
-  /// (double layer).
+  /// Return the far nodes of the current shape: their number, positions, weights (single layer) and normals (double layer). Weights and normals
+  /// include the area of the node and the factor k_p of (2.1), (2.2).
   int n_nodes() const { return surface_.panels.n_nodes(); }
   const std::vector<double> (&nodes() const)[3] { return surface_.node; }
   const std::vector<double>& weights() const { return weight_; }
   const std::vector<double> (&normals() const)[3] { return normal_; }
 
-  /// Computes the values of a field at the far nodes. The second function is the transpose: it returns int N_A h dG of a function h for every spline
-  /// function N_A. `g`: h times area and quadrature weight at each far node.
+  /// Evaluate a field at the far nodes (`values`), or integrate a function h against each basis function, int N_A h dG (`moments`, the transpose of
+  /// `values`). `g`: h times area and quadrature weight at each far node.
   void values(const Net& field, std::vector<double> (&value)[3]);
   Eigen::VectorXd moments(const std::vector<double>& g) const;
 
-  /// Return the number of kernel evaluations and the times of all calls so far. Times are divided into `setup`, `far`, `near`, `self` and `assembly`,
-  /// and further phases for a lattice or a wall.
+  /// Return the number of kernel evaluations and the computing times since construction. Times are divided into `setup`, `far`, `near`, `self` and
+  /// `assembly`, and further phases for a lattice or a wall.
   const Evaluations& evaluations() const { return evaluations_; }
   const Phases& phases() const { return phases_; }
 
  private:
-  /// Targets of one evaluation of the layer, and their positions.
+  /// Targets of one evaluation of the layer: their positions, and the rows of the result to compute.
   struct Targets {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
     const Net& f0;                        ///< constants subtracted from the density of a double layer
-    std::span<const int> in_tree;         ///< indices of all targets in the tree of clusters, ascending
+    std::span<const int> in_tree;         ///< indices of the targets that are in the tree of clusters, ascending
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
   };
@@ -192,13 +194,14 @@ class Layer {
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
     std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed, moved into the cell
-    std::vector<Mat3> rest_stress;              // double layer of constant unit densities at the targets rest_at, due to the images that are not near
+    std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer of constant unit densities over all images except the near
+                                                // ones
   };
 
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its weights at the far nodes, areas included
-    std::vector<bool> present;           // true for elements for which Measure::by_element means the current area
+    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its quadrature weights at the far nodes, areas included
+    std::vector<bool> present;           // true for elements where Measure::by_element selects the current area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }
@@ -258,19 +261,19 @@ class Layer {
   std::optional<Measure> measure_;                                 // area of the current weight_
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
-  std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and factor k (2.2)
-  std::vector<double> density_[3], normal_[3];                     // at the far nodes: density f (in a single layer times weight_); normal times
-                                                                   // quadrature weight, area and factor k of (2.2)
+  std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
+  std::vector<double> density_[3], normal_[3];                     // values at the far nodes: density f (in a single layer times weight_); normal
+                                                                   // times quadrature weight, area and the factor k_p of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // double layer of the images in the wall at the targets, for constant unit
                                                                    // densities
-  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are shared, if any
+  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are divided among callers by share()
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each
-  std::vector<double> moment_[6];                                  // symmetric part of density times normal at the far nodes
+  std::vector<double> moment_[6];                                  // stresslet moments at the far nodes: symmetric part of density times normal
   std::vector<Pack> point_weights_, scratch_;
   Evaluations evaluations_;
   Phases phases_;

@@ -9,8 +9,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Tolerance for the images that are not near, divided by the tolerance of the layer. It is small, because loads are in equilibrium, so that
-/// velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
+/// Tolerance for the sum over the images that are not near, divided by the tolerance of the layer. It is below 1 because the loads are in
+/// equilibrium, so that velocities are small compared with the sum of the magnitudes of their terms (as in TreeSum).
 constexpr double share_of_rest = 0.1;
 
 }  // namespace
@@ -97,8 +97,8 @@ void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n
   lattice_.sum->add_rest(charges, at, sums.data());
 }
 
-/// Computes the double layer of constant unit densities by the images that are not in the far sum, at these targets, one column per component. Some
-/// images of a surface are in the far sum and the others are not, so that neither part of the double layer vanishes for a constant density.
+/// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
+/// of the density. Some images of a surface are in the far sum and the others are not, so that for a constant density neither sum vanishes.
 void Layer::place_rest(const std::vector<Vec3>& at) {
   lattice_.rest_at = at;
   lattice_.rest_stress.assign(at.size(), Mat3::Zero());

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 
-/// Values of basis functions of some panels at the far nodes of the panels, for the sums over these nodes. Each function adds to one row of the sums,
-/// the row of its control point. The number of functions is padded to a multiple of `assembly_tile`. Padding functions, and functions of control
-/// points that are not requested, add to a spare row.
+/// Values of the basis functions of some panels at the far nodes of these panels. Each basis function adds to one row of the sums, the row of its
+/// control point. The number of basis functions is padded to a multiple of `assembly_tile`. Padding, and basis functions of control points that are
+/// not requested, add to a spare row.
 template <class Real>
 struct FarBasis {
   std::vector<int> panels, index;  ///< panels: panels with stored values. index: for each panel of the surface, its position in `panels`, or -1
@@ -73,7 +73,8 @@ void add_moments(const Panels& panels, int e, const int* rows, const double* mom
   }
 }
 
-/// Writes three rows of the operator from the sums 11, 12, 13, 22, 23, 33 of one target with every control point, divided by 8 pi.
+/// Writes the three rows of the operator for one target. `sums`: for each control point, the entries 11, 12, 13, 22, 23, 33 of the kernel's sums. The
+/// rows are the sums divided by 8 pi.
 template <class Real>
 void write_rows(int row, int n_points, const Real* sums, Rows<Real>& a) {
   constexpr int entry[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
@@ -93,7 +94,7 @@ void sort_and_drop_repeated(std::vector<int>& numbers) {
 
 }  // namespace
 
-/// Sums over the panels of a basis, for up to sixteen targets at a time.
+/// Assembles sums over the panels, one per control point and kernel component, for up to sixteen targets at a time.
 template <class Real>
 class Layer::RowSums {
  public:
@@ -101,7 +102,8 @@ class Layer::RowSums {
   RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
 
   FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< index 6 block row + block c + l: component c of a row at target l, with block = assembly_block
+  std::vector<Real> sums;  ///< entry c of the kernel (11, 12, 13, 22, 23, 33) for control point `row` at target l: index 6 block row + block c + l,
+                           ///< with block = assembly_block
 
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
@@ -122,7 +124,7 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Adds the corrections by near-singular or singular quadrature for the target with index l in its block of sixteen.
+  /// Adds the corrections by near-singular or singular quadrature for one target. l: index of the target in its block of sixteen.
   void add_close_panels(int target, int l) {
     LayerSurface& surface = layer_.surface_;
     const Vec3 x0 = place_of(target);

@@ -24,7 +24,7 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Returns for each element its parametric size divided by the distance between control points around it, which is 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the distance between the control points around it. The ratio is 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {
@@ -43,7 +43,7 @@ std::vector<double> shares(const spline::Space& space) {
 /// Returns the number of Gauss points per direction of the far rule for each element. Some elements are small compared with the distance of the
 /// surrounding targets: elements next to extraordinary points of Catmull-Clark surfaces, and bisected elements at T-junctions. They need fewer
 /// points, because the integrand is smoother on a small element and its part of the area is small. They keep enough points for half the digits of the
-/// tolerance, because the shape of elements next to extraordinary points requires these (tests/verify/layers.cpp).
+/// tolerance, because the shape of elements next to extraordinary points requires them (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;
@@ -57,7 +57,7 @@ std::vector<int> far_orders(const spline::Space& space, const quadrature::Option
 }
 
 /// Returns the number of far nodes above which clusters are faster. It is about twice the number of kernel evaluations per target that clusters need
-/// on a large surface, which grows with the square of the number of digits of the tolerance. Measured (tests/benchmark/growth.cpp).
+/// on a large surface. That number grows with the square of the number of digits of the tolerance. Measured (tests/benchmark/growth.cpp).
 double nodes_worth_a_tree(double tolerance) { return 1000 * std::pow(std::log10(tolerance), 2); }
 
 }  // namespace

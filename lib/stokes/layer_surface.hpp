@@ -31,7 +31,7 @@ class LayerSurface {
   /// Sets the symmetry that all later shapes have.
   void set_symmetry(const surface::Symmetry& symmetry);
 
-  /// Returns one panel of each orbit under the symmetry (the fundamental panels), and the weights of these panels in a far sum over them only.
+  /// Returns the fundamental panels (one panel of each orbit under the symmetry), and their weights in a far sum over the fundamental panels only.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
   /// Returns all symmetry images except the identity, about the centre of the current shape.

@@ -13,8 +13,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Factor on the tolerance of clusters for the images in the wall, because their kernel is singular by two orders more. Measured on spheres and
-/// ellipsoids near a wall.
+/// Factor on the tolerance of clusters for the images in the wall, because the image kernel is singular by two orders more than the free-space
+/// kernel. Measured on spheres and ellipsoids near a wall.
 constexpr double share_of_clusters = 0.25;
 
 /// Transforms the Bezier points of a panel (if `point` is true) or the Bezier coefficients of a vector field on it to the wall's axes.
@@ -37,8 +37,8 @@ void Layer::set_wall(const PlaneWall& wall) {
   measure_.reset();
 }
 
-/// Adds the far sum over the images in the wall. For a double layer this is sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) over the nodes k. T^I is the
-/// kernel of the images, m the mean of the density f, and f0 the density at the target, which is subtracted from f.
+/// Adds the far sum over the images in the wall. For a double layer this is sum_k T^I (f - m) n - (sum_k T^I n)(f0 - m) over the nodes k, with the
+/// image stresslet T^I (2.36), the mean m of the density f, and the constant f0 that is subtracted from f at the target.
 void Layer::add_images(const Targets& targets, Net& u) {
   {
     const auto clock = phases_.time("images in the wall");
@@ -86,7 +86,7 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the contribution of the image of panel e by the near-singular rule `table` minus its contribution to the far sum.
+/// Returns the contribution of the image of panel e by the near-singular rule `table`, minus the contribution of this image to the far sum.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];
@@ -114,7 +114,7 @@ Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrore
 }
 
 /// Computes the moments of the image of panel e at the target `at`: one matrix per Bernstein polynomial, in the laboratory axes, including the factor
-/// k.
+/// k_p (2.1) of the panel.
 void Layer::image_moments(int e, const Vec3& at, std::vector<Mat3>& moments) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];

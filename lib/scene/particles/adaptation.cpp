@@ -31,8 +31,8 @@ struct Subject {
   std::span<const double> films;
 };
 
-/// Returns the result with the body `target` and with the state, whose nets are all transferred to the new space. `move` transfers one net of this
-/// particle.
+/// Returns an Adapted with the body `target`, in which all nets of the particle and of the state are transferred to the new space. `move` transfers
+/// one net of this particle.
 template <class Move>
 Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};
@@ -57,7 +57,7 @@ Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& mov
   return result;
 }
 
-/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by R_C.
+/// Records in the result the displacement `moved` of the surfaces by the mesh change, divided by the radius R_C.
 void settle(Adapted& result, double moved, double radius) {
   result.change = moved / radius;
   result.body->refit_error += result.change;
@@ -86,7 +86,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Elements to refine (marks) and elements to merge, according to the indicator on the current mesh.
+/// Elements to refine (marks) and elements to merge that the indicator finds on the current mesh.
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;
@@ -119,7 +119,7 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest width at any of these.
+/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest of their widths.
 std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
   std::vector<double> widths;
   if (films.empty()) return widths;
@@ -154,7 +154,7 @@ Findings findings(const Subject& particle, const surface::FieldAt& traction, con
                                   fields_at));
   surface::MetricFields fields;
   if (options.reference_traction_variation) fields.traction = traction;
-  const Net slope = state.history.empty() ? Net() : Net(block.rows(state.history.front()));  // outlives `fields`, which refers to it
+  const Net slope = state.history.empty() ? Net() : Net(block.rows(state.history.front()));  // must outlive `fields`, which stores a reference to it
   if (options.reference_velocity_variation && slope.rows() > 0) fields.velocity = surface::field_of_net(body.nested(), slope);
   return of(surface::element_metrics(body.mesh, body.nested(), x, fields));
 }

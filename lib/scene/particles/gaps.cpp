@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by R_C
+constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by the particle radius R_C
 
 /// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
@@ -118,7 +118,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   return own;
 }
 
-/// Reduces each film width to the distance of the element from the plane wall, if that is smaller.
+/// Reduces the film width of each element to its distance from the plane wall if that is smaller.
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {
@@ -127,7 +127,7 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns those of the net q and its lattice images whose bounding boxes are within `reach` of the bounding box of the net p. If q is p itself
+/// Returns the net q and its lattice images, but only those with a bounding box within `reach` of the bounding box of the net p. If q is p itself
 /// (`same`), p is not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;
@@ -159,7 +159,7 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another one, which the gap between their surfaces does not show.
+/// Throws UserError if one particle is inside another one. The gap between their surfaces does not show this.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);
@@ -227,7 +227,7 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell) {
-  constexpr int n = 7;  // numbers sent per pair: 1 if the gap is smaller than `reach`, then the two sites
+  constexpr int n = 7;  // count of numbers sent per pair: whether the gap is smaller than `reach`, then element, s and t of each of the two sites
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell, reach);
   const auto close = static_cast<std::size_t>(std::ranges::lower_bound(pairs.all(), reach, {}, &Pair::bound) - pairs.all().begin());
@@ -254,7 +254,7 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   const Body& body = *members[p].body;
   const surface::Patches own(surface::BezierMap(body.nested()), members[p].own(x));
   const motion::AdaptationOptions& options = members[p].scene.adaptation;
-  double longest = 0;  // longest diagonal of an element of the surface, length
+  double longest = 0;  // longest diagonal of all elements of the surface, length
   for (int e = 0; e < own.size(); ++e)
     longest = std::max(longest, (surface::place(own[e], 0, 0) - surface::place(own[e], 1, 1)).norm());
   const double reach = std::pow(longest / *options.film_resolution, 2) / options.radius;

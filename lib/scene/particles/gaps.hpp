@@ -13,7 +13,7 @@
 
 namespace tanktread {
 
-/// Pair of particles with the smallest gap, numbered from 1 in the order of the deck, and the midpoint of the gap.
+/// Pair of particles with the smallest gap: their numbers, from 1 in the order of the deck, the gap, and its midpoint.
 struct Nearest {
   double gap = std::numeric_limits<double>::infinity();
   int first = 0, second = 0;
@@ -22,7 +22,7 @@ struct Nearest {
 };
 
 
-/// Throws UserError, which names the particles and the place, if two particles overlap in their initial shapes, or one is inside another.
+/// Throws UserError if two particles overlap in their initial shapes, or if one is inside another. The message names the particles and the position.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
 
 /// Pair of particles close to each other: their contact (the two nearest points and the normal), without a force, and their gap.
@@ -39,17 +39,17 @@ Approach approach(const std::vector<Member>& members, const Net& x, coupling::Co
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest R_C. Ranks share the pairs. Collective.
+/// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest radius R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the width of the film at each element (of Body::nested()) of particle p at x. Widths above a limit are not computed and are infinite; all
-/// elements of the present mesh resolve films of this width. `cell`: cell of the lattice; the images of particles bound films, too. `wall`: wall of
-/// the tube around the particle, or null; x is given in its coordinates.
+/// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the width exceeds a limit that every element of
+/// the current mesh resolves. `cell`: cell of the lattice; films to images of particles count, too. `wall`: wall of the tube around the particle, or
+/// null; x is given in the coordinates of the wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 
-/// Returns "Particles/a and Particles/b touch", or that a particle touches its image. `first`, `second`: particle numbers from 1 in the order of the
-/// deck.
+/// Returns a sentence that two particles touch, such as "Particles/a and Particles/b touch", or that a particle touches its periodic image. `first`,
+/// `second`: numbers of the particles, from 1 in the order of the deck.
 std::string touching(const Scene& scene, int first, int second);
 
 }  // namespace tanktread

@@ -90,8 +90,8 @@ double Limiter::target(const Approach& found) const {
   return std::max((1 - slack) * limit_, found.gap + std::min(1., rate_ * step_) * (limit_ - found.gap));
 }
 
-/// Returns the largest deviation of a gap from the value that its contact must restore (see `target`), divided by the smallest allowed gap `limit_`.
-/// At a contact without force, only a smaller gap counts as a deviation.
+/// Returns the largest error of a gap at a contact, divided by the smallest allowed gap `limit_`. The error is the deviation from the required gap
+/// (see `target`). At a contact without force, only a smaller gap counts as an error.
 double Limiter::error() const {
   double most = 0;
   for (const Held& one : held_) most = std::max(most, (one.force > 0 ? std::abs(one.gap - one.target) : one.target - one.gap) / limit_);

@@ -14,7 +14,7 @@
 namespace tanktread {
 
 /// Moves the particles after a step so that no gap between two of them is below `limit`. The forces are non-negative and act along the normals at the
-/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, which is repeated until the
+/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, and this is repeated until the
 /// true gaps satisfy it. If a pair with a contact is also below the limit at other positions, contacts are added there. If the gap at such an
 /// additional contact is less than 1 % below the limit, it returns to the limit gradually, at the rate of the motion. During a step, the forces found
 /// after the previous step act. They are corrected after the step, and the corrected forces act during the next step. The error per step by lasting
@@ -28,8 +28,9 @@ class Limiter {
           double rate)
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate) {}
 
-  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or the forces
-  /// cannot restore it. The step must then be repeated with a smaller size; only cached data of the system have changed. Collective.
+  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or if no forces
+  /// restore the limit. The caller must then repeat the step with a smaller size. The call then has changed only cached data of the system.
+  /// Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
@@ -56,7 +57,7 @@ class Limiter {
   double limit_, unit_, rate_;
   double step_ = 0;
   std::vector<Held> held_;
-  Net load_;                                  // load of the contact forces that acted during the step, virtual work per control point
+  Net load_;                                  // load vector (virtual work per control point) of the contact forces that acted during the step
   std::shared_ptr<coupling::Evaluation> base_;  // evaluation with this load
 };
 

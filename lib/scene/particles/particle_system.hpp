@@ -39,26 +39,28 @@ class ParticleSystem {
   virtual ~ParticleSystem() = default;
   virtual coupling::Dynamics& dynamics() = 0;
   virtual const coupling::Capsule* capsule() const { return nullptr; }           ///< returns the coupled system; null for a free rigid body
-  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion with the fields on surfaces; null without fields
+  virtual coupling::CoupledMotion* fields() { return nullptr; }  ///< returns the motion of the surfaces together with their fields; null without
+                                                                 ///< fields
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
   virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
-  /// Discards the data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
+  /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.
   virtual void forget_recycled() {}
   /// Moves particles apart after a step of this size if their gap is below the limit and the deck requests `Contact/limiter`. Returns false if that
   /// fails.
   virtual bool hold_apart(motion::State&, double /*step*/) { return true; }
   virtual coupling::Contacts contacts() const { return {}; }                      ///< returns the current contacts
-  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of these contacts, on the current mesh, from now on
+  virtual void hold_by(const coupling::Contacts&) {}  ///< applies the forces of the given contacts, on the current mesh, from now on
   virtual bool adapt(motion::State& state, RunTotals& totals) = 0;  ///< adapts meshes after a step; returns true if body() has changed its mesh
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
   virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, with time and work added to `progress`
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, including the time and work of the run,
+                                                                              ///< which are set in `progress`
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };
@@ -66,7 +68,7 @@ class ParticleSystem {
 /// Builds the system for the particles of the scene: a coupled system, or a free rigid body.
 std::unique_ptr<ParticleSystem> particle_system(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 
-/// Build a coupled system of particles, or the system of one free rigid body.
+/// Build a coupled system of particles, or a system that consists of one free rigid body.
 std::unique_ptr<ParticleSystem> deforming(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 std::unique_ptr<ParticleSystem> free_body(const Scene& scene, coupling::Ranks& ranks, Phases& phases);
 

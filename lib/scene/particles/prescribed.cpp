@@ -11,9 +11,9 @@ namespace tanktread {
 
 namespace {
 
-/// Returns integrals of the velocity residual of the force density f, which is not zero between collocation points (Resistance::residual_work). By
-/// the reciprocal theorem, the first six are the errors of the force and of the torque on the fluid. The seventh is the work of f on the velocity
-/// residual.
+/// Returns seven integrals of the velocity residual of the force density f, which is the error of the velocity between collocation points
+/// (Resistance::residual_work). The first six are the errors of the force and of the torque on the fluid, by the reciprocal theorem. The seventh is
+/// the work of f on the velocity residual.
 Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
   std::vector<Net> z;
   for (int k = 0; k < 6; ++k) z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), coupling::unit_motion(k), centre)));

@@ -13,8 +13,10 @@ namespace tanktread {
 
 namespace {
 
-constexpr double grown = 5;         // growth of waves on a compressed membrane at which the user is warned, in e-folds: they soon become visible
-constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; fewer can occur at the start
+constexpr double grown = 5;         // growth of waves on a compressed membrane, in e-folds, above which the user is warned; the waves soon become
+                                    // visible
+constexpr int limited_steps = 10;   // number of consecutive steps limited by stability after which the user is warned; a few such steps can occur at
+                                    // the start
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
@@ -100,9 +102,9 @@ std::string Warnings::choice() const {
   return {};
 }
 
-/// Returns a warning when waves by compression have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave number k
-/// grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). Capsules show six tenths of that rate, and the flow carries waves out of the
-/// compressed part at its own rate.
+/// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave
+/// number k grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). On capsules they grow at six tenths of this rate. The flow carries them
+/// out of the compressed region at the rate of the flow.
 std::string Warnings::compression(const StepFindings& signs) {
   if (!scene_.elastic()) return {};
   const double tension = std::max(0.0, -signs.smallest_tension) * scene_.modulus(), mesh = wave_number(signs.element);

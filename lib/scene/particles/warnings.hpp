@@ -17,10 +17,10 @@ namespace tanktread {
 /// Data of a finished step from which warnings are derived. Lengths and times are in the deck's units.
 struct StepFindings {
   double time = 0, step = 0;
-  double smallest_tension = 0, compressed_area = 0;  ///< values of the series with these names
+  double smallest_tension = 0, compressed_area = 0;  ///< values of the columns `smallest_tension` and `compressed_area`
   double volume_error = 0;
   double jacobian_ratio = 1, aspect_ratio = 1;  ///< surface::Quality
-  double element = 1;                           ///< mean element size: the square root of the area divided by the number of elements
+  double element = 1;                           ///< mean element size: the square root of (area divided by number of elements)
   std::optional<double> gap;                    ///< gap to a wall
 
   StepFindings() = default;
@@ -67,8 +67,8 @@ class Warnings {
   Memory memory_;
 };
 
-/// Returns the stiffness rho of an elastic membrane on elements of size h, 1/time. This is the larger of two rates of the shortest waves on the mesh:
-/// the rate of in-plane deformation (4.5), and the rate of bending. The viscosity is the mean of the inner and the outer viscosity.
+/// Returns the stiffness of an elastic membrane on elements of size h, 1/time: the larger of two rates of the shortest waves on the mesh, by in-plane
+/// deformation (4.5) and by bending. Both use the mean viscosity of the inner and the outer fluid.
 double stiffness(const Scene& scene, double h);
 
 /// Computes the quality of the mesh in the shape x. Throws RunFailure on all ranks if an element is folded or a control point is NaN. The ranks share

@@ -46,12 +46,12 @@ void add_centroid(const Vec3& centroid, Columns& to) {
           "component # of the position of the particle's centroid; in a tube, x1 is the distance travelled since the start"});
 }
 
-/// Returns the cosine of the angle between y and the first direction of the plane.
+/// Returns the cosine of the angle between the vector y and the first direction of the plane.
 double ahead(const FlowPlane& plane, const Vec3& y) { return plane.components(y).normalized()[0]; }
 
 /// Returns the site at which the ray from `from` in the first direction of the plane meets an element, by Newton's method from a starting site.
 spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site site, const Vec3& from, const FlowPlane& plane) {
-  // Keeps the parameters inside the element, because at a pole on its boundary the iteration would stop.
+  // Limits a Newton step so that the parameters stay inside the element, because at a pole on its boundary the iteration would stop.
   const auto stepped = [](double at, double step) { return std::clamp(at + step, 0.1 * at, 1 - 0.1 * (1 - at)); };
   for (int iteration = 0; iteration < 20; ++iteration) {
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
@@ -193,7 +193,7 @@ void RigidRow::add_columns(const Scene& one, Columns& to) const {
 
 void Together::add_columns(const Scene& scene, Columns& to) const {
   if (!scene.has_gaps()) return;
-  const bool only = scene.particles.empty();  // true if the run has one particle, whose own columns already have these names
+  const bool only = scene.particles.empty();  // true if the run has only one particle; this particle already adds columns with the names used here
   if (!only || scene.particle.rigid()) add_energy(energy, to);
   if (only) return;
   add_stresslet(stresslet, to);
@@ -245,7 +245,7 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
       const spline::Site site{e, (k % intervals + 0.5) / intervals, (k / intervals + 0.5) / intervals};
       if (const double here = of(site); here > nearest + 1e-12) start = site, nearest = here;
     }
-    if (nearest < 0.5) continue;  // skips elements whose points are all more than about 60 degrees off the direction (0.5 is the cosine)
+    if (nearest < 0.5) continue;  // skips elements with all points more than about 60 degrees off the direction (0.5 is the cosine)
     for (const spline::Site& site : {start, straight_ahead(element, start, from, plane)})
       if (const double here = of(site); here > most + 1e-12) best = site, most = here;
   }
@@ -307,7 +307,7 @@ DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::
                            const Net& slope, const coupling::Ranks& ranks) {
   const std::vector<int> blocks = ranks.share(geometry.n_blocks());
   const std::vector<int> elements = own_elements(geometry, ranks);
-  const std::vector<int>& sites = body.symmetry.fundamental();  // all other collocation sites are images of these sites under the symmetry
+  const std::vector<int>& sites = body.symmetry.fundamental();  // fundamental sites; all other collocation sites are their symmetry images
   std::vector<int> own;
   for (const int k : ranks.share(static_cast<int>(sites.size()))) own.push_back(sites[static_cast<size_t>(k)]);
   const membrane::ElementTensions tensions = membrane.element_tensions(x, elements);

@@ -46,7 +46,7 @@ struct RigidRow : ParticleRow {
   void add_columns(const Scene& one, Columns& to) const override;
 };
 
-/// Totals over all particles: control points, energy and stresslet. Also their mean velocity.
+/// Totals over all particles (control points, energy and stresslet), and the mean velocity of all particles.
 struct Together {
   int n_points = 0;
   double energy = 0;
@@ -72,7 +72,7 @@ bool strains(const Scene& scene);
 DeformingRow deforming_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const membrane::Membrane& membrane, const Net& x,
                            const Net& slope, const coupling::Ranks& ranks);
 
-/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves by v.
+/// Sets the velocity of the centroid and the tank-treading of a surface x whose material moves at the velocity v.
 void add_treading(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& v, ParticleRow& now);
 
 /// Computes the Taylor parameter D and the inclination in the plane of the flow, and the extents along x1, x2 and x3. If the flow is not planar, the
@@ -94,8 +94,8 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest |v.n| at these collocation sites divided by Scene::rate() R_C. It is zero if the shape is steady. In a tube, v is relative to
-/// the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
+/// Returns the largest normal velocity |v.n| at the collocation sites `sites` divided by Scene::rate() R_C, with v = `slope`. It is zero if the shape
+/// is steady. In a tube, v is relative to the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

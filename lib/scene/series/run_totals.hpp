@@ -18,8 +18,8 @@ namespace tanktread {
 struct PhaseAngle {
   double degrees = 0, rate = 0;
 
-  /// Advances the phase by a step at whose end the mean angular velocity of the surface is `now`. If `angle`, the angle of the followed point, is
-  /// given, the phase becomes this angle plus whole turns. Otherwise it is integrated from the mean angular velocity.
+  /// Advances the phase by a step. `now`: mean angular velocity of the surface at the end of the step. `angle`: angle of the followed point, if
+  /// known; the phase then becomes this angle plus whole turns. Otherwise the phase is integrated from the mean angular velocity.
   void advance(double step, double now, std::optional<double> angle);
 };
 
@@ -36,7 +36,7 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
 };
 
-/// Calls act(name, kinds of particles that have it, description, count) for every count of a run. Checkpoints and the summary use these names.
+/// Calls act(name, kinds of particles with this count, description, count) for every count of a run. Checkpoints and the summary use these names.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";

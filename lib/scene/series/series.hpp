@@ -19,7 +19,7 @@ namespace tanktread {
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< velocity evaluations of all systems of a branch; if not given, the count in `work` is used
+  std::optional<long> evaluations = {};  ///< number of velocity evaluations of all systems of a branch; if not set, `work` has the number
   double time = 0;
   coupling::Work work = {};
   void add_columns(const Scene& scene, Columns& to) const;

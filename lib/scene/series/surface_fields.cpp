@@ -63,8 +63,8 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
   return state;
 }
 
-/// Transfers the control net y of a state to the current meshes. `shape` is the shape on the current meshes. The remaining rows of y, the
-/// coefficients of fields, are transferred from the previous meshes; `before` holds the fields on these.
+/// Transfers the control net y of a state to the current meshes. `shape`: shape on the current meshes. `before`: the fields on the previous meshes.
+/// The rows of y after the shape are the coefficients of these fields and are transferred from the previous meshes.
 Net SurfaceFields::transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies) {
   before.motion_->set_fields(y);
   Net now = motion_->start(shape);
@@ -121,7 +121,7 @@ surface::FieldsAt SurfaceFields::values_at(std::size_t p) const {
 
 void SurfaceFields::add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const {
   const auto& loads = capsule_.particles()[p].loads;
-  const auto& parts = members_[p].scene.loads;  // registered loads that the deck uses; they were added last to `loads`
+  const auto& parts = members_[p].scene.loads;  // registered loads that the deck uses; they are the last entries of the particle's `loads`
   for (std::size_t k = 0; k < parts.size(); ++k)
     parts[k].add_columns(loads[loads.size() - parts.size() + k]->values(members_[p].own(shape(y))), to);
   for (std::size_t k = 0; k < all_.size(); ++k) {

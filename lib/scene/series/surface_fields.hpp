@@ -21,7 +21,7 @@ namespace tanktread {
 /// Data of a particle's surfactant for one row of the results.
 struct SurfactantRow {
   double mass = 0;                   ///< mass divided by the initial mass
-  double smallest = 0, largest = 0;  ///< concentration divided by the initial one
+  double smallest = 0, largest = 0;  ///< smallest and largest concentration, divided by the initial concentration
   void add_columns(Columns& to) const;
 };
 
@@ -61,7 +61,7 @@ class SurfaceFields {
   /// Adds the contributions of the fields of particle p to the particle's row `now`, and the columns of its fields and registered loads to `to`. `y`
   /// must be the state that was set last by set_state().
   void add_to(std::size_t p, const Net& y, DeformingRow& now, Columns& to) const;
-  /// Returns the power of the loads of all fields if the material moves by v.
+  /// Returns the power of the loads of all fields if the surface material moves at the velocity v.
   double power(const Net& v) const;
   /// Adds the values that fields and loads write to snapshots at the shape x, and corrects the tensions of interfaces with surfactant.
   void add_to(const output::Nodes& nodes, const Net& x, std::vector<output::Field>& fields) const;
@@ -70,8 +70,8 @@ class SurfaceFields {
   struct One {
     std::size_t particle;
     std::unique_ptr<membrane::Field> field;
-    membrane::Surfactant* surfactant = nullptr;  // this field if it is a surfactant, otherwise null
-    const membrane::FieldParts::Chosen* part = nullptr;  // registered part that made this field, or null for a built-in field
+    membrane::Surfactant* surfactant = nullptr;  // `field` if it is a surfactant, otherwise null
+    const membrane::FieldParts::Chosen* part = nullptr;  // registered part of the program that made this field, or null for a built-in field
   };
 
   Net transferred(SurfaceFields& before, const Net& y, const Net& shape, std::span<const Body* const> bodies);
@@ -84,12 +84,12 @@ class SurfaceFields {
   motion::State shapes_;
 };
 
-/// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several. `all`:
-/// stacked body of all members. x, load and velocity (of the fluids, or empty): control values of all members. Serial.
+/// Returns load, traction, displacement, velocity, tensions and mean curvature at the nodes, and the particle number if there are several particles.
+/// `all`: stacked body of all members. x, `load` and `velocity` (fluid velocity, may be empty): control values of all members. Serial.
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns, for each node, the lattice vector that moves the particle of the node so that the mean of its control points is in the cell around the
+/// Returns one lattice vector per node. It moves the particle of the node so that the mean of the particle's control points is in the cell around the
 /// origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 

@@ -41,8 +41,8 @@ AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
   return field;
 }
 
-/// Adds the uniform or linear flow (2.48) with which the velocity of the field at each plate equals the given velocity of the plate. At a plate
-/// without a given velocity, this flow is 0.
+/// Adds the uniform or linear flow (2.48) that makes the velocity of the field at each plate equal to the given velocity of the plate. At a plate
+/// without a given velocity, the added flow is 0.
 void AmbientFlow::fit_to_plates(const FlowOptions& options, Field& field) {
   const Plates& plates = *options.plates;
   const Vec3& n = plates.normal;

@@ -60,11 +60,11 @@ class AmbientFlow {
   /// the gradient `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
-  /// Return the quadratic part of (2.20), d and H. Both are 0 for an affine flow and for a registered flow, which need not be quadratic.
+  /// Return d and H of the quadratic part of the flow (2.20). They are 0 for an affine flow and for a registered flow, which need not be quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
-  /// Returns the rate in Ca, units 1/time: the rate of the options, or in a duct the mean velocity over R_T.
+  /// Returns the rate in the capillary number, units 1/time: FlowOptions::rate(), or in a duct the mean velocity divided by the radius R_T.
   double rate() const { return duct_ ? duct_->mean_velocity() / duct_->radius() : rate_; }
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last

@@ -16,7 +16,7 @@ using surface::Vec2;
 
 constexpr int close_order = 16;
 
-/// Distance from the plane of the cap, divided by half the length of the longest curve segment of the outline, below which points get adaptive rules.
+/// Distance from the plane of the cap below which points get adaptive rules, divided by half the length of the longest curve segment of the outline.
 constexpr double close_by = 4;
 
 std::vector<double> breaks(const surface::Outline& outline, int side) {
@@ -27,7 +27,7 @@ std::vector<double> breaks(const surface::Outline& outline, int side) {
 /// Returns the outward normal of the outline times dl/du, l the arc length and u the parameter.
 Vec2 weighted_normal(const surface::PlaneJet& at) { return {at.d[1], -at.d[0]}; }
 
-/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per du.
+/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per unit of the curve parameter u.
 Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   const Vec2 rho = at.x - p, nu = weighted_normal(at);
   const double r = std::sqrt(rho.squaredNorm() + h * h);
@@ -35,7 +35,7 @@ Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   return Vec3(rho.dot(nu), -h * nu[0], -h * nu[1]) / r;
 }
 
-/// Returns the integrand r nu (distance times normal) of own_flow(), per du.
+/// Returns the integrand of own_flow(), distance times normal, per unit of the curve parameter u.
 Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   const Vec2 nu = (at.x - p).norm() * weighted_normal(at);
   return {0, nu[0], nu[1]};
@@ -146,7 +146,7 @@ Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   return 6 * over_8_pi * (m * n);
 }
 
-/// Computes the double integral of G over the cap by int int 1/|x - x'| dS dS' = - oint oint |x - x'| nu.nu' dl dl'.
+/// Computes int int G_11/(8 pi) dS dS' over the cap. In its plane G_11 = 1/|x - x'|, and the integral of G_11 is - oint oint |x - x'| nu.nu' dl dl'.
 double Cap::own_flow() const {
   const Nodes n = nodes(6);
   double sum = 0;

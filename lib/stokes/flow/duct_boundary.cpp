@@ -56,8 +56,8 @@ std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) 
   return out;
 }
 
-/// Returns the number of elements of each side, at least two, proportional to the square root of its length, because a short side, all of which is
-/// near a corner, needs more elements per length.
+/// Returns the number of elements of each side, at least two, proportional to the square root of the side's length. A short side is close to a corner
+/// everywhere, and therefore needs more elements per length.
 std::vector<int> shares(const Outline& outline, int elements) {
   if (outline.smooth()) return {elements};
   double total = 0;
@@ -92,7 +92,7 @@ OutlineSpace::OutlineSpace(const Outline& outline, int elements) : outline_(outl
   }
 }
 
-/// Adds an element. `knots`: the eight knots around the element, which lies between the fourth and the fifth knot.
+/// Adds an element. `knots`: the eight knots around the element. The element lies between the fourth and the fifth knot.
 void OutlineSpace::add_element(int side, double begin, double end, const std::array<int, 4>& functions,
                                const std::array<double, 8>& knots) {
   OutlineElement element{side, begin, end, functions, {}};
@@ -166,7 +166,7 @@ Eigen::Vector4d functions(const OutlineElement& e, double t) {
   return e.bernstein * b;
 }
 
-/// One row of (2.15): the coefficients of a target and its right-hand side, integrated over the elements.
+/// One row of the collocation equations (2.15): the matrix entries and the right-hand side of one target, integrated over the elements.
 class Row {
  public:
   Row(const OutlineSpace& space, const Vec2& origin, const OutlineSite& site)
@@ -175,7 +175,8 @@ class Row {
   void element(const OutlineElement& e) {
     e_ = &e;
     weight_.setZero();
-    double t = site_.t;  // a target at the first knot of a closed side is also at its last knot, see below
+    double t = site_.t;  // parameter of the target. A target at the first knot of a closed side is also at the last knot; the period is then added to
+                         // t
     if (site_.side == e.side && t < e.begin && surface::closed(space_.outline().side(e.side))) {
       const auto [first, last] = surface::range(space_.outline().side(e.side));
       t += last - first;
@@ -201,7 +202,7 @@ class Row {
     right_ -= weight * ((j.x - origin_).squaredNorm() / 4 - value_) * cross(r, j.d) / (2 * pi * square);
   }
 
-  /// Integrates from the parameter of the target to one end of the element with t = t0 + (end - t0) s^4.
+  /// Integrates from t0, the parameter of the target, to the end t = `end` of the element, with the substitution t = t0 + (end - t0) s^4.
   void logarithmic(double t0, double end) {
     const auto& rule = quadrature::gauss(points_log);
     for (int q = 0; q < rule.size(); ++q) {
@@ -266,7 +267,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // psi (2.17) at the start of the current element
+  double psi = 0;  // psi of (2.17) at the start of the current element: the integral of q dl up to there
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;
@@ -294,7 +295,7 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
 /// integral is the sum over the nodes j; its term at j = i is the increment dF_i = dv_c + i q dl of F along the node's length. Only psi is changed,
 /// not v_c:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
-/// The coefficients of psi in this sum are smooth, so that the error of the spline, which alternates in sign from knot to knot, averages out.
+/// The coefficients of psi in this sum are smooth, so that the error of the spline averages out: it alternates in sign from knot to knot.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {
   using Complex = std::complex<double>;
   const std::size_t n = x_.size();

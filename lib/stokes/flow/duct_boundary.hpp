@@ -46,8 +46,8 @@ class OutlineSpace {
   int size() const { return static_cast<int>(sites_.size()); }  ///< number of functions, equal to the number of collocation points
   const std::vector<OutlineElement>& elements() const { return elements_; }
 
-  /// Returns the sites: on a closed side the knots, on an open side the Greville abscissae with the end points moved inwards by half the first
-  /// spacing.
+  /// Returns the collocation sites: on a closed side the knots, on an open side the Greville abscissae with the end points moved inwards by half the
+  /// first spacing.
   const std::vector<OutlineSite>& sites() const { return sites_; }
 
   /// Returns the position and its derivative with respect to t. The second derivative is not set.
@@ -66,11 +66,11 @@ class OutlineSpace {
   std::vector<OutlineSite> sites_;
 };
 
-/// u = v_c - r^2/4, where r is the distance from the centroid of the section and v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
-/// The unknown is its flux q = dv_c/dn: sigma = q dl/dt, a cubic spline in the parameter of OutlineSpace, is collocated,
+/// Velocity u = v_c - r^2/4: r is the distance from the centroid of the section; v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
+/// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They are found by collocation of
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
-/// Without kappa and the zero-mean condition the matrix would be singular if the outline has logarithmic capacity 1, such as the circle of radius 1.
-/// Inside, v_c is the real part of the analytic function F with the boundary values v_c + i psi, psi = int q dl (2.17).
+/// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
+/// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is
 ///   int u dA = int r^2 x.n/16 dl + int psi x/2.dx                                                                              (2.16)
 class BoundaryProfile : public DuctProfile {
  public:
@@ -89,7 +89,7 @@ class BoundaryProfile : public DuctProfile {
   surface::Vec2 centroid_;
   double radius_, flow_rate_;
   int n_elements_;
-  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // nodes of (2.17): position relative to the centroid, line element, v_c, psi
+  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // at the nodes of (2.17): position relative to the centroid, line element, v_c and psi
 };
 
 }  // namespace tanktread::stokes

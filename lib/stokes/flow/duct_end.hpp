@@ -9,8 +9,8 @@
 
 namespace tanktread::stokes {
 
-/// Velocity in the fluid due to a plane end of a channel, through which the duct flow u(y2, y3) passes in the direction `along`, without the
-/// contribution of the pressure at the end:
+/// Velocity in the fluid due to a plane end of a channel, without the contribution of the pressure at the end. The duct flow u(y2, y3) passes through
+/// the end in the direction `along`:
 ///
 ///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
 ///
@@ -22,7 +22,7 @@ class DuctEnd {
   /// UserError if a ray from the centroid meets the outline twice.
   DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward);
 
-  /// Returns the velocity P (2.29) that the end causes at each row of x, points in the fluid or on the wall, units length/time.
+  /// Returns the velocity (2.29) that the end causes at each row of x, points in the fluid or on the wall, units length/time.
   Net velocities(const Net& x) const;
 
   /// Gauss points of the section: positions and areas.
@@ -60,7 +60,7 @@ class DuctEnd {
   double inward_;
   Sources far_;
   std::vector<Cell> cells_;
-  std::vector<Sources> close_;  // sources of each cell, for targets close to the plane but not to the cell
+  std::vector<Sources> close_;  // for each cell, its nodes as sources, for targets close to the plane of the end but not to the cell
 };
 
 }  // namespace tanktread::stokes

@@ -40,9 +40,9 @@ class DuctFlow {
 
   Vec3 velocity(const Vec3& x) const;
   Mat3 gradient(const Vec3& x) const;                 ///< L_ij = dv_i/dx_j; only L_12 and L_13 are not zero
-  virtual Net velocities(const Net& x) const;         ///< one row per point; much faster than single points
-  Net tractions(const Net& x, const Net& n) const;  ///< f_inf = (-p 1 + 2 mu E) n with p = -G x1: the traction including pressure, with the
-                                                    ///< viscosity mu of the outer fluid
+  virtual Net velocities(const Net& x) const;         ///< returns the velocities at the rows of x; much faster than one call per point
+  Net tractions(const Net& x, const Net& n) const;  ///< returns tractions f_inf = (-p 1 + 2 mu E) n with the pressure p = -G x1 and the viscosity mu
+                                                    ///< of the outer fluid
   virtual std::vector<Mat3> gradients(const Net& x) const;
 
   const surface::Outline& outline() const { return outline_; }

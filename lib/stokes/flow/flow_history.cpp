@@ -21,10 +21,10 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// Returns F(1) of dF/ds = (A + s B) F, F(0) = I. A = `first`, B = `change`. The interval is divided into parts so short that the Taylor series of F
-/// converges fast on each.
+/// Returns the solution F at s = 1 of dF/ds = (A + s B) F with F(0) = I, A = `first` and B = `change`. The interval is divided into parts so short
+/// that the Taylor series of F converges fast on each.
 Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
-  // Number of Taylor terms. The next term is below 1e-16, because the parts are so short that h (|A| + |B|) is at most 1/2.
+  // Number of terms of the Taylor series in an interval of length h = 1/parts. As h (|A| + |B|) <= 1/2, the first neglected term is below 1e-16.
   constexpr int terms = 20;
   const int parts = 1 + static_cast<int>(2 * (first.norm() + change.norm()));
   const double h = 1. / parts;

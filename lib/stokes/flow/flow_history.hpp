@@ -15,10 +15,10 @@ namespace tanktread::stokes {
 struct FlowHistory {
   std::string type = "table";                     ///< "table" or "sine"
   std::optional<std::vector<double>> times;       ///< times of the table, in order; two equal times are a jump
-  std::optional<std::vector<double>> amplitudes;  ///< amplitudes at these times, linear in between, constant before and after; 1 if only angles are
+  std::optional<std::vector<double>> amplitudes;  ///< amplitudes at `times`, linear in between, constant before and after; 1 if only angles are
                                                   ///< given
-  std::optional<std::vector<double>> angles;      ///< angles at these times, in degrees; 0 if not given
-  std::optional<std::string> file;                ///< file with these three columns
+  std::optional<std::vector<double>> angles;      ///< angles at `times`, in degrees; 0 if not given
+  std::optional<std::string> file;                ///< file with the columns time, amplitude, angle
   std::optional<std::string> axis;                ///< axis of rotation; set if angles are given
   std::optional<double> mean, amplitude, frequency, phase;  ///< parameters of the sine: mean + amplitude sin(2 pi frequency t + phase), phase in
                                                             ///< degrees
@@ -37,8 +37,8 @@ struct FlowHistory {
     double angle = 0;  ///< angle of `turn` in degrees
   };
 
-  /// Returns amplitude and rotation at a time, in a step that began at `start`. If they jump at this time, returns the values before the jump, or
-  /// after it if the step starts at the jump.
+  /// Returns amplitude and rotation at a time, in a step that began at `start`. If they jump at this time, returns the values after the jump for a
+  /// step that starts at the jump, and the values before the jump for all other steps.
   Moment at(double time, double start) const;
 
   /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.51). Exact up to

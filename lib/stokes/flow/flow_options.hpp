@@ -11,7 +11,7 @@
 
 namespace tanktread::stokes {
 
-/// Plates that enclose a flow: one, or two a distance apart.
+/// One plate that bounds a flow, or two parallel plates at a distance.
 struct Plates {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
   std::optional<double> distance;                     ///< distance of the second plate; none if not set
@@ -47,11 +47,11 @@ struct FlowOptions {
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
-  /// Returns the rate in Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. It depends on the type:
+  /// Returns the rate in the capillary number Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. By type:
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
   /// - `quiescent` between two plates: difference of the plates' velocities divided by the plates' distance; if the velocities do not differ, half
   ///   of the shear rate on the plates due to the pressure gradient;
-  /// - `uniform`, `quiescent` without two plates, and `duct`, for which the speed is used instead: 0;
+  /// - 0 for `uniform`, `quiescent` without two plates, and `duct`, because the speed is used instead;
   /// - a user-defined type: its own rate; any other type: the shear rate.
   double rate() const;
 

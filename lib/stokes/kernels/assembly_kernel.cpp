@@ -6,7 +6,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// Computes the six entries c of the kernel G, or T n if Double, for each node k and target l: g[block (6 k + c) + l].
+// Computes g[block (6 k + c) + l] for each node k and target l: entry c = 11, 12, 13, 22, 23, 33 of G, or of T n if Double.
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;

@@ -21,9 +21,9 @@ struct PanelNodes {
   const int* rows = nullptr;
 };
 
-/// Adds sums[block (6 rows[A] + c) + l] += sum_k G_c(x_k, x0_l) N_A(x_k) w_k for each target l unless bit l of `skip` is set; c = 11, 12, 13, 22, 23,
-/// 33 (2.1). If normals are given, T_ijk n_k replaces G. Target l has the coordinates target[l], target[block + l], target[2 block + l], where block
-/// = 16. Differences are computed in double precision. `scratch`: 6 n_nodes blocks.
+/// Adds sum_k G_c(x_k, x0_l) N_A(x_k) w_k (2.1), for each basis function A and component c = 11, 12, 13, 22, 23, 33 of G, to
+/// sums[block (6 rows[A] + c) + l], unless bit l of `skip` is set. With normals, T_ijk n_k replaces G. Target l has the coordinates target[l],
+/// target[block + l] and target[2 block + l], block = 16. Differences x_k - x0_l are computed in double precision. `scratch`: 6 n_nodes blocks.
 void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
 void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
 template <class Real>
@@ -31,8 +31,8 @@ void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::u
   far_moments(panel, target, skip, scratch, sums);
 }
 
-/// Returns two sums over the nodes (x, y, z) for a target x0 with the normal n0. N is the normal of a node times its quadrature weight, and r is the
-/// vector from the target to the node:
+/// Returns the sums for the two identities of the rule `desingularised` (see Layer), over the nodes (x, y, z) for a target x0 with the normal n0.
+/// N = (nx, ny, nz) is the normal of a node times its quadrature weight, and r is the vector from the target to the node:
 ///   pressure_i = sum G_ij N_j;   shear_ij = sum G_ij (n0.N) + (G n0)_i N_j - (n0.r) T_ijk N_k, row by row.
 struct IdentitySums {
   double pressure[3], shear[9];

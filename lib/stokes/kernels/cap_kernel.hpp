@@ -3,8 +3,8 @@
 
 namespace tanktread::stokes {
 
-/// Sums of rho.nu/r and nu/r over n nodes (y, z) of an outline, where nu is the normal times the quadrature weight of a node, rho = (y - y0, z - z0)
-/// and r^2 = rho^2 + h^2. h is not 0.
+/// Sums of rho.nu/r and nu/r over n nodes (y, z) of an outline. nu is the normal of a node times its quadrature weight, rho = (y - y0, z - z0) and
+/// r^2 = rho^2 + h^2. h is not 0.
 struct CapSums {
   double flux, normal_y, normal_z;
 };

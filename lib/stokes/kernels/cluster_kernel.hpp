@@ -23,13 +23,13 @@ struct ChebyshevBox {
 /// Computes the positions of the nodes.
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 
-/// Replaces the points in the box by source strengths at the nodes with the same far field, and adds these to node_q. Component i at node (a, b, c)
-/// gets sum_k L_abc(x_k) q_k, i < n, with the Lagrange polynomials L_abc of the nodes. node_q[i]: component i at all nodes. `scratch`: n n_nodes
-/// packs.
+/// Replaces points in the box by Chebyshev nodes with the same far field: adds source strengths to node_q. Component i at node (a, b, c) gets sum_k
+/// L_abc(x_k) q_k, i < n, with the Lagrange polynomials L_abc of the nodes. node_q[i]: component i at all nodes. `scratch`: n n_nodes packs.
 void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q);
 
-/// Interpolates n fields from the nodes to points of the box: u += sum_abc L_abc(x) u_abc. All arrays are in blocks of far_block points, the layout
-/// of targets and values of the kernels: component c at point l of block k is array[n far_block k + far_block c + l], with n = 3 for positions.
+/// Interpolates n fields from the nodes to points x of the box: u += sum_abc L_abc(x) u_abc, where u_abc is the value at node (a, b, c). All arrays
+/// are in blocks of far_block points, as in far_sum(): component c at point l of block k is array[n far_block k + far_block c + l], with n = 3 for
+/// positions.
 void interpolate(int n, const ChebyshevBox& box, const double* node_u, int blocks, const double* target, double* u);
 
 }  // namespace tanktread::stokes

@@ -19,7 +19,7 @@ Number coincident(const Number& x0, const Number& y0, const Number& z0) {
   return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
 }
 
-/// Computes the sums for the targets of one tile (`tile` packs).
+/// Computes the sums for `tile` packs of targets; a pack fills one register.
 void tile_sum(const PointForces& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
   for (int p = 0; p < tile; ++p) {

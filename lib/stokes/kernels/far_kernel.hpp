@@ -41,8 +41,8 @@ void far_sum(const PointForces& forces, const double* target, double* u);
 /// Computes the far_sum() of point forces for any number of targets k; result u[3 k + c].
 void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
 
-/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. The caller subtracts it from the far sum when a better quadrature
-/// rule replaces these nodes.
+/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
+/// subtracts this sum from the far sum.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
 /// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 for the position, 3, 4, 5 for the velocity v0
@@ -84,18 +84,18 @@ using KernelSum = void (*)(const Charges& points, const double* target, double* 
 /// Computes a sum `kernel` that has three components per target, for any number of targets k; result u[3 k + c].
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u);
 
-struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to G f
+struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velocities G f
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
 /// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
-struct StressletKernel {  ///< maps (S_jk + S_kj)/2, components ordered as in `stresses`, to T_ijk S_jk
+struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet strengths (S_jk + S_kj)/2, ordered as in `stresses`, to T_ijk S_jk
   static constexpr int in = 6, out = 3;
   static constexpr auto *sum = stresslet_sum, *single = stresslet_sum_in_single;
 };
-struct NormalStressKernel {  ///< maps n_k to T_ijk n_k, components ij ordered as in `stresses`
+struct NormalStressKernel {  ///< kernel for TreeSum: maps normals n to T_ijk n_k, with the components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
   static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // evaluated only once per shape
 };

@@ -22,7 +22,7 @@ struct ImageOfForce {
     normal = c * (i3 - 6 * h * r[2] * i5);
   }
 
-  /// Adds G^I f (2.35) to u. The components of f are registers or numbers.
+  /// Adds the image Stokeslet G^I (2.35) of the force f to u. The components of f are registers or numbers.
   template <class Number>
   void add(const Register (&r)[3], const Number& fx, const Number& fy, const Number& fz, Register (&u)[3]) const {
     const Register along = r[0] * fx + r[1] * fy + r[2] * fz, push = c * i3 * fz, of_r = along * dyadic - push;
@@ -41,7 +41,7 @@ struct ImageOfStress {
     i5 = i2 * i2 * i, i7 = i5 * i2;
   }
 
-  /// Adds T^I S (2.36) to u, where sr = S r and trace = tr S.
+  /// Adds the image stresslet T^I (2.36) with the strength S to u. sr: the vector S r. `trace`: the trace of S.
   void add(const Register (&r)[3], const Register (&sr)[3], const Register& trace, Register (&u)[3]) const {
     const Register form = r[0] * sr[0] + r[1] * sr[1] + r[2] * sr[2];
     const Register of_r = 6 * form * i5 - 60 * z * h * form * i7 - 12 * trace * z * z * i5, of_sr = 24 * z * h * i5;
@@ -115,7 +115,7 @@ struct Sums {
     project<Degree, 9>(table, g, moment);
   }
 
-  /// Adds T^I S (2.36) for S = (w n + n w)/2 times the quadrature weight `weight`; `height` is r.n times this weight.
+  /// Adds the image stresslet T^I (2.36) with the strength S = weight (w n + n w)/2 to u. `weight`: quadrature weight. `height`: weight r.n.
   static void add(const ImageOfStress& image, const Register (&r)[3], const Register (&w)[3], const Register (&n)[3], const Register& height,
                   const Register& weight, Register (&u)[3]) {
     const Register along = weight * (r[0] * w[0] + r[1] * w[1] + r[2] * w[2]);

@@ -9,7 +9,8 @@ void extract(int n_b, int functions, const int* points, const double* extraction
 /// Computes value[k] = sum_b table[n b + k] coefficient[b], k = 0 .. n - 1.
 void combine(int n_b, int n, const double* table, const double* coefficient, double* value);
 
-/// Computes n = gauss[k] a1 x a2, where tangents[n c + k] is component c of a1 and tangents[n (3 + c) + k] of a2.
+/// Computes the weighted normals gauss[k] a1 x a2 at n nodes k. Component c of the tangent a1 is tangents[n c + k], and of a2 tangents[n (3 + c) +
+/// k].
 void weigh_normals(int n, const double* tangents, const double* gauss, double* nx, double* ny, double* nz);
 
 /// Sets within[k] to 1 if the squared distance of the point (x[k], y[k], z[k]) from the target is below reach[k], and to 0 otherwise, k = 0 .. n - 1.

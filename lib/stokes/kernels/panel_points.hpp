@@ -50,7 +50,7 @@ struct Points {
   }
 };
 
-/// Computes moment[n_c b + c] = sum over the points of g[n_c k + c] B_b, for all Bernstein polynomials of a table.
+/// Computes moment[n_c b + c] = sum over the points k of g[n_c k + c] B_b, for all Bernstein polynomials B_b of a table and values g at its points.
 template <int Degree, int n_c>
 void project(const PointTable& table, const Register* g, double* moment) {
   const int n = Degree ? Degree + 1 : table.degree + 1;

@@ -8,7 +8,8 @@
 
 namespace tanktread::stokes {
 
-/// For pack k of points: B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each. The last pack is padded with points of weight 0.
+/// Bernstein polynomials and their derivatives at the points of a rule. Pack k of points has B_i(s), B_j(t), B_i'(s), B_j'(t), degree + 1 packs each.
+/// The last pack is padded with points of weight 0.
 struct PointTable {
   int degree = 3, points = 0;
   std::vector<Pack> bernstein, weights;

@@ -29,11 +29,12 @@ class ImageSum {
   /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Sets all targets, and the indices of those to compute. Returns whether the targets, the indices or the nodes have changed since the last call.
+  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns whether the targets, the indices or the nodes have changed since
+  /// the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
-  /// Returns one row for each selected target, in their order. Source strengths of the nodes have 3 components (forces) or the 6 components of S in
-  /// the order 11, 22, 33, 12, 13, 23.
+  /// Returns the sums at the selected targets, one row per target, in the order of their selection. Source strengths of the nodes have 3 components
+  /// (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
   /// Returns the part of the sum that belongs to the nodes first, first + 1, ... of `carried`, at one target. The caller subtracts this part if

@@ -50,7 +50,7 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // term m + 1 of the power series of `second`, where (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // term m + 1 of the power series. The power is (-x^2)^m/m!, because (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);
@@ -109,14 +109,14 @@ PeriodicKernel::PeriodicKernel(Kind kind, const PeriodicCell& cell, const Mat3& 
   for (int d = 0; d < cell.n(); ++d) nearest = std::min(nearest, near[static_cast<std::size_t>(d)] * cell.spacing(d));
   if (cell.n() == 2) {
     const double waves = digits * std::max(cell.vectors().col(0).norm(), cell.vectors().col(1).norm()) / (2 * pi);
-    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // third period, so long that modes with an in-plane wave number k != 0, which decay like |k|
-                                                         // z e^{-|k| z}, do not reach across it
+    periods_.col(2) *= box.col(2).norm() + 1.3 * waves;  // sets the length of the third period. Modes with an in-plane wave number k != 0 decay like
+                                                         // |k| z e^{-|k| z} and do not reach across it
   }
   xi_ = std::sqrt(digits) / nearest;
   longest_wave_number_ = 2 * xi_ * std::sqrt(digits);
 }
 
-/// Returns the sum over wave vectors k != 0 in (2.25), or the corresponding part of the stresslet (2.26).
+/// Returns the sum over wave vectors k != 0 in (2.25), or the corresponding sum for the stresslet (2.26).
 std::vector<double> PeriodicKernel::waves(const std::array<std::vector<double>, 3>& s) const {
   using Complex = std::complex<double>;
   using Matrix = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic>;
@@ -172,7 +172,7 @@ void PeriodicKernel::add_smooth_images(const Vec3& r0, double* values) const {
   }
 }
 
-/// Adds the correction (2.27) of the mode k = 0 for two periods.
+/// Applies the correction (2.27) for two periods: subtracts the Fourier mode with wave vector k = 0.
 void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const Vec3 e = cell_.vectors().col(2);
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());
@@ -201,8 +201,9 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images in a row with one period except the near images, in pairs +n and -n, and subtracts (I + e e)/|n h| from each Stokeslet (2.43). The
-/// next `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin formula.
+/// Adds all images along the one period h e except the near images, in pairs at +n h and -n h, and subtracts (I + e e)/|n h| from each Stokeslet
+/// (2.43). The first `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin
+/// formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
   const Vec3 h = cell_.vectors().col(0), e = h.normalized();

@@ -8,8 +8,8 @@
 
 namespace tanktread::stokes {
 
-/// Periodic cell with n = 1, 2 or 3 lattice vectors, reduced to the shortest ones of the lattice. The other directions have unit vectors normal to
-/// them.
+/// Periodic cell with n = 1, 2 or 3 lattice vectors, reduced to the shortest vectors of the lattice. The other directions have unit vectors normal to
+/// the lattice vectors.
 class PeriodicCell {
  public:
   /// `vectors`: the first n columns are linearly independent lattice vectors. `reference` fixes the constant of the Stokeslet with one period. It is
@@ -76,13 +76,13 @@ class PeriodicKernel {
   /// components with j != k are doubled.
   int components() const { return kind_ == Kind::stokeslet ? 6 : 18; }
 
-  /// Returns the sum on a grid of positions s = (s[0][k_0], s[1][k_1], s[2][k_2]): component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2, with
-  /// n_d the size of s[d].
+  /// Returns the sum at all positions s = (s[0][k_0], s[1][k_1], s[2][k_2]) of a grid. Component c is at index ((c n_0 + k_0) n_1 + k_1) n_2 + k_2,
+  /// where n_d is the size of s[d].
   std::vector<double> values(const std::array<std::vector<double>, 3>& s) const;
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25) of the near images, or the same for T, to `values`
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25), or the corresponding term of T, of the near images to `values`
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns how many images count as near: for each lattice vector, the largest number of steps along it. Also returns the distance of the nearest
-/// image that is not near. For any two points in the box this distance is about `far` box lengths.
+/// Returns how many images are near: all images up to this number of steps along each lattice vector, in both directions. Also returns the distance
+/// of the nearest of all other images. For any two points in the box, this distance is at least about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -85,7 +85,7 @@ std::vector<double> differences(const std::vector<double>& nodes, std::vector<in
 
 /// Interpolates values [component][x][y][z] at nodes to values [x][y][z][component] at other positions.
 std::vector<double> interpolated(std::vector<double> values, const std::array<Eigen::MatrixXd, 3>& by) {
-  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // contracts the last index and moves it to the front
+  const auto contract = [&](const Eigen::MatrixXd& matrix) {  // multiplies by a matrix along the last index, and moves this index to the front
     const Eigen::Index rest = static_cast<Eigen::Index>(values.size()) / matrix.cols();
     const Eigen::MatrixXd result = Eigen::Map<const Eigen::MatrixXd>(values.data(), matrix.cols(), rest).transpose() * matrix.transpose();
     values.assign(result.data(), result.data() + result.size());
@@ -109,7 +109,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Finds the table index of the difference between two nodes.
+/// Data to find the table index of the difference between two interpolation nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;

@@ -13,10 +13,10 @@
 
 namespace tanktread::stokes {
 
-/// Splits the kernel of a lattice into near images, which the far sum contains, and a smooth rest, the sum over all other images (PeriodicKernel).
-/// Each source and each target is first moved into the cell. The rest is interpolated at both sources and targets in lattice coordinates, as between
-/// clusters (TreeSum). Let y be the distance to the nearest image in the rest divided by half the length of the cell in one direction. With p nodes
-/// in this direction the error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9).
+/// Splits the kernel of a lattice into the near images, which the far sum contains, and a smooth sum over all other images (PeriodicKernel). Each
+/// source and each target is first moved into the cell. The smooth sum is interpolated at both sources and targets in lattice coordinates, as between
+/// clusters (TreeSum). With p nodes in one direction its error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9). Here y is the distance
+/// to the nearest of the other images divided by half the length of the cell in this direction.
 class PeriodicSum {
  public:
   /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all
@@ -29,18 +29,18 @@ class PeriodicSum {
   /// Returns whether a PeriodicSum constructed for `extent` would be equal to this one.
   bool suits(const std::array<Vec3, 2>& extent) const;
 
-  /// Returns the position moved into the cell. The cell is displaced from the origin. Kernels take a node and a target for coincident if their
-  /// distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
+  /// Returns the position moved into the cell. The cell is displaced from the origin, because kernels take a node and a target for coincident if
+  /// their distance is below 2^-40 times the distance of the target from the origin. Near the origin, rounding errors would exceed this threshold.
   Vec3 wrapped(const Vec3& x) const { return x - cell_.shift(x) + away_; }
 
-  /// Adds the smooth rest (all images that are not near) at targets in the cell: u[3 k + c]. Sources are positions in the cell with 3 components of a
-  /// force, or 6 components of a stresslet in the order of StressletKernel.
+  /// Adds the smooth sum over all images that are not near, at targets in the cell: u[3 k + c]. Sources are positions in the cell, with the 3
+  /// components of a force or the 6 components of a stresslet in the order of StressletKernel.
   void add_rest(const Charges& sources, std::span<const Vec3> targets, double* u);
 
   /// Returns the Lagrange polynomials of the interpolation nodes at positions in the cell, shape (number of positions, n_nodes).
   Eigen::MatrixXd lagrange(std::span<const Vec3> places) const;
 
-  /// Returns component c = 11, 12, 13, 22, 23, 33 of the smooth rest of the Stokeslet (images that are not near) between the interpolation nodes,
+  /// Returns component c = 11, 12, 13, 22, 23, 33 of the smooth Stokeslet sum (over all images that are not near) between the interpolation nodes,
   /// shape (n_nodes, n_nodes).
   Eigen::MatrixXd between_nodes(int component) const;
   int n_nodes() const { return box_.n_nodes(); }
@@ -55,11 +55,11 @@ class PeriodicSum {
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // for each direction, at n a + b (n: number of nodes): index of the distance between nodes a and b in
-                                                // the list of all distances between two nodes
-  std::array<std::size_t, 3> differences_;      // number of differences in each direction
-  std::vector<double> table_;  // kernel of the smooth rest: components_ values for the node difference (i, j, k), from components_ ((n_1 i + j) n_2 +
-                               // k) on
+  std::array<std::vector<int>, 3> difference_;  // per direction, at index n a + b (n: number of nodes): index of the difference of nodes a and b
+                                                // among the distinct differences
+  std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
+  std::vector<double> table_;  // table of the smooth kernel sum: components_ values for the node difference (i, j, k), from index components_ ((n_1 i
+                               // + j) n_2 + k)
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

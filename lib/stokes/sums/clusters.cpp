@@ -12,7 +12,7 @@ namespace {
 /// A cluster counts as flat if its smallest principal variance divided by its second largest is below this ratio.
 constexpr double flat = 0.1;
 
-/// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each one
+/// Returns the number of Chebyshev nodes along the longest axis of a box. With more nodes, clusters are usable at smaller distances, but each cluster
 /// costs more. The formula was chosen from measurements on deformed spheres at tolerances of 1e-3 to 1e-8.
 int longest_order(double tolerance) {
   return std::clamp(static_cast<int>(std::lround(2.8 - 0.72 * std::log10(tolerance))), 3, most_chebyshev);

@@ -52,8 +52,8 @@ int connected(const Panels& panels, std::vector<int>& surface) {
   return n;
 }
 
-/// Returns an estimate of the distance from the panel beyond which `order` points per direction suffice for any target; rather too long than too
-/// short.
+/// Returns an estimate of the distance from the panel beyond which `order` points per direction suffice for any target. It is rather too large than
+/// too small.
 double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
   double d = longest;
   for (int k = 0; k < 2; ++k) {
@@ -89,7 +89,7 @@ void NearField::view(int e) {
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
   view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // equal at all corners
-  for (int j = 1; j < t.degree; ++j)  // over all inner Bezier points, so that the result does not depend on the directions of s and t
+  for (int j = 1; j < t.degree; ++j)  // includes all inner Bezier points, so that the result does not depend on the directions of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));
 }
@@ -133,8 +133,8 @@ bool NearField::on_same_surface(int e, std::span<const SelfPair> own) const {
 }
 
 /// A target off the surface may be on the side to which a panel bulges. Its distance from the planar approximation of the panel is therefore reduced
-/// by the height of the bulge, which costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface
-/// needs no such reduction.
+/// by the height of the bulge. This costs one to three Gauss points per direction (tests/verify/layer_shapes.cpp). A target on the same surface needs
+/// no such reduction.
 quadrature::Sight NearField::sight(const View& view, const Vec3& target, bool across) {
   if (!across) return quadrature::sight(view.flat, target);
   const double height = (target - view.flat.centre).dot(view.normal);

@@ -1,5 +1,5 @@
 #pragma once
-// Selects the panels on which a target needs a near-singular quadrature rule, and their rules.
+// Selects the panels on which a target needs a near-singular quadrature rule, and selects this rule.
 
 #include <map>
 #include <span>
@@ -18,14 +18,14 @@ namespace tanktread::stokes {
 /// Near-singular quadrature rules by tolerance. They depend on the current shape only, not on earlier ones.
 class NearField {
  public:
-  /// `tolerance`: accuracy relative to int dG / r over the closed surface that contains the panel, about sqrt(4 pi area), regardless of other
-  /// surfaces. `steep`: the integrand grows like 1 / r^2 instead of 1 / r at targets off the closed surface of the panel (double layer). On the
-  /// surface, subtracting the value of the density at the target lowers the singularity by one order. `off_surface`: true if there are targets that
-  /// are not on any surface.
+  /// `tolerance`: accuracy relative to int dG / r over the closed surface that contains the panel, about sqrt(4 pi area). Other surfaces have no
+  /// influence. `steep`: true for the double layer. At targets off the closed surface of the panel its integrand grows like 1 / r^2 instead of 1 / r.
+  /// At targets on this surface, subtracting the density at the target lowers the singularity by one order. `off_surface`: true if there are targets
+  /// that are not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
-  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. `rule` also needs the
-  /// points of its panel if it is an image.
+  /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. If a panel is an
+  /// image, rule() also needs the Bezier points of this panel.
   void update(const std::vector<double>& bezier, const PanelImages& images);
 
   /// Includes periodic images of the panels. A periodic image of a panel is treated as part of a different surface. Must be called before update().
@@ -47,7 +47,7 @@ class NearField {
     quadrature::Patch flat;
     Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand, across;  ///< accuracy required for targets on the panel's own surface; for all other targets
+    quadrature::Demand demand, across;  ///< accuracy required for targets on the closed surface of the panel; accuracy required for targets elsewhere
   };
   void view(int e);
   bool on_same_surface(int e, std::span<const SelfPair> own) const;
@@ -55,14 +55,14 @@ class NearField {
   bool far_enough(int e, const Vec3& target, std::span<const SelfPair> own) const;
 
   const Panels& panels_;
-  quadrature::Demand demand_;  ///< required accuracy, without the parts that depend on the area
+  quadrature::Demand demand_;  ///< accuracy required, without the members that update() computes from the surface area
   std::vector<int> surface_;   ///< for each panel, the index of the surface that contains it
   int n_surfaces_ = 1;
   bool steep_, across_gaps_;
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
-  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from it beyond which the far rule suffices
+  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from the centre beyond which the far rule suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)

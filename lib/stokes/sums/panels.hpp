@@ -21,9 +21,9 @@ struct Panel {
   const NodeTable* table = nullptr;
   int functions = 0;                 ///< number m of basis functions
   std::size_t first_point = 0;       ///< index of the first of its m control-point indices
-  std::size_t first_extraction = 0;  ///< index of the first entry of its extraction matrix, (m, n_bernstein) row by row
+  std::size_t first_extraction = 0;  ///< index of the first entry of the element's extraction matrix, shape (m, n_bernstein), stored row by row
   std::size_t first_bezier = 0;      ///< index of the first of its 3 n_bernstein Bezier coordinates
-  int first_node = 0;                ///< index of the first of its far nodes
+  int first_node = 0;                ///< index of the first far node of the panel among the far nodes of all panels
 };
 
 /// All panels of a space. The far rule of element e has `orders[e]` Gauss points per direction.
@@ -40,7 +40,7 @@ class Panels {
   const int* points(int e) const { return &points_[panels_[e].first_point]; }
   const double* extraction(int e) const { return &extraction_[panels_[e].first_extraction]; }
 
-  /// Computes the Bezier points of all panels, or of one panel within the array for all panels, from the control net of any field.
+  /// Compute the Bezier points of all panels, or of panel e only, from the control net of any field. `points` has the Bezier points of all panels.
   void bezier(const Net& net, std::vector<double>& points) const;
   void bezier(int e, const Net& net, std::vector<double>& points) const;
 
@@ -62,15 +62,14 @@ struct PanelImages {
   bool own(int e) const { return image[e] < 0; }
 };
 
-/// Computes the values of a field from its Bezier points, one array per component, at all far nodes, or at the nodes of one panel within these
-/// arrays.
+/// Compute the values of a field from its Bezier points at all far nodes, or at the far nodes of panel e only; one array per component for all nodes.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
 /// Computes Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that the node represents.
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);
 
-/// Computes Gauss weight times |x_,s x x_,t| at all far nodes, or at the nodes of one panel within the array for all panels.
+/// Compute Gauss weight times |x_,s x x_,t| at all far nodes, or at the far nodes of panel e only. `weight` is the array for all far nodes.
 void node_weights(const Panels& panels, const std::vector<double>& bezier, std::vector<double>& weight);
 void node_weights(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double>& weight);
 

@@ -82,7 +82,7 @@ const PointTable& SelfField::rule(SelfPair& pair, const Panels& panels, const st
     shear = quadrature::shear(a1.dot(a1), a1.dot(a2), a2.dot(a2));
     const double squares[2] = {a1.squaredNorm(), a2.squaredNorm()};
     if (std::min(squares[0], squares[1]) < 1e-20 * std::max(squares[0], squares[1]))
-      orders.radial = 2 * radial_;  // side collapsed to a point: the area element vanishes like r, and the integrand is not singular
+      orders.radial = 2 * radial_;  // a side is collapsed to a point, so that the area element vanishes like r and the integrand is not singular
     else
       orders = raised_orders(pair, degree, points, shear, a1, a2);
   }

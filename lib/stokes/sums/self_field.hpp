@@ -26,12 +26,12 @@ struct SelfPair {
                                    ///< Gauss of this order
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
-  std::vector<double> bernstein;  ///< B_i(s), B_j(t), B_i'(s), B_j'(t) at the site
+  std::vector<double> bernstein;  ///< Bernstein polynomials and their derivatives at the site: B_i(s), B_j(t), B_i'(s), B_j'(t)
   double s = 0, t = 0;
 };
 
-/// All pairs of a site and a panel that contains it, for a set of sites, and the polar rules that the pairs share: one rule for each position on a
-/// panel, degree and rounded metric.
+/// All pairs of a site and a panel that contains it, for a set of sites. The pairs share polar rules: one rule for each combination of position on
+/// the panel, degree and rounded metric.
 class SelfField {
  public:
   SelfField(const spline::Space& space, const Sites& sites, const quadrature::Options& options);
@@ -45,7 +45,7 @@ class SelfField {
   /// Discards all stored weights.
   void forget_weights();
 
-  /// Returns the value at site i of the field with these Bezier points, and its derivatives with respect to s and t, on its first panel.
+  /// Returns the value at site i of the field with the Bezier points `bezier`, and its derivatives with respect to s and t, on its first panel.
   Vec3 value(int i, const Panels& panels, const std::vector<double>& bezier) const;
   std::pair<Vec3, Vec3> tangents(int i, const Panels& panels, const std::vector<double>& bezier) const;
 

@@ -25,7 +25,7 @@ void fill_blocks(int n, const double* x, const double* y, const double* z, doubl
   }
 }
 
-/// Appends the images of positions in blocks to `blocks`.
+/// Appends to `blocks` the reflections of the positions in `block`; both store positions in blocks of far_block points.
 void append_images(const double* block, std::size_t size, const surface::Reflection& image, std::vector<double>& blocks) {
   for (std::size_t k = 0; k < size; ++k) {
     const std::size_t c = k / far_block % 3;

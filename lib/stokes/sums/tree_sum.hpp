@@ -50,8 +50,8 @@ class TreeSum {
     sum<Kernel>(carried, values);
   }
 
-  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, charges and rows add up to the
-  /// complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
+  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, source strengths and rows add up to
+  /// the complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
@@ -79,17 +79,17 @@ class TreeSum {
 
   Precision precision_;
   int part_ = 0, parts_ = 1;
-  int in_ = 3, out_ = 3;  // numbers of components of a source strength, and of the sum at a target
+  int in_ = 3, out_ = 3;  // numbers of components: of the strength of a source, and of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
-  int n_trees_ = 1;                             // number of target trees: one, and one per reflection
+  int n_trees_ = 1;                             // number of target trees: one of the targets, and one per reflection of the targets
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
   std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
-  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: sum to be computed. wanted_: target cluster with a target whose sum is to be computed.
-                                                // has_nodes_: target cluster with values at its Chebyshev nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: the sum of this row is to be computed. wanted_: the target cluster has such a row.
+                                                // has_nodes_: the target cluster has values at its Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;

@@ -8,8 +8,8 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of balls in a leaf, which are tested one by one. With fewer balls per leaf, testing the boxes would cost as much as testing the
-/// balls.
+/// Maximum number of balls in a leaf. The balls of a leaf are tested one by one. With fewer balls per leaf, testing the boxes would cost as much as
+/// testing the balls.
 constexpr int leaf = 64;
 
 }  // namespace
@@ -28,7 +28,8 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
   holds_.resize(leaf);
 }
 
-/// Appends the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's order.
+/// Appends to the tree the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's
+/// order.
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {
