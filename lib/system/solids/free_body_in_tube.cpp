@@ -94,8 +94,8 @@ void FreeBodyInTube::solve_in_tube(const Net& place) const {
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 }
 
-/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have their prescribed values. A second
-/// change of the motion corrects the collocation error of force and torque.
+/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have their prescribed values. Then
+/// changes the motion and f once more, to correct the collocation errors of force and torque.
 void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(place);

@@ -24,7 +24,7 @@ struct SolidScene {
 /// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
-/// Returns the integral (2.49) over the cell of the velocity of a flow of the solids.
+/// Returns the integral over the cell (2.49) of the velocity due to the solids, for the solution `flow` of (2.46).
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
@@ -53,7 +53,7 @@ class SolidResponse {
   /// Returns the solution without particles.
   const Solids::Flow& empty();
 
-  /// Returns the part of the solution that the load f and the velocity v cause. Empty nets are skipped.
+  /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. Empty nets are skipped.
   Solids::Flow respond(const Net& f, const Net& v);
 
   /// Computes rows `own` of the velocity u at the points `at` of `place`. Not collective.

@@ -105,7 +105,7 @@ class Wall {
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< multiplies each row of a matrix of the layer by this transpose
+  void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
   /// a periodic wall, A includes the condition int f.n dG = 0.
