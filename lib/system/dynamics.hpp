@@ -38,8 +38,8 @@ class Dynamics {
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
 
-  /// Returns B (dv - J delta) at the last linearisation: the error of the Jacobian for the velocity change dv that the displacement delta caused.
-  /// Used by Secants.
+  /// Returns the error B (dv - J delta) of the Jacobian J at the last linearisation, where dv is the velocity change that the displacement delta
+  /// caused. B is the operator of `defect`. Used by Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
   /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
@@ -47,17 +47,17 @@ class Dynamics {
   /// and `missed_of` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
-  /// Returns whether evaluating the velocity takes a linear solve that evaluating the defect of a given velocity does not take.
+  /// Returns true if the velocity requires a linear solve that the defect of a given velocity does not require.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape. Only the `defect` of u is given, so that v
-  /// need not be known.
+  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape and u a given velocity. The argument is the
+  /// `defect` of u, so that v need not be computed.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the result of `missed` for the displacement delta of x if the velocity change dv is not known. `change` is given instead: the change of
-  /// the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
+  /// Returns the result of `missed` for the displacement delta of x without the velocity change dv. The argument `change` replaces dv: it is the
+  /// change of the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if

@@ -55,8 +55,10 @@ class ShapeCoordinates {
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< displacement with these coordinates (control values); with fields, change of the state
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of a displacement (control values); with fields, of a change of the state
+  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the displacement with the coordinates y; after add_fields(), change of
+                                                        ///< the whole state
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a displacement (control values); after add_fields(), of a change of the
+                                                        ///< whole state
   bool admits(const Net& field) const;                  ///< true if the field has, up to small errors, the symmetry of the coordinates
   Net admitted(Net field) const;                        ///< the symmetric field that equals `field` at fundamental points
 
@@ -68,7 +70,7 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // control values of the translation; `field` minus across(coordinates)
+    Net field, rest;              // field: control values of the translation. rest: field - across(coordinates), the displacement that across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;

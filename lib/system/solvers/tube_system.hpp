@@ -27,9 +27,10 @@ struct BlockSystem {
   const Net& normal;                               ///< n = M0^-1 b
   double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
 
-  /// Returns the system with one of three preconditioners. `block triangular` replaces B by 1 and uses the LU factors of the wall. It solves for the
-  /// velocity v and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D, each with the contributions of the unknowns
-  /// solved for before. `block diagonal` omits these contributions. `block` does not precondition. The result refers to this object.
+  /// Returns the system with the named preconditioner. `block triangular` approximates the operator B by the identity and solves for the velocity v
+  /// and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D (by the LU factors of the wall). Each right-hand side
+  /// includes the unknowns found before. `block diagonal` omits these contributions. `block` uses no preconditioner. The result refers to this
+  /// object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
 
   /// Returns the right-hand side for the load f. `velocity`: right-hand side r_v of (2.5), in a periodic duct without the images of the particle. The
