@@ -64,7 +64,7 @@ class Evaluation {
  private:
   friend class Capsule;
   void find_unknowns();
-  const Net& moving();  // fluid velocity from the solution at this shape, never from the shape `near_`
+  const Net& moving();  // fluid velocity solved for at this shape, never copied from the evaluation `near_`
   const Net& viscous_work();
 
   Capsule* system_;
