@@ -29,7 +29,7 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
-  /// Returns the bytes of the frozen operators that grow with the square of the number of control points, summed over all ranks.
+  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
   virtual double frozen_bytes() const { return 0; }
 
   /// Evaluates the membrane tangent H of the Jacobian (4.3) at x.
@@ -64,15 +64,15 @@ class Dynamics {
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
-  /// Returns the change, due to a displacement, of the velocity at which meshes relax along interfaces, at the last linearisation; no rows if no mesh
-  /// relaxes.
+  /// Returns the change, due to the displacement delta, of the velocity with which meshes relax along interfaces, at the last linearisation. Returns
+  /// no rows if no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
   /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. If the iteration fails, x is not finite afterwards.
   virtual void restore_volume(Net& x) = 0;
 
-  /// Improves the initial guess y of a stage with this shift so that a membrane that nearly conserves area has the tensions that it had in the shape
-  /// `before` the stage.
+  /// Improves the initial guess y of a stage of the step with the given shift. Membranes that nearly conserve area then have the tensions that they
+  /// had in the shape `before` the stage.
   virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
   /// Returns fields that move points along surfaces without changing the shape: rotations of the mesh of each drop whose mesh slides.

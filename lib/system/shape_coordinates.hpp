@@ -23,9 +23,9 @@ namespace tanktread::coupling {
 ///
 ///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
 ///
-/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: the part of y that
-/// belongs to a translation moves the mesh tangentially as well. If velocities are projected (VelocityProjection), y contains the control values of a
-/// scalar field instead, the best fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
+/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: its coordinates y also
+/// move the mesh tangentially. If velocities are projected (VelocityProjection), y contains the control values of a scalar field instead, the best
+/// fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
 ///
 /// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
 /// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
@@ -33,8 +33,8 @@ namespace tanktread::coupling {
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// If the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there. They
-/// represent the symmetric fields only, or the fields of another parity (surface/symmetry.hpp). For another parity, no other part of the system may
-/// use the symmetry.
+/// represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). For a parity other than
+/// symmetry, no other part of the system may use the symmetry.
 ///
 /// For a rigid body the coordinates are the coefficients of six orthonormal fields, which span its translations and rotations.
 ///

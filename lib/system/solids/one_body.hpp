@@ -1,5 +1,5 @@
 #pragma once
-// Preconditioner of the system of all particles: inverses for each rigid body alone, and for films between pairs of bodies.
+// Preconditioner of the system of all particles: inverses for isolated rigid bodies, and for films between pairs of bodies.
 
 #include <functional>
 #include <memory>

@@ -108,11 +108,11 @@ class Resistance {
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;
   Net flux_, normal_;  // b and c
-  double weight_ = 0;  // factor s / (b.c) of the term c b^T (2.10)
+  double weight_ = 0;  // factor s / (b.c) of the regularising term c b^T in (2.10)
   stokes::Rows<double> rows_;
   Tube* tube_;
   std::optional<stokes::PlaneWall> wall_;
-  std::optional<stokes::Layer> images_;  // layer of the images, in the laboratory frame
+  std::optional<stokes::Layer> images_;  // layer of the body's images in the plane wall, in the laboratory frame
   stokes::Rows<double> image_rows_;      // rows of the images
   bool in_front_ = true;
   std::optional<DenseFactors> factors_;  // LU factors of R times the operator of (2.10), without the response of a tube; set only if there are few

@@ -68,7 +68,7 @@ class RigidTractions {
   /// Contributions to the velocity from everything that surrounds the bodies. Nets have one row per control point of all particles. The unknowns y
   /// are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
-    Net flow;       ///< control values of the velocity (4.2) if f and v are zero
+    Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies
 
     /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to f; empty on a lattice. Rows of

@@ -39,8 +39,8 @@ struct Rod {
 /// collective.
 class Solids {
  public:
-  /// A connected part of the solids, for example one plate. The density n on this part, and 0 on the other parts, is a null vector of the single
-  /// layer. `velocity`: its prescribed velocity, tangential to its surface.
+  /// A connected part of the solids, for example one plate. Its unit normal n, as a density that is 0 on all other parts, is a null vector of the
+  /// single layer. `velocity`: prescribed velocity of this part, tangential to its surface.
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();

@@ -163,7 +163,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only: traction w n of a constant pressure w, at the sites; int N_A n dG
+  Net pressure_, flux_;  // periodic wall only. pressure_: traction w n of a constant pressure w at the sites. flux_: int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

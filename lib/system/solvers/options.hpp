@@ -50,8 +50,8 @@ struct SolverOptions {
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
                                       ///< auto: matrix-free if far sums are taken by clusters
-  std::string tube = "schur";                     ///< unknowns in a tube: schur: v, with the wall tractions eliminated; otherwise all blocks
-                                                  ///< (BlockForm)
+  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: all
+                                                  ///< unknowns in one system (BlockSystem), with this preconditioner
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind
