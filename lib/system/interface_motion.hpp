@@ -64,7 +64,7 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices, among the projection's sites, of the sites on this drop
+    std::vector<int> places;      // indices of this drop's sites among the sites of the projection
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision makes the mesh motion independent of
                                   // units and axes
   };
@@ -87,7 +87,7 @@ class InterfaceMotion {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx of the mesh at the collocation sites
   };
-  Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
+  Latest latest_, known_;  // latest_: data of the latest velocity. known_: a copy of them if the system was linearised at that shape; otherwise empty
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

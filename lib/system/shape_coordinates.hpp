@@ -33,8 +33,8 @@ namespace tanktread::coupling {
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// If the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there. They
-/// represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). For a parity other than
-/// symmetry, no other part of the system may use the symmetry.
+/// represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not (1, 1, 1),
+/// no other part of the system may use the symmetry.
 ///
 /// For a rigid body the coordinates are the coefficients of six orthonormal fields, which span its translations and rotations.
 ///

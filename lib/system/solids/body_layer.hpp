@@ -24,8 +24,8 @@ class BodyLayer {
   BodyLayer(std::span<const Particle> particles, double viscosity, const quadrature::Options& quadrature,
             const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
 
-  /// Sets the shape x with the collocation sites `at`, assembles A at the sites of the bodies, without images on a lattice, and factors it.
-  /// `keep_rows`: whether `velocity` will be used for many densities.
+  /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
+  /// lattice. `keep_rows`: whether `velocity` will be used for many densities.
   void place(const Net& x, const Net& at, bool keep_rows);
 
   /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero unless place() was called with `keep_rows`.

@@ -120,8 +120,8 @@ class RigidTractions {
   Ranks& ranks_;
   BodyLayer layer_;
   BetweenSites between_;                         // Gauss points on the bodies
-  stokes::Layer between_layer_;                  // single layer of all particles at these points
-  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at these points; set if they have a viscosity contrast
+  stokes::Layer between_layer_;                  // single layer of all particles at the Gauss points `between_`
+  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at the Gauss points; set if a viscosity contrast is not 0
   stokes::Measure measure_;
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;

@@ -40,7 +40,7 @@ class SolidResponse {
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
   SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
+  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
 
   /// Sets the contrasts of the double layer, one per control point: 1 - lambda of the particle, or -1 if it is rigid.

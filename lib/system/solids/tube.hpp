@@ -66,11 +66,11 @@ class Tube {
   /// Constructs the tube of a channel, with the wall of the channel's flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
+  /// Constructs a tube for another mesh of the particle. The new tube shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
+  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;

@@ -23,8 +23,8 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner for the wall's operator. For each control point, the operator is restricted to the 5 x 5 neighbouring points and inverted, and the
-/// rows of the point in this inverse are kept.
+/// Preconditioner for the wall's operator. For each control point, the block of the operator for the 5 x 5 neighbouring points is inverted, and the
+/// rows of the inverse that belong to the point are kept.
 class WallPatches {
  public:
   /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.

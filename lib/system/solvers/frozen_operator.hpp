@@ -57,7 +57,7 @@ class Corotation {
   Net back(const Net& f) const;    ///< returns Q^T f
   Net forth(const Net& f) const;  ///< returns Q f
 
-  /// Returns the displacement to - from without the best-fitting rigid motion of each particle.
+  /// Returns the displacement `to` - `from` minus the best-fitting rigid motion of each particle.
   static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);
 
  private:
