@@ -251,7 +251,7 @@ void Capsule::prepare_step(double shift) {
   if (area_) area_->factor(shift);
 }
 
-/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs, which is B r, or r if control points slide along an interface.
+/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs: r multiplied by the operator B, or r if control points slide.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {

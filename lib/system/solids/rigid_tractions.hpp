@@ -65,8 +65,8 @@ class RigidTractions {
   /// Sets the solids in the lattice, which must outlive this object.
   void put_among(SolidResponse& solids) { walls_.solids = &solids; }
 
-  /// Contributions to the velocity from everything that surrounds the bodies. Nets have one row per control point of all particles. The unknowns y
-  /// are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
+  /// Velocities and loads due to everything that surrounds the bodies. Nets have one row per control point of all particles. The unknowns y are the
+  /// force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies

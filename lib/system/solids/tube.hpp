@@ -186,7 +186,7 @@ class Tube {
                                       // set by weigh_flow(), like the members below
   Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
-                                                // pressure drop of c and of the wall traction that it causes
+                                                // pressure drop, due to c and the wall traction that c causes
 };
 
 }  // namespace tanktread::coupling

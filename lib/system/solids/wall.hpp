@@ -118,7 +118,8 @@ class Wall {
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
-  const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
+  const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
+                                                             ///< the operator A
 
   /// Return weights, one row per control point A, for inner products with tractions on the wall. flow_weights: int N_A c dG, with c =
   /// flow_of_forces(x); the inner product is mu times the flow rate that the traction causes. force_weights: int N_A e1 dG; the inner product is the

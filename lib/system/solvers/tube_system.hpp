@@ -25,7 +25,7 @@ struct BlockSystem {
   std::function<Net(const Net&)> control_values;   ///< applies R^-1
   const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, so that the multiplier pi is 0
   const Net& normal;                               ///< n = M0^-1 b
-  double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
+  double unit = 1;                                 ///< tube radius divided by mu: converts f^D and dp to velocities
 
   /// Returns the system with the named preconditioner. `block triangular` approximates the operator B by the identity and solves for the velocity v
   /// and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D (by the LU factors of the wall). Each right-hand side
