@@ -254,8 +254,8 @@ void TubeOptions::declare(deck::Section& list) {
     list.key(
         "grading", grading, deck::between(1.0, 20.0), "1",
         "ratio g of the density of wall elements next to the particles to the density far from them; 1: all elements are equally long. "
-        "The number of elements per length varies along the tube as 1 + (g - 1)/(1 + (x1/R_T)^4), with the distance x1 from the "
-        "particles and the radius R_T of the circle with the area of the cross-section");
+        "At the distance x1 along the tube the density is proportional to 1 + (g - 1)/(1 + (x1/W)^4), with W the larger of half the "
+        "particles' length and R_T, the radius of the circle with the area of the cross-section");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest allowed gap between a particle and the wall of the tube or channel, divided by R_C, the radius of the sphere with the "
