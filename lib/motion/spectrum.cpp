@@ -49,11 +49,11 @@ const char* name(ModeKind kind) {
 
 void Mode::add_columns(const std::string& number, Columns& to) const {
   to.add(rate.real(), {"rate_" + number, "1/time",
-                       "growth rate of eigenmode k of the steady shape: real part of the eigenvalue. Spectrum/number and Spectrum/near "
-                       "determine the order of the modes"});
+                       "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. The modes are in the "
+                       "order of Spectrum/number and Spectrum/near"});
   to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
-                                 "angular frequency of eigenmode k of the steady shape, 2 pi divided by its period of oscillation: "
-                                 "magnitude of the imaginary part of the eigenvalue"});
+                                 "angular frequency of eigenmode k of the steady shape, in radians per time: magnitude of the imaginary "
+                                 "part of the eigenvalue; 0 if the mode does not oscillate"});
 }
 
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
@@ -65,7 +65,7 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   to.add(leading, {"leading_rate", "1/time",
                    "largest growth rate of the eigenmodes that change the shape, without translations and rotations; negative if the "
                    "steady shape is stable"});
-  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes, among those that change the shape"});
+  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 
