@@ -89,9 +89,9 @@ void Options::declare(deck::Section& section) {
   declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
-              "capillary number Ca = viscosity x rate x R_C / G_s, with the surface shear modulus G_s; for a drop the surface tension "
-              "replaces G_s. R_C: radius of the sphere with the particle's volume. rate: Flow/shear rate, or the largest singular value of "
-              "Flow/gradient. 0.3 if neither `capillary number`, `shear modulus` nor `surface tension` is given");
+              "capillary number viscosity x U/G_s, with the surface shear modulus G_s (for a drop the surface tension). U: in a duct the "
+              "mean velocity, otherwise rate x R_C, with Flow/shear rate (or the largest singular value of Flow/gradient) and R_C, the "
+              "radius of the sphere with the particle's volume. 0.3 if neither this, `shear modulus` nor `surface tension` is given");
   section.key("shear modulus", shear_modulus, deck::positive(), "force/length",
               "surface shear modulus G_s of the membrane, instead of `capillary number`");
   section.key("surface tension", surface_tension, deck::positive(), "force/length", "surface tension of a drop, instead of `capillary number`");
@@ -105,15 +105,15 @@ void Options::declare(deck::Section& section) {
               "stiff) if the area is resisted at all 16 points of an element");
   section.key(
       "global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-      "modulus K of the total area A, divided by the surface shear modulus (for a drop by the surface tension): the energy K (A - A0)^2/(2 "
-      "A0), with the area A0 of the unstressed surface, is added to the local law (3.26). It keeps the area of a vesicle, which is a drop "
-      "with bending. The relative area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
+      "modulus K that keeps the total area A of a vesicle (a drop with bending): the energy K G (A - A0)^2/(2 A0) is added to the law "
+      "(3.26), with the area A0 of the unstressed surface and the surface shear modulus G (for a drop the surface tension). The relative "
+      "area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
               "fraction m of the energy of the law `Mooney-Rivlin`, which needs it, that is neo-Hookean; the fraction 1 - m stiffens");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
               "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, "
               "axis and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in "
-              "`stress-free file`. Other choices than `resting` need a run without flow, which finds the equilibrium shape");
+              "`stress-free file`. If it is not `resting`, the equilibrium shape is another one, which a run without flow finds");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
               "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
   section.key("stress-free file", stress_free_file, deck::Choice{},
@@ -121,7 +121,7 @@ void Options::declare(deck::Section& section) {
               "particle. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
               "relative inflation alpha of a capsule: its resting shape is the unstressed shape inflated by the factor 1 + alpha about its "
-              "centre, so that the membrane is under tension. A `stress-free shape` that is not `resting` is divided by the same factor");
+              "centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is shrunk by the same factor");
   section.key("load", load, deck::Choice{"weak", "strong"},
               "method of computing the load (force per area) of the membrane on the fluid. `weak`: by virtual work (3.5). `strong`: by the "
               "surface divergence of the tensions, which fails as Maestre et al. (2017) show");

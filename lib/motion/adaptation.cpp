@@ -21,8 +21,8 @@ void AdaptationOptions::declare(deck::Section& section) {
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
               "largest allowed error, estimated on each element, of the position of the surface, for Adaptation/indicator `error`; default "
-              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it also limits the errors of "
-              "the surfactant concentration (divided by the mean concentration) and of the strain of a viscoelastic membrane");
+              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it is also the tolerance of the "
+              "relative error of the surfactant concentration and of the error of a viscoelastic membrane's strain");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
               "largest allowed error, estimated on each element, of the membrane load per current area, for Adaptation/indicator `error`; "
               "if not given, load errors cause no refinement");
@@ -46,8 +46,8 @@ void AdaptationOptions::declare(deck::Section& section) {
               "ratio of length to width of an element above which it is halved along its length, for Adaptation/indicator `variation`; "
               "2.5 if not given");
   section.key("order", order, deck::positive(), "1",
-              "exponent kappa, for Adaptation/indicator `variation`: where a field varies more than its reference value, the largest "
-              "allowed element length is Adaptation/reference length times (reference value / variation)^kappa; 1 if not given");
+              "exponent kappa for Adaptation/indicator `variation`: where curvature, traction or velocity varies r > 1 times as much as "
+              "its reference value, elements may be as long as Adaptation/reference length / r^kappa; 1 if not given");
   section.key(
       "film resolution", film_resolution, deck::positive(), "1",
       "largest allowed length of elements next to a thin film of fluid (between two particles, a particle and a wall, or periodic images), "

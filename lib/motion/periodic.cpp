@@ -22,8 +22,8 @@ namespace tanktread::motion {
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
   section.key("period", expected, deck::positive(), "time",
-              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history, the "
-              "period of the flow: the history from time 0 to this time is repeated");
+              "expected period of the motion (required); the period found is between 0.5 and 1.5 times this value. With Flow/history give "
+              "a period of the flow, because the history from time 0 to this time is repeated");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
               "angle, in degrees, about x2 by which the shape is rotated after a period before it is compared with the initial shape. "

@@ -30,8 +30,8 @@ void SpectrumOptions::declare(deck::Section& section) {
               "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "
               "R_C), where R_C is the radius of the sphere with the particle's volume");
   section.key("block", block, deck::between(1, 50), "1",
-              "block size of Spectrum/method `krylov`: number of vectors that are multiplied by the operator together. At most this many "
-              "modes of equal growth rate are found reliably");
+              "number of vectors in a block of Spectrum/method `krylov`. It should be at least the number of modes with equal growth "
+              "rates, which symmetric shapes have, because further ones may be missed");
   section.key(
       "parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
       "mirror symmetry of the eigenmodes that are sought, three numbers for the mirror planes normal to x1, x2, x3 that the steady shape "
