@@ -66,7 +66,7 @@ void AdaptationOptions::declare(deck::Section& section) {
   section.key("coarsen", coarsen, "whether elements are merged again where their refinement is not needed any more");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1",
               "safety factor of coarsening: elements are merged only if the merged element, of twice the length, stays below this fraction "
-              "of every tolerance and limit of refinement");
+              "of every tolerance and limit of refinement. Smaller values avoid that it is soon refined again");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
               "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
               "sphere with the particle's volume");

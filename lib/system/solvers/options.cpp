@@ -29,8 +29,8 @@ void IterativeOptions::declare(deck::Section& section) {
               "name of the iterative solver in Belos (a package of Trilinos), for example `GMRES` or `BICGSTAB`, for the linear system "
               "after which the enclosing section is named; Solvers/iterative solver if not given");
   section.foreign("Belos", belos,
-                  "parameters that are passed unchanged to Belos (a package of Trilinos), the iterative solver of the linear system that "
-                  "the section above describes, instead of Solvers/Belos");
+                  "parameters that are passed unchanged to the iterative solver in Belos (a package of Trilinos) of the linear system "
+                  "after which the enclosing section is named, instead of Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
               "preconditioner of the iterative solver for the linear system after which the enclosing section is named. `own`: the one "
               "that the program has for this system (for several rigid bodies: inverses of isolated bodies and of films between them; in "
@@ -68,8 +68,9 @@ void SolverOptions::declare(deck::Section& section) {
               "particles) are solved. Keep it well below Quadrature/tolerance");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
               "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. "
-              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver. `auto`: "
-              "`matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes less than 1 GB");
+              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs "
+              "less memory. `auto`: `matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes "
+              "less than 1 GB");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
               "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction "
               "and pressure drop are eliminated with the LU factors of the wall, so that no system is left at viscosity ratio 1. `block "
