@@ -273,7 +273,10 @@ std::string deck_of_run(const std::string& directory) {
 
 /// Returns the text that the command-line options ask for independently of a deck, or nothing if they ask for none.
 std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
-  if (arguments.reference) return "# Every key of a deck\n\nPrinted by `tanktread --reference`.\n\n" + deck::manual(Scene(registry));
+  if (arguments.reference)
+    return "# Every key of a deck\n\nPrinted by `tanktread --reference`. A path such as Flow/shear rate names the key `shear rate` of the "
+           "section Flow. x1, x2, x3 are Cartesian coordinates. Equation numbers, as (3.3), refer to [lib/README.md](../lib/README.md).\n\n" +
+           deck::manual(Scene(registry));
   if (arguments.reference_series) return series_manual(registry);
   if (arguments.rejections) return "# Combinations that are rejected\n\nPrinted by `tanktread --rejections`.\n\n" + rejection_table(registry);
   if (arguments.schema) return deck::schema(Scene(registry));

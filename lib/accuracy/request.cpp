@@ -75,10 +75,12 @@ void Options::declare(deck::Section& section) {
               "the series. The program chooses meshes and tolerances, and repeats the run on finer levels until all requests are met");
   section.key(
       "wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
-      "wall-clock time for all accuracy levels together. A level that is predicted to exceed it is not started; no limit if not given");
+      "real (wall-clock) time in seconds for all accuracy levels together. A level that is predicted to exceed it is not started; no "
+      "limit if not given");
   section.key("levels", levels, deck::between(3, 12), "1",
-              "largest number of levels of increasing accuracy, each a run with finer mesh and tolerances. Level 0 has 3 elements per "
-              "side; each further level has about 1.3 times as many, and tolerances a quarter as large");
+              "largest number of accuracy levels, each of which is a run with a finer mesh and smaller tolerances than the level before. "
+              "Level 0 has 3 elements per side; each further level has about 1.3 times as many, and tolerances a quarter as large. "
+              "Increase it if the requested accuracy is not reached");
   if (section.documenting()) return;
   if (trimmed(texts).empty()) throw UserError(section.path("requests") + " is missing: for example `taylor_inertia=1e-3`.");
   requests = requests_of(texts);

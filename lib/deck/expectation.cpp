@@ -17,7 +17,7 @@ void Expectation::declare(Section& section) {
               "name of the output series that is compared with the expected value; by default the name of the expectation");
   section.key("value", value, any(), "of the series", "expected value of the output series (required)");
   section.key("tolerance", tolerance, positive(), "of the series, or 1",
-              "largest allowed difference between computed and expected value (required)");
+              "largest allowed difference between computed and expected value, absolute or relative according to `kind` (required)");
   section.key("kind", kind, Choice{"absolute", "relative"},
               "kind of the tolerance of the expected value. `absolute`: limit of the difference. `relative`: limit of the difference "
               "divided by the expected value");

@@ -64,8 +64,8 @@ void declare_bending(Options& options, deck::Section& section) {
       "area-difference modulus kbar of a lipid bilayer divided by its bending modulus E_b (3.27). The two leaflets of the bilayer slide on "
       "each other, but each keeps its number of molecules, so that a change of their area difference costs energy; 0: no such energy");
   section.key("area difference", options.leaf_difference, deck::positive(), "1",
-              "difference of the areas of a bilayer's two leaflets for which Membrane/area difference modulus gives no energy, divided by "
-              "the difference of a sphere of the same area; if not given, the value of the unstressed surface");
+              "preferred difference of the areas of a bilayer's two leaflets, at which the energy of Membrane/area difference modulus "
+              "vanishes, divided by the area difference of a sphere of the same area; if not given, that of the unstressed surface");
 }
 
 void check_energy(const Options& options) {
@@ -89,9 +89,9 @@ void Options::declare(deck::Section& section) {
   declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
-              "capillary number Ca = viscosity x rate x R_C / G_s, with the surface shear modulus G_s; for a drop the surface tension "
-              "replaces G_s. R_C: radius of the sphere with the particle's volume. rate: Flow/shear rate, or the largest singular value of "
-              "Flow/gradient. 0.3 if neither `capillary number`, `shear modulus` nor `surface tension` is given");
+              "capillary number viscosity x U/G_s, with the surface shear modulus G_s (for a drop the surface tension). U: in a duct the "
+              "mean velocity, otherwise rate x R_C, with Flow/shear rate (or the largest singular value of Flow/gradient) and R_C, the "
+              "radius of the sphere with the particle's volume. 0.3 if neither this, `shear modulus` nor `surface tension` is given");
   section.key("shear modulus", shear_modulus, deck::positive(), "force/length",
               "surface shear modulus G_s of the membrane, instead of `capillary number`");
   section.key("surface tension", surface_tension, deck::positive(), "force/length", "surface tension of a drop, instead of `capillary number`");
@@ -101,40 +101,40 @@ void Options::declare(deck::Section& section) {
       "constant C of the laws `Skalak` and `Evans-Skalak`: at small strains, area modulus / shear modulus = 1 + 2 C; 1 if not given");
   section.key("area points", area_order, deck::between(0, 8), "1",
               "number of Gauss points per direction of an element at which the area resistance of the laws `Skalak` and `Evans-Skalak` is "
-              "evaluated. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks if the area is resisted at all 16 points "
-              "of an element. 0: the same points as for the rest of the law");
+              "evaluated; 0: those of the rest of the law. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks (is too "
+              "stiff) if the area is resisted at all 16 points of an element");
   section.key(
       "global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-      "modulus K of the total area A, divided by the surface shear modulus (for a drop by the surface tension): the energy K (A - A0)^2/(2 "
-      "A0), with the area A0 of the unstressed surface, is added to the local law (3.26). It keeps the area of a vesicle, which is a drop "
-      "with bending. The relative area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
+      "modulus K that keeps the total area A of a vesicle (a drop with bending): the energy K G (A - A0)^2/(2 A0) is added to the law "
+      "(3.26), with the area A0 of the unstressed surface and the surface shear modulus G (for a drop the surface tension). The relative "
+      "area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
-              "fraction m of the energy of the law `Mooney-Rivlin` that is neo-Hookean; the remaining fraction 1 - m stiffens with strain");
+              "fraction m of the energy of the law `Mooney-Rivlin`, which needs it, that is neo-Hookean; the fraction 1 - m stiffens");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
               "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, "
               "axis and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in "
-              "`stress-free file`. Other choices than `resting` need a run without flow, which finds the equilibrium shape");
+              "`stress-free file`. If it is not `resting`, the equilibrium shape is another one, which a run without flow finds");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
               "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
   section.key("stress-free file", stress_free_file, deck::Choice{},
               "path of a file with the stress-free surface of the membrane in Bezier-extraction format (.iga), on the same mesh as the "
-              "particle. The path is relative to the working directory or to the deck");
+              "particle. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("pre-inflation", pre_inflation, deck::between(0.0, 1.0), "1",
               "relative inflation alpha of a capsule: its resting shape is the unstressed shape inflated by the factor 1 + alpha about its "
-              "centre, so that the membrane is under tension. A `stress-free shape` that is not `resting` is divided by the same factor");
+              "centre, so that the membrane is under tension. A `stress-free shape` other than `resting` is shrunk by the same factor");
   section.key("load", load, deck::Choice{"weak", "strong"},
-              "method of computing the load of the membrane on the fluid. `weak`: virtual work (3.5). `strong`: surface divergence of the "
-              "tensions, which fails as Maestre et al. (2017) show");
+              "method of computing the load (force per area) of the membrane on the fluid. `weak`: by virtual work (3.5). `strong`: by the "
+              "surface divergence of the tensions, which fails as Maestre et al. (2017) show");
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
-              "area per which the membrane load (force per area) is expressed, with Membrane/load `weak`. `reference`: area of the "
-              "unstressed surface (3.7). `current`: current area (3.6), as by Maestre et al. (2017) and for drops");
+              "area per which the membrane load (force per area) is computed, with Membrane/load `weak`. `reference`: area of the "
+              "unstressed surface (3.7). `current`: current area (3.6), as by Maestre et al. (2017); default for drops");
   declare_bending(*this, section);
   section.key("shear viscosity", viscosity.shear, deck::not_negative(), "viscosity x length",
               "surface shear viscosity eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10). If it is not "
               "0, every evaluation of the velocity needs the solution of a linear system");
   section.key("dilatational viscosity", viscosity.dilatational, deck::not_negative(), "viscosity x length",
-              "surface dilatational viscosity kappa_s of the membrane or interface: its resistance to the rate of change of area");
+              "surface dilatational viscosity kappa_s of the membrane or interface: its resistance to the rate of change of its area");
   section.key("relaxation time", relaxation_time, deck::positive(), "time",
               "relaxation time T of a viscoelastic membrane: its dashpots `shear viscosity` eta_s and `dilatational viscosity` kappa_s are "
               "in series with springs eta_s/T and kappa_s/T, which gives a Maxwell element (3.23) in parallel with the elastic membrane. If "
@@ -217,12 +217,12 @@ double Options::bending(double modulus, double radius) const {
 
 void DirectSolverOptions::declare(deck::Section& section) {
   section.key("sparse systems", sparse_systems, deck::Choice{"auto", "direct", "iterative"},
-              "solver of the sparse linear systems with mass and collocation matrices. `direct`: factored by Solvers/direct solver. "
-              "`iterative`: BiCGSTAB with incomplete factors, to rounding accuracy. Its set-up cost is proportional to the number of control "
-              "points; that of a direct solver grows like the power 1.7. `auto`: `iterative` from 5000 unknowns on");
+              "solver of the sparse linear systems with mass and collocation matrices. `direct`: LU factors by Solvers/direct solver. "
+              "`iterative`: BiCGSTAB with incomplete factors, to rounding accuracy, which is faster on large meshes. `auto`: `iterative` "
+              "from 5000 unknowns on, and otherwise `direct`");
   section.key("direct solver", name, deck::Choice{},
-              "name of the direct solver of sparse linear systems in Amesos2, a package of Trilinos: `KLU2`, or another one that Amesos2 was "
-              "built with");
+              "name of the direct solver (LU factors) of the sparse linear systems with mass and collocation matrices, from Amesos2, a "
+              "package of Trilinos: `KLU2`, or another one that this build of Amesos2 has");
   section.foreign("Amesos2", amesos2, "parameters that are passed unchanged to the direct solver of Amesos2, a package of Trilinos");
 }
 

@@ -20,10 +20,11 @@ void SurfactantOptions::declare(deck::Section& section) {
               "initial coverage x for the equation of state `Langmuir`, which needs it: initial concentration of surfactant divided by the "
               "largest possible concentration");
   section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time",
-              "surface diffusivity D_s of the surfactant; 0 if neither `diffusivity` nor `Peclet number` is given");
+              "surface diffusivity D_s of the surfactant; 0 (no diffusion) if neither `diffusivity` nor `Peclet number` is given");
   section.key("Peclet number", peclet_number, deck::positive(), "1",
-              "Peclet number rate R_C^2/D_s of the surfactant, instead of `diffusivity` D_s, with the rate of the flow and R_C, the radius "
-              "of the sphere with the drop's volume");
+              "surface Peclet number rate x R_C^2/D_s, which sets the surface diffusivity D_s of the surfactant instead of "
+              "`diffusivity`: the larger, the less diffusion. rate: Flow/shear rate, or the largest singular value of Flow/gradient. "
+              "R_C: radius of the sphere with the drop's volume");
 }
 
 void SurfactantOptions::check() const {

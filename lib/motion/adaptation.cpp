@@ -12,7 +12,7 @@
 namespace tanktread::motion {
 
 void AdaptationOptions::declare(deck::Section& section) {
-  section.key("enabled", enabled, "whether the surface mesh is refined as the particle deforms");
+  section.key("enabled", enabled, "whether the surface mesh is refined where and when the particle's deformation requires it");
   section.key(
       "indicator", indicator, deck::Choice{"error", "variation"},
       "criterion for the refinement of the mesh. `error`: estimated errors on an element compared with tolerances (1.5). `variation`: "
@@ -21,8 +21,8 @@ void AdaptationOptions::declare(deck::Section& section) {
   if (indicator == "variation") reference_length = 0.35 * radius, limit_aspect_ratio = 2.5, order = 1;
   section.key("surface tolerance", surface_tolerance, deck::positive(), "length",
               "largest allowed error, estimated on each element, of the position of the surface, for Adaptation/indicator `error`; default "
-              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it also limits the errors of "
-              "the surfactant concentration (divided by the mean concentration) and of the strain of a viscoelastic membrane");
+              "4e-4 R_C, where R_C is the radius of the sphere with the particle's volume. Divided by R_C, it is also the tolerance of the "
+              "relative error of the surfactant concentration and of the error of a viscoelastic membrane's strain");
   section.key("load tolerance", load_tolerance, deck::positive(), "force/length^2",
               "largest allowed error, estimated on each element, of the membrane load per current area, for Adaptation/indicator `error`; "
               "if not given, load errors cause no refinement");
@@ -31,39 +31,42 @@ void AdaptationOptions::declare(deck::Section& section) {
               "where R_C is the radius of the sphere with the particle's volume");
   section.key(
       "reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
-      "reference value chi_ref: where the mean curvature changes by more than this per length along an element, elements are made shorter "
-      "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the curvature causes no refinement");
+      "largest change chi_ref of the mean curvature per length along an element that needs no refinement, for Adaptation/indicator "
+      "`variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not given, curvature causes no "
+      "refinement");
   section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
-              "reference value T_ref: where the traction (membrane load per current area) changes by more than this per length along an "
-              "element, elements are made shorter than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, "
-              "the traction causes no refinement");
+              "largest change T_ref of the traction (membrane load per current area) per length along an element that needs no refinement, "
+              "for Adaptation/indicator `variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not "
+              "given, the traction causes no refinement");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
-              "reference value V_ref: where the velocity changes by more than this per length along an element, elements are made shorter "
-              "than Adaptation/reference length. For Adaptation/indicator `variation`; if not given, the velocity causes no refinement");
+              "largest change V_ref of the velocity per length along an element that needs no refinement, for Adaptation/indicator "
+              "`variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not given, the velocity "
+              "causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
-              "largest allowed ratio of length to width of an element, for Adaptation/indicator `variation`; 2.5 if not given");
+              "ratio of length to width of an element above which it is halved along its length, for Adaptation/indicator `variation`; "
+              "2.5 if not given");
   section.key("order", order, deck::positive(), "1",
-              "exponent kappa, for Adaptation/indicator `variation`: where a field varies more than its reference value, the largest "
-              "allowed element length is Adaptation/reference length times (reference value / variation)^kappa; 1 if not given");
+              "exponent kappa for Adaptation/indicator `variation`: where curvature, traction or velocity varies r > 1 times as much as "
+              "its reference value, elements may be as long as Adaptation/reference length / r^kappa; 1 if not given");
   section.key(
       "film resolution", film_resolution, deck::positive(), "1",
       "largest allowed length of elements next to a thin film of fluid (between two particles, a particle and a wall, or periodic images), "
       "divided by sqrt(film width x R_C), where R_C is the radius of the sphere with the particle's volume; 0.7 if not given, 0.5 for "
-      "rigid bodies in the section Particles. Only Adaptation/levels limits this refinement, Adaptation/minimum length does not");
+      "rigid bodies in the section Particles. Adaptation/levels limits this refinement, Adaptation/minimum length does not");
   section.key("minimum length", minimum_length, deck::positive(), "length",
-              "length L_min of elements below which they are not refined; default 0.035 R_C, where R_C is the radius of the sphere with "
+              "element length L_min below which elements are not refined; default 0.035 R_C, where R_C is the radius of the sphere with "
               "the particle's volume");
   section.key("interval", interval, deck::at_least(1), "steps",
               "number of accepted time steps between two checks of the mesh for refinement");
   section.key("levels", levels, deck::between(0, 8), "1",
-              "largest number of times that adaptation halves an element of the initial mesh in a direction");
+              "largest number of times that an element of the initial mesh may be halved in each direction: with 4, to 1/16 of its length");
   section.key(
       "largest number of points", largest_number_of_points, deck::at_least(56), "1",
       "largest number of control points of the surface mesh. Near this limit only the most urgent refinements are made, at the limit none");
   section.key("coarsen", coarsen, "whether elements are merged again where their refinement is not needed any more");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1",
               "safety factor of coarsening: elements are merged only if the merged element, of twice the length, stays below this fraction "
-              "of every tolerance and limit of refinement");
+              "of every tolerance and limit of refinement. Smaller values avoid that it is soon refined again");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
               "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
               "sphere with the particle's volume");

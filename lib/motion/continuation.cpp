@@ -36,13 +36,15 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("points", points, deck::between(2, 100000), "1",
               "largest number of computed points on the branch of steady shapes, folds included");
   section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1",
-              "relative tolerance of the value of the continuation parameter at a fold, where the branch of steady shapes turns back");
+              "largest allowed relative error of the value of the continuation parameter at a fold, where the branch of steady shapes "
+              "turns back");
   section.key("second parameter", second_parameter, deck::Choice{},
-              "path of a second numerical key of the deck, for example Particle/viscosity ratio. The first fold of the branch is computed "
-              "for each of its Continuation/second values, and the branch ends at this fold");
+              "path of a second numerical key of the deck, for example Particle/viscosity ratio, to find how the fold depends on it. The "
+              "branch is followed to its first fold with the deck's value, and then only the fold is computed, for each of "
+              "Continuation/second values");
   section.key("second values", second_values, deck::any(), "that of the key",
-              "values of Continuation/second parameter for which the fold is computed, in this order. Evenly spaced values, or values with "
-              "a constant ratio, need the least work");
+              "values of the key Continuation/second parameter for which the fold is computed, in this order. Values that are evenly "
+              "spaced, or have a constant ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " belong together: give both or none.");
 }

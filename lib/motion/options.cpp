@@ -16,23 +16,24 @@ void TimeOptions::declare(deck::Section& section) {
       "`bdf3`: implicit, multistep, order 3. `bs3`: explicit Runge-Kutta, order 3. `rkc2`: explicit stabilised Runge-Kutta, order 2, "
       "stores no matrix of the boundary integrals. `crank-nicolson`: the scheme of Maestre et al. 2017 (4.1)");
   std::optional<double> end;
-  section.key("final time", end, deck::positive(), "time", "time at which the run ends; required, except with Particle/motion `prescribed`");
+  section.key("final time", end, deck::positive(), "time",
+              "time at which the run ends; required for a run in time, except for a single particle with Particle/motion `prescribed`");
   final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
               "largest allowed error of a time step: root mean square displacement of the control points divided by R_C, the radius of the "
-              "sphere with the particle's volume");
-  section.key("initial step", initial_step, deck::positive(), "time", "length of the first time step; if not given, the scheme chooses one");
-  section.key("fixed step", fixed_step, deck::positive(), "time", "length of all time steps, without error control");
-  section.key("maximum step", maximum_step, deck::positive(), "time", "upper limit for the length of time steps");
+              "sphere with the particle's volume. For more accuracy, decrease it together with Quadrature/tolerance");
+  section.key("initial step", initial_step, deck::positive(), "time", "length of the first time step; chosen automatically if not given");
+  section.key("fixed step", fixed_step, deck::positive(), "time", "length of all time steps; if not given, error control varies it");
+  section.key("maximum step", maximum_step, deck::positive(), "time", "upper limit for the length of time steps; no limit if not given");
   section.key("minimum step", minimum_step, deck::positive(), "time",
               "smallest allowed length of time steps with error control. If a shorter one is needed, the run ends; if not given, 1e-9 divided by "
               "the rate of the flow");
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
-              "value of the series `shape_velocity` below which the run ends: root mean square of the normal velocity that changes the "
-              "shape, divided by the velocity scale of the flow (6.8). If not given, the run ends at the final time. With a tank-treading "
-              "membrane 2e-4 is reached at the default tolerances, with 216 elements as well as with 864");
+              "value of the series `shape_velocity` below which the shape counts as steady and the run ends: root mean square of the "
+              "normal velocity that changes the shape, divided by the velocity scale of the flow (6.8). If not given, the run continues "
+              "to the final time. A capsule whose membrane tank-treads reaches 2e-4 at the default tolerances");
   section.key("end when past", end_when_past, deck::any(), "length",
-              "position x1, or in a bent channel arc length of the centre line; the run ends when the centroids of all particles are "
+              "position x1 (in a bent channel, arc length of the centre line); the run ends when the centroids of all particles are "
               "beyond it. If not given, the run ends at the final time");
   section.key("iteration tolerance", iteration_tolerance, deck::positive(), "1",
               "tolerance of the fixed-point iteration of Time/scheme `crank-nicolson` (4.1): root mean square change of the control points "
@@ -61,10 +62,10 @@ void TimeOptions::declare(deck::Section& section) {
               "explicit scheme `rkc2` instead of an implicit one");
   section.key("secants", secants, deck::between(0, 20), "1",
               "number of earlier quasi-Newton corrections from which implicit time steps estimate the terms that the approximate Jacobian "
-              "neglects (4.13)");
+              "neglects (4.13); 0: no estimate");
   section.key("predictor order", predictor_order, deck::between(0, 3), "1",
-              "largest degree of the polynomial through earlier velocities whose extrapolation is the initial guess of a stage of "
-              "Time/scheme `tr-bdf2`. Each step uses the degree that would have been best for the previous step");
+              "largest degree of the polynomial through earlier velocities that predicts the initial guess of a stage of Time/scheme "
+              "`tr-bdf2`. Each step uses the degree that would have been best for the previous step");
 }
 
 void TimeOptions::check() const {

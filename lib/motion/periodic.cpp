@@ -22,12 +22,12 @@ namespace tanktread::motion {
 void PeriodicOptions::declare(deck::Section& section) {
   std::optional<double> expected;
   section.key("period", expected, deck::positive(), "time",
-              "expected period of the motion (required). The period found is between 0.5 and 1.5 times this value. With Flow/history, the "
-              "period of the flow: the history from time 0 to this time is repeated");
+              "expected period of the motion (required); the period found is between 0.5 and 1.5 times this value. With Flow/history give "
+              "a period of the flow, because the history from time 0 to this time is repeated");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
-              "angle about x2 by which the shape is rotated after a period before it is compared with the initial shape. With 180, a "
-              "period is half a revolution of a membrane in shear flow, at half the cost");
+              "angle, in degrees, about x2 by which the shape is rotated after a period before it is compared with the initial shape. "
+              "With 180, the period is half a revolution of the membrane in shear flow, which halves the cost");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
               "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
               "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "
@@ -36,8 +36,9 @@ void PeriodicOptions::declare(deck::Section& section) {
               "largest number of iterations of NOX (a package of Trilinos) in the search for the periodic motion, each of which integrates "
               "over one period");
   section.key("difference", difference, deck::between(1e-6, 1e-1), "R_C",
-              "largest displacement of the perturbed shapes from whose return after a period the Floquet multipliers are computed by "
-              "finite differences, if Spectrum is given; divided by R_C, the radius of the sphere with the particle's volume");
+              "step of the finite differences from which the Floquet multipliers are computed, if Spectrum is given: largest "
+              "displacement of a control point in a perturbed initial shape, divided by R_C, the radius of the sphere with the "
+              "particle's volume");
 }
 
 namespace {

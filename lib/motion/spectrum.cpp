@@ -19,26 +19,28 @@ void SpectrumOptions::declare(deck::Section& section) {
   section.key("number", number, deck::between(1, 500), "1",
               "number of reported eigenmodes of the steady shape. They are ordered from the fastest growing to the fastest decaying one");
   section.key("near", near, deck::any(), "1/time",
-              "growth rate; if given, the eigenmodes with the growth rates nearest to it are reported instead of the fastest growing ones");
+              "growth rate; if given, the Spectrum/number eigenmodes with the growth rates nearest to it are reported instead of the "
+              "fastest growing ones");
   section.key("method", method, deck::Choice{"dense", "krylov"},
               "method for the eigenvalues of the Jacobian J of the velocity with respect to the shape. `dense`: all eigenvalues of the "
-              "whole matrix, which needs two velocity evaluations per column. `krylov`: the leading eigenvalues by block Krylov-Schur with "
-              "(I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, preconditioned by an approximate Jacobian");
+              "whole matrix, which needs two velocity evaluations per column. `krylov`, for large meshes: the leading eigenvalues by block "
+              "Krylov-Schur with (I - J/shift)^-1; every product is a linear solve by Solvers/spectrum, preconditioned by an approximate "
+              "Jacobian");
   section.key("shift", shift, deck::positive(), "1/time",
               "shift of the shift-and-invert method Spectrum/method `krylov`, which finds the modes with the growth rates closest to this "
               "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "
               "R_C), where R_C is the radius of the sphere with the particle's volume");
   section.key("block", block, deck::between(1, 50), "1",
-              "block size of Spectrum/method `krylov`: number of vectors multiplied together. At most this many modes of equal growth rate "
-              "are found reliably");
+              "number of vectors in a block of Spectrum/method `krylov`. It should be at least the number of modes with equal growth "
+              "rates, which symmetric shapes have, because further ones may be missed");
   section.key(
       "parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
-      "parity of the eigenmodes under the mirror planes normal to x1, x2, x3, for modes that break the symmetry of the shape: 1 for "
-      "symmetric, -1 for antisymmetric; half turns and point symmetry have the product of their axes' parities. If not given, all 1. Only "
-      "control points that are not images of others are unknowns. With Symmetry/use `none` modes of all parities are found at once");
+      "mirror symmetry of the eigenmodes that are sought, three numbers for the mirror planes normal to x1, x2, x3 that the steady shape "
+      "has: 1 for symmetric, -1 for antisymmetric modes, which break the symmetry; all 1 if not given. Under half turns and point "
+      "symmetry, modes have the product of the parities of the axes. With Symmetry/use `none` modes of all parities are found at once");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
-              "largest displacement of the perturbed shapes from whose velocities the Jacobian is computed by finite differences, divided "
-              "by R_C, the radius of the sphere with the particle's volume");
+              "step of the finite differences from which the Jacobian of the velocity is computed: largest displacement of a control "
+              "point in a perturbed shape, divided by R_C, the radius of the sphere with the particle's volume");
 }
 
 const char* name(ModeKind kind) {
@@ -48,11 +50,11 @@ const char* name(ModeKind kind) {
 
 void Mode::add_columns(const std::string& number, Columns& to) const {
   to.add(rate.real(), {"rate_" + number, "1/time",
-                       "growth rate of eigenmode k of the steady shape: real part of the eigenvalue. Spectrum/number and Spectrum/near "
-                       "determine the order of the modes"});
+                       "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. The modes are in the "
+                       "order of Spectrum/number and Spectrum/near"});
   to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
-                                 "angular frequency of eigenmode k of the steady shape, 2 pi divided by its period of oscillation: "
-                                 "magnitude of the imaginary part of the eigenvalue"});
+                                 "angular frequency of eigenmode k of the steady shape, in radians per time: magnitude of the imaginary "
+                                 "part of the eigenvalue; 0 if the mode does not oscillate"});
 }
 
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
@@ -64,7 +66,7 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   to.add(leading, {"leading_rate", "1/time",
                    "largest growth rate of the eigenmodes that change the shape, without translations and rotations; negative if the "
                    "steady shape is stable"});
-  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes, among those that change the shape"});
+  to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 

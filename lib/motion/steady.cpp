@@ -17,14 +17,14 @@ void SteadyOptions::declare(deck::Section& section) {
               "Anderson acceleration of a fixed-point iteration, each iteration an implicit time step. `newton-krylov`: Newton's method "
               "with the linear solver Solvers/steady");
   section.key("tolerance", tolerance, deck::between(1e-13, 1e-2), "1",
-              "largest allowed estimated error of the steady shape (4.32), or largest last correction if Continuation follows a branch: "
-              "root mean square displacement of the control points divided by R_C, the radius of the sphere with the particle's volume");
+              "largest allowed estimated error of the steady shape (4.32), or with Continuation the size of the last correction: root "
+              "mean square displacement of the control points divided by R_C, the radius of the sphere with the particle's volume");
   section.key("iterations", iterations, deck::between(1, 100000), "1",
               "largest number of iterations of NOX (a package of Trilinos) in the search for the steady shape");
   section.key("step", step, deck::positive(), "time",
-              "length of the implicit time step that preconditions the equations of the steady shape; if not given, 0.5 divided by the "
-              "rate of the flow (without flow, 0.5 relaxation times), but at most ten relaxation times of each membrane, viscosity x "
-              "R_C/modulus, where R_C is the radius of the sphere with the particle's volume");
+              "length of the implicit time step that preconditions the equations of the steady shape. If not given, 0.5 divided by the "
+              "rate of the flow (without flow, 0.5 relaxation times), but at most ten relaxation times viscosity x R_C/modulus of any "
+              "membrane, where R_C is the radius of the sphere with the particle's volume");
 }
 
 namespace {

@@ -250,9 +250,9 @@ std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::P
 
 void CopiesOptions::declare(deck::Section& section) {
   section.key("file", file, deck::Choice{},
-              "path of a file with the positions of the copies, comma-separated, one row per copy: centre x1,x2,x3, optionally followed by "
-              "a rotation vector of three numbers in degrees. The first row may hold column names. The path is relative to the working "
-              "directory or to the deck");
+              "path of a file with the positions of the copies of the particle, one row per copy: the centre x1,x2,x3 in the deck's unit "
+              "of length, optionally followed by a rotation vector of three numbers in degrees, all separated by commas. The first row "
+              "may hold column names. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("lattice", lattice, deck::at_least(1), "1",
               "numbers of copies of the particle along x1, x2 and x3 on a rectangular lattice, which is centred at the particle's centre");
   section.key("spacing", spacing, deck::positive(), "length",
@@ -270,7 +270,7 @@ void CopiesOptions::declare(deck::Section& section) {
               "radius of a ball that contains all copies of the particle at random positions; its centre is the particle's centre");
   section.key("least gap", least_gap, deck::not_negative(), "R",
               "smallest allowed gap between the circumscribed spheres of two particles when copies are placed at random, divided by the "
-              "radius R of the larger sphere");
+              "radius R of the larger of the two spheres");
   section.key("seed", seed, deck::at_least(0), "1",
               "seed of the random number generator for copies at random positions. Equal seeds give equal positions");
 }

@@ -59,17 +59,18 @@ void ParticleOptions::declare(deck::Section& section) {
   section.key("torque", torque, deck::any(), "force x length",
               "external torque on a rigid particle with Particle/motion `free`, about the centre of its volume; zero if not given");
   section.key("density difference", density_difference, deck::any(), "force/(length^3 x Flow/gravity)",
-              "density of the particle minus density of the outer fluid. Multiplied by Flow/gravity it is a force per unit volume; zero if "
-              "not given");
+              "density of the particle minus density of the outer fluid, for a particle that sediments or rises: multiplied by "
+              "Flow/gravity it is the force per unit volume; zero if not given");
   section.key(
       "drift", drift, deck::Choice{"free", "held"},
-      "treatment of the motion of the particle's centroid. `free`: the centroid moves with the flow. `held`: the centroid is put back to "
-      "its initial position after every step; in an affine flow this does not change the shape. The default is `held` for a particle at "
-      "the stagnation point of a flow with a diverging direction, where rounding errors grow into a drift, and `free` otherwise");
+      "treatment of the motion of the particle's centroid. `free`: it moves with the flow. `held`: it is moved back to its initial "
+      "position after every step, which does not change the shape in a flow with a uniform gradient. The default is `held` for a "
+      "particle at the stagnation point of a flow that diverges in some direction, where rounding errors would grow into a drift, and "
+      "`free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "evaluation of force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the traction, as by "
-              "Maestre et al. (2017). `reciprocal`: the integral corrected by the reciprocal theorem; default with Quadrature/rule "
-              "`adaptive`, because the other rules are too coarse for it");
+              "method of computing force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the "
+              "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "
+              "accurate; default with Quadrature/rule `adaptive`, the only rule that is accurate enough for it");
 }
 
 void ParticleKind::declare(deck::Section& section) {
@@ -164,11 +165,11 @@ void ContactOptions::reject(const Scene& scene, Rejections& to) const {
 void ContactOptions::declare(deck::Section& section) {
   section.key("limit", limit, deck::between(1e-6, 1), "R_C",
               "smallest allowed gap between two particles, divided by R_C, the radius of the sphere with the volume of the smallest "
-              "particle. If a gap is smaller, the run ends with a checkpoint");
+              "particle. If a gap becomes smaller, the run ends with a checkpoint, unless Contact/limiter is true");
   section.key("limiter", limiter,
               "if true, contact forces keep the gaps between particles at Contact/limit or above, and the run continues. The forces act "
-              "along the normals at the nearest points of two particles, are never attractive (4.23), and vanish while the fluid keeps the "
-              "gaps open. The series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
+              "along the normals at the nearest points of two particles, only push (4.23), and vanish while the fluid keeps the gaps "
+              "open; the series `contact_force` and `contact_impulse` record them. Gaps to a wall are not limited");
   if (limiter && !section.given("limit"))
     throw UserError(section.path("limiter") + " needs " + section.path("limit") + ": the gap, divided by R_C, that it maintains.");
 }

@@ -110,8 +110,8 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(mean_velocity, "x1 x2 x3",
          {"mean_velocity_",
           "length/time",
-          "component # of the mean velocity over the cell between the walls, or over the whole cell, including particles and posts: flow "
-          "rate divided by the area of the cross-section",
+          "component # of the velocity averaged over the periodic cell (between two walls, over the space between them), particles and "
+          "posts included: flow rate divided by the area of the cross-section",
           {},
           both});
   if (to.when(scene.flow.pressure_gradient.has_value()))
@@ -119,7 +119,8 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
         permeability,
         {"permeability",
          "length^2",
-         "permeability: outer viscosity times mean velocity opposite to Flow/pressure gradient, divided by the magnitude of this gradient",
+         "permeability, if Flow/pressure gradient is given: outer viscosity times the mean velocity opposite to this gradient, divided "
+         "by its magnitude",
          {},
          both});
 }

@@ -165,7 +165,7 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   if (to.when(scene.flow.held == "pressure drop"))
     to.add(flow_rate, {"flow_rate",
                        "length^3/time",
-                       "flow rate through the tube, if Flow/held is `pressure drop`",
+                       "flow rate through the tube or channel with the particles in it, if Flow/held is `pressure drop`",
                        {},
                        "; if Flow/held is `pressure drop`"});
   if (to.when(scene.tube.channel.has_value())) {

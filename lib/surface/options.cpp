@@ -28,7 +28,8 @@ void MeshOptions::declare(deck::Section& section) {
   }
   if (of_cylinder) azimuthal_elements = 24;
   section.key("elements per side", elements_per_side, deck::between(3, 200), "1",
-              "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements");
+              "number n of elements along each edge of the cube from which the surface mesh is made, which has 6n^2 elements. With 6, "
+              "deformations of a rounded particle have errors of about 0.1 %; elements half as long have about a sixteenth of the error");
   section.key(
       "extraordinary points", extraordinary_points, deck::Choice{"g1", "catmull-clark"},
       "treatment of the extraordinary points, the eight corners of the cube mesh where three elements meet instead of four. `g1`: "
@@ -36,9 +37,11 @@ void MeshOptions::declare(deck::Section& section) {
       "`catmull-clark`: limit surface of Catmull and Clark's subdivision, in bicubic pieces; refinement does not change the surface");
   section.key(
       "azimuthal elements", azimuthal_elements, deck::between(4, 400), "1",
-      "number m of elements around the pole axis of the polar surface mesh, 32 if not given; or around a `cylinder`, 24 if not given");
+      "number m of elements around the pole axis of a polar surface mesh (32 if not given), or around a particle of the shape `cylinder` "
+      "(24 if not given)");
   section.key("axial elements", axial_elements, deck::between(4, 400), "1",
-              "number of elements along one period of a `cylinder`; if not given, elements are about as long as wide");
+              "number of elements along one period of a particle of the shape `cylinder`, which is a post; if not given, chosen such "
+              "that elements are about as long as wide");
   section.key("meridional elements", meridional_elements, deck::between(4, 200), "1",
               "number r of elements from pole to pole of the polar surface mesh; 16 if not given");
   section.key("pole axis", pole_axis, deck::Choice{"x1", "x2", "x3"},
@@ -91,8 +94,9 @@ void ParticleShape::declare(deck::Section& section) {
               "the biconcave disc of Evans and Fung, with its axis along the body-fixed x3. `cylinder`: a post, which is a fixed circular "
               "cylinder along Particle/axis through the whole period of the Domain. `file`: the closed surface in Particle/file");
   section.key("file", file, deck::Choice{},
-              "path of a file with the resting shape as a spline surface in Bezier-extraction format (.iga), lengths in the deck's unit. "
-              "The run uses its surface and spline space. The path is relative to the working directory or to the deck");
+              "path of a file with the resting shape: a closed spline surface in Bezier-extraction format (.iga), with lengths in the "
+              "deck's unit. The mesh of the file is the mesh of the run, and the section Surface must be left out. A relative path is "
+              "looked up in the working directory, then in the directory of the deck");
   const bool round = shape == "sphere" || shape == "red cell" || shape == "cylinder";
   if (round) radius = 1.0;
   section.key("radius", radius, deck::positive(), "length",
@@ -121,21 +125,23 @@ void InitialShape::declare(deck::Section& section) {
   section.key("map", map, deck::any(), "1",
               "matrix that maps the resting shape to the initial shape, about the center and in space-fixed axes: nine numbers row by row");
   section.key("file", file, deck::Choice{},
-              "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle; the position "
-              "in the file is used. The path is relative to the working directory or to the deck");
+              "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle and at the "
+              "position that it is to have. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("run", run, deck::Choice{},
-              "path of the results of another run on the same mesh, whose last shape becomes the initial shape, at its position: a "
-              "directory, whose newest checkpoint is used, or one of its snapshots. An adapted mesh is used as well. The path is relative "
-              "to the working directory or to the deck");
+              "path of the results of an earlier run on the same mesh, the last shape of which becomes the initial shape, at its "
+              "position. It is a results directory, from which the newest checkpoint is read, or one snapshot of it; if the mesh of that "
+              "run was refined, the refined mesh is used. A relative path is looked up in the working directory, then in the directory "
+              "of the deck");
   section.key("mode", mode, deck::at_least(1), "1",
-              "index, from 1, of an eigenmode in the Spectrum of the other run that Particle/initial shape/run names. The mode is added to "
-              "the shape of that run; of a complex mode the real part is used");
+              "number of an eigenmode, from 1, among those that the earlier run Particle/initial shape/run computed by its section "
+              "Spectrum. The mode, scaled by `mode amplitude`, is added to the shape of that run, to see how a disturbance grows; of a "
+              "complex mode the real part is added");
   section.key("mode amplitude", mode_amplitude, deck::any(), "R_C",
-              "largest displacement by the eigenmode Particle/initial shape/mode, which is added to the shape of another run, divided by "
-              "R_C, the radius of the sphere with the particle's volume");
+              "largest displacement by the eigenmode Particle/initial shape/mode that is added to the shape of the earlier run, divided "
+              "by R_C, the radius of the sphere with the particle's volume");
   section.key("volume", volume, deck::Choice{"resting", "own"},
-              "volume of the particle during the run. `resting`: volume of the resting shape, to which the initial shape is scaled. `own`: "
-              "volume of the initial shape");
+              "volume of the particle during the run. `resting`: volume of the resting shape, and the initial shape is scaled to this "
+              "volume. `own`: volume of the initial shape as given");
 }
 
 void InitialShape::check() const {
@@ -225,12 +231,13 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("sides", sides, deck::positive(), "length",
            "side lengths along x2 and x3 of the cross-section of the tube or channel if it is a `rectangle`, two numbers");
   list.key("outline", outline, deck::Choice{},
-           "path of a file with the outline of the cross-section of the tube or channel if it is given by `file`: one row x2,x3 per point, "
-           "counter-clockwise, without a repetition of the first point. A third column holds the word `corner` where two smooth sides "
-           "meet. A cubic spline interpolates the points. The path is relative to the working directory or to the deck");
+           "path of a file with the closed outline of the cross-section, for `section` `file`: one row x2,x3 per point, in the deck's "
+           "unit of length, counter-clockwise. A cubic spline passes through the points; where two sides meet at a corner, the row of "
+           "the corner has the word `corner` in a third column. A relative path is looked up in the working directory, then in the "
+           "directory of the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
-           "number of elements around the wall of the tube or channel; it is increased slightly if sides of equal length would otherwise "
-           "have different numbers");
+           "number of elements around the wall of the tube or channel. It is increased slightly if sides of equal length would otherwise "
+           "have different numbers of elements");
   if (channel) {
     channel->declare(list);
   } else {
@@ -242,31 +249,32 @@ void TubeOptions::declare(deck::Section& list) {
              "x1 with this length");
     list.key("images", images, deck::between(1, 100), "1", "obsolete key without effect: a periodic tube has all its images");
     list.key("axial elements", axial_elements, deck::between(4, 400), "1",
-             "number of elements along the wall of the tube, or along one period of it. If not given: 25, or in a periodic tube the number "
-             "that gives as many elements per length as in a tube that is not periodic");
+             "number of elements along the wall of the tube, from end to end or over one period. If not given: 25, or in a periodic tube "
+             "as many elements per length as 25 give in a tube with ends");
     list.key(
         "grading", grading, deck::between(1.0, 20.0), "1",
-        "concentration g of the wall elements of the tube near particles: their number per length varies as 1 + (g - 1)/(1 + (x1/R_T)^4) "
-        "with the distance x1 from the particles along the tube; 1: uniform. R_T: radius of the circle with the area of the cross-section");
+        "ratio g of the density of wall elements next to the particles to the density far from them; 1: all elements are equally long. "
+        "At the distance x1 along the tube the density is proportional to 1 + (g - 1)/(1 + (x1/W)^4), with W the larger of half the "
+        "particles' length and R_T, the radius of the circle with the area of the cross-section");
   }
   list.key("contact gap", contact_gap, deck::not_negative(), "R_C",
            "smallest allowed gap between a particle and the wall of the tube or channel, divided by R_C, the radius of the sphere with the "
            "volume of the smallest particle. If a gap is smaller, the run ends with a checkpoint. Integrals keep their accuracy down to a "
            "gap of 0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "strength p of a repulsive force of the wall on membranes, which keeps the film of fluid between membrane and wall from "
-           "becoming ever thinner: the force per unstressed area is p exp(-g/d) at the gap g between membrane and wall, with d = "
-           "`repulsion range` (3.22). Only if all cross-sections are circles and there is no bend; no repulsion if not given");
+           "strength p of a force that pushes membranes away from the wall, so that the film of fluid between them stops thinning. The "
+           "force per unstressed area is p exp(-g/d) at the gap g, with the decay length d = `repulsion range` (3.22); no repulsion if "
+           "not given. Only in straight ducts whose cross-sections are all circles");
   list.key("repulsion range", repulsion_range, deck::positive(), "length",
-           "decay length d of the repulsive force of the wall on membranes, p exp(-g/d) at the gap g, with p = `repulsion`. The force "
-           "keeps a film of a few d open");
+           "decay length d of the force per area p exp(-g/d), with p = `repulsion`, by which the wall repels membranes at a gap g. It "
+           "keeps a film open whose width is a few times d; both keys are given together");
   list.key(
       "flow", flow, deck::Choice{"exact", "boundary elements"},
-      "computation of the flow in the straight empty duct of this cross-section. `exact`: in closed form or as a series, if one exists for "
-      "the cross-section, otherwise as `boundary elements`. `boundary elements`: by a two-dimensional boundary element method");
+      "method of computing the flow in an empty straight duct of this cross-section. `exact`: by a formula or series if one exists for "
+      "the cross-section, and otherwise as `boundary elements`. `boundary elements`: by a two-dimensional boundary element method");
   list.key("flow elements", flow_elements, deck::between(8, 4000), "1",
-           "number of boundary elements along the outline of the cross-section, if `flow`, the computation of the flow in the empty duct, "
-           "is by `boundary elements`");
+           "number of boundary elements along the outline of the cross-section from which the flow in the empty duct is computed if "
+           "`flow` is `boundary elements`");
 }
 
 void ChannelOptions::declare(deck::Section& list) {
@@ -277,24 +285,26 @@ void ChannelOptions::declare(deck::Section& list) {
       "w. `step`: f = 1 - d for |s| < w with rounded edges. Outside f = 1. `file`: f from the file `points`. d: `depth`, w: `half length`");
   if (profile == "constriction") depth = 0.5;
   list.key("depth", depth, deck::any(), "1",
-           "relative depth d of the constriction, expansion or step of the channel, by which `profile` changes the size of the "
-           "cross-section; for `constriction` 0.5 if not given; a negative depth of a step widens the channel");
+           "relative depth d by which `profile` narrows the cross-section of the channel in a constriction or step, or widens it in an "
+           "expansion; a step with a negative depth widens it. For `constriction` 0.5 if not given");
   list.key("half length", half_length, deck::positive(), "length",
-           "half length w of the constriction, expansion or step of the channel, along its centre line");
+           "half length w, along the centre line, of the constriction, expansion or step of the channel");
   list.key("corner radius", corner_radius, deck::positive(), "length",
            "radius of the rounded edges of the step of the channel (`profile` `step`)");
   list.key(
       "directions", directions, deck::Choice{"x2 x3", "x2", "x3"},
-      "directions in which `profile` scales the cross-section of the channel; in any other direction the cross-section keeps its size");
+      "directions in which `profile` scales the cross-section of the channel: both, or only `x2` or `x3`, with a constant size in the "
+      "other direction");
   list.key("points", points, deck::Choice{},
-           "path of a file with the shape of the channel for `profile` `file`: one row s,f per point, arc length s (ascending) and factor "
-           "f of the cross-section, or s,f2,f3 with different factors in x2 and x3. A cubic spline interpolates the points; beyond them "
-           "the section is constant. The path is relative to the working directory or to the deck");
+           "path of a file with the shape of the channel, for `profile` `file`: one row s,f per point, with the arc length s of the "
+           "centre line in the deck's unit of length (ascending) and the factor f of the cross-section, or s,f2,f3 with factors in x2 "
+           "and x3. A cubic spline passes through the points; beyond them the section is constant. A relative path is looked up in the "
+           "working directory, then in the directory of the deck");
   list.key("bend radius", bend_radius, deck::positive(), "length",
            "radius of the circular arc along which the centre line of the channel bends; straight if not given");
   list.key("bend start", bend_start, deck::any(), "length", "arc length s of the centre line of the channel at which its bend begins");
   list.key("bend angle", bend_angle, deck::between(0.01, 180.), "degrees",
-           "angle of the bend of the centre line of the channel, from x1 towards x2");
+           "angle, in degrees, by which the centre line of the channel turns in its bend, from x1 towards x2");
   list.key("start", start, deck::any(), "length",
            "arc length s of the centre line at which the computed part of the channel begins; if not given, 4 R_T before the first change of "
            "cross-section or direction. R_T: radius of the circle with the area of the inlet");
@@ -302,8 +312,8 @@ void ChannelOptions::declare(deck::Section& list) {
            "arc length s of the centre line at which the computed part of the channel ends; if not given, 4 R_T after the last change of "
            "cross-section or direction. R_T: radius of the circle with the area of the inlet");
   list.key("axial elements", axial_elements, deck::between(8, 1000), "1",
-           "number of elements along the wall of the channel. Elements are shorter where the channel is narrow, bends or has an edge; if not "
-           "given, elements are about as long as wide");
+           "number of elements along the wall of the channel. They are shorter where the channel is narrow, bends or has an edge. If not "
+           "given, chosen such that elements are about as long as wide");
 }
 
 void ChannelOptions::check() const {

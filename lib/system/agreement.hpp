@@ -38,12 +38,12 @@ bool finite(const Net& net);
 /// Returns whether any rank has received a stop signal, so that all ranks stop together. Collective.
 bool any_told_to_stop(bool told);
 
-/// Returns the values that `choose` returns on the first rank; it is not called on other ranks. This makes a decision unique if its data differ by
-/// round-off between ranks. If `choose` throws, every rank throws RunFailure. Collective.
+/// Returns the values that `choose` returns on the first rank. It is not called on other ranks, so that the decision is unique even if the data of
+/// the ranks differ by round-off. If `choose` throws, every rank throws RunFailure. Collective.
 std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
-/// Replaces the values on every rank by the values of the first rank. If data should be bitwise equal but may not be, this lets all ranks make the
-/// same decisions. Collective.
+/// Replaces the values on every rank by the values of the first rank, so that all ranks make the same decisions even if their data are not bitwise
+/// equal. Collective.
 void take_first(std::span<double> numbers);
 double of_first(double mine);
 bool of_first(bool mine);

@@ -118,9 +118,9 @@ Net Capsule::solved(const membrane::SymmetricSolver& a, Net field) {
   return field;
 }
 
-/// Returns the load of the membranes at x. x is the shape of `e`, or on a lattice this shape with particles moved into the cell. If `other` is given,
-/// replaces it by M0^-1 times `other` (M0: mass matrix). Where possible, both systems are solved in one call, because the six columns of two
-/// right-hand sides are divided among the ranks more evenly than three columns.
+/// Returns the load of the membranes at x, which is the shape of `e` or, on a lattice, this shape with particles moved into the cell. If `other` is
+/// given, replaces it by M0^-1 times `other` (M0: mass matrix). Where possible, the two systems with M0 are solved in one call, because six columns
+/// of right-hand sides are divided among the ranks more evenly than three.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   const bool together = other && measure() == stokes::Measure::reference;
@@ -258,8 +258,8 @@ Net Capsule::double_layer_of(const Net& v) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with R the collocation matrix and A the single layer. In a tube with eliminated wall unknowns, adds the
-/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given, unless a
-/// linear system for the velocity must still be solved, because its solution changes the response.
+/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given. Exception:
+/// if a linear system for the velocity follows, stores nothing, because its solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = single_layer_of(x, f);
   if (by_sites()) {

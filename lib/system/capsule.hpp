@@ -110,9 +110,9 @@ class Capsule : public Dynamics {
   /// changed. `guess`, if given, is the initial guess of the linear solve.
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
 
-  /// Returns an evaluation of the shape x that computes each quantity when it is first used. `velocity`: velocity of the control points if known;
-  /// otherwise no rows. The linear system is solved only if a used quantity does not follow from the velocity. Even then no system is solved if the
-  /// shape evaluated last is within `distance` of x (in `norm`): its rigid motions and fluid velocities are used instead.
+  /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
+  /// unknown. A linear system is solved if a used quantity cannot be computed from the velocity, and if the shape evaluated last is farther than
+  /// `distance` from x (in `norm`). If it is nearer, its rigid motions and fluid velocities are used instead.
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
@@ -137,25 +137,26 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
   Net symmetric(Net field) const override;
 
-  /// Sets the virtual work of forces for all later calls, one row per control point. `contacts`: contact forces, which keep their directions and
-  /// material points. `fields`: loads due to the fields on surfaces; this net is minus their contribution to dE/dx (4.2). An empty net removes the
-  /// forces.
+  /// Sets the virtual work of additional forces for all later calls, one row per control point; an empty net removes the forces. `contacts`: contact
+  /// forces, which keep their directions and material points. `fields`: loads due to the fields on surfaces, given as minus their contribution to
+  /// dE/dx (4.2).
   enum class Forces { contacts, fields };
   void set_forces(Forces of, Net work);
 
-  /// Returns the change of the velocity at the shape of `at` if forces of this virtual work act in addition to the present forces. Linear in `work`.
+  /// Returns the change of the velocity at the shape of `at` due to additional forces with the virtual work `work`. Linear in `work`.
   Net response(Evaluation& at, const Net& work);
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes due to a displacement dx and to a change `work` of the virtual work of additional loads. They are linear in dx and `work`, about the
-  /// shape of the last linearisation. `rate`: change of the velocity; rate_change() returns it multiplied by B. `slip`: change of the difference
-  /// between the fluid velocity and the velocity of the control points; empty if no control points slide.
+  /// Changes due to a displacement dx and to additional loads of virtual work `work`, linearised about the shape of the last linearisation. `rate`:
+  /// change of the velocity of the control points; rate_change() returns it multiplied by the operator B. `slip`: change of the fluid velocity minus
+  /// the velocity of the control points; empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
-  RateChange rate_change(const Net& dx, const Net& work);      ///< rate is B J dx (4.3), or J dx if control points slide. Collective
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< rate: J dx (J: Jacobian of the velocity). Collective
+  RateChange rate_change(const Net& dx, const Net& work);      ///< `rate` is B J dx (4.3) with the operator B and the Jacobian J, or J dx if control
+                                                               ///< points slide. Collective
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< `rate` is J dx, with the Jacobian J of the velocity. Collective
   /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
@@ -325,7 +326,7 @@ class Capsule : public Dynamics {
   Net frozen_at_;                          // shape at which the frozen operators were assembled
   Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
   RigidParticles rigid_;
-  std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies, solved for by their tractions
+  std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies whose unknowns are their tractions
   std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first
                                           // use
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
@@ -341,7 +342,7 @@ class Capsule : public Dynamics {
   std::vector<double> volume0_;         // volume V0 of each particle
   Work work_;
   std::shared_ptr<Evaluation> latest_;
-  std::array<Net, 2> forces_;  // virtual work of contact forces and of fields; empty if there are none
+  std::array<Net, 2> forces_;  // virtual work of contact forces, then of loads due to fields; empty nets if there are none
   TubePlace tube_place_;
 };
 

@@ -158,8 +158,8 @@ Net Capsule::frozen_viscous(const Net& v) {
   return v - without_flux(collocation_.solve(hv));
 }
 
-/// Returns J delta = B^-1 (B J delta), the change of the fluid velocity due to the displacement delta. The linear system with B is solved to a
-/// smaller tolerance than the system of an implicit step, because products with the latter can contain it.
+/// Returns J delta, the change of the fluid velocity due to the displacement delta (J: Jacobian). Solves B (J delta) = energy_part(delta), with B of
+/// (4.2), to a smaller tolerance than the system of an implicit step, because each product with the matrix of that system may require this solve.
 Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   const Net rhs = energy_part(delta, work);
   if (!double_layer_ && !viscous_) return rhs;
@@ -171,10 +171,10 @@ Net Capsule::fluid_velocity_change(const Net& delta, const Net& work) {
   return Eigen::Map<const Net>(v.data(), n, 3);
 }
 
-/// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13). If all control points move with the fluid,
-/// the system is (B - shift (B J + E)) delta = B r (4.3), which does not require the inverse of B. If control points slide along an interface, it is
-/// (1 - shift (N B^-1 B J + T W + E)) delta = r. Here N dv + T W delta is the change of the mesh velocity (4.6) if the fluid velocity changes by dv
-/// and the shape by delta.
+/// Solves the system of an implicit step for the displacement delta. B is the operator of (4.2), J the Jacobian and E its secant correction (4.13).
+/// If all control points move with the fluid, the system is (B - shift (B J + E)) delta = B r (4.3), which does not require the inverse of B. If
+/// control points slide along an interface, it is (1 - shift (N B^-1 B J + T W + E)) delta = r. Here N dv + T W delta is the change of the mesh
+/// velocity (4.6) due to a change dv of the fluid velocity and the displacement delta.
 Net Capsule::solve(double shift, const Net& r, double tolerance, const Secants& secants) {
   const auto clock = phases_.time("implicit solve");
   return stiff_system(shift, left(r), tolerance, secants);
@@ -251,7 +251,7 @@ void Capsule::prepare_step(double shift) {
   if (area_) area_->factor(shift);
 }
 
-/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs, which is B r, or r if control points slide along an interface.
+/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs: r multiplied by the operator B, or r if control points slide.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {

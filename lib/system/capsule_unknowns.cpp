@@ -35,7 +35,7 @@ void Capsule::assemble_layers(const Net& x) {
   if (viscous_) layer_.place(x, measure()), assemble(layer_, layer_.by_clusters(), single_rows_);
 }
 
-/// Returns D v - (1/mu) A f at the targets, by assembled rows where there are any. An empty net is treated as zero.
+/// Returns D v - (1/mu) A f at the targets (D: double layer, A: single layer), by assembled rows if there are any. An empty f is treated as zero.
 Net Capsule::layers_of(const Net& x, const Net& v, const Net& f) {
   const auto times = [&](const stokes::Rows<double>& all, const Net& field) {  // product of the assembled rows of all ranks with a field
     Net at_targets = zero_at_targets();
@@ -51,12 +51,13 @@ Net Capsule::layers_of(const Net& x, const Net& v, const Net& f) {
 
 /// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. P is the projection (2.8) that removes changes of the volumes, given by the vectors b and c;
 /// if b and c are empty, the volumes are free and P = 1. In a tube, B either includes the response of the wall to v (option `schur`), or
-/// solve_blocks() solves for v and the wall tractions together. The iteration starts from `guess`, or without one or with rigid bodies from rhs.
+/// solve_blocks() solves for v and the wall tractions together. The initial guess is `guess`; if it is empty or there are rigid bodies, it is rhs.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   assemble_layers(x);
-  const auto load_of = [&](const Net& v) {  // part of the load that depends on v (viscous membranes, prescribed rigid motions), or empty
+  const auto load_of = [&](const Net& v) {  // returns the velocity-dependent load (viscous membranes, prescribed rigid motions); empty if there is
+                                            // none
     Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
     if (viscous_) load = load.size() > 0 ? Net(load + viscous_load(x, v)) : viscous_load(x, v);
     return load;
@@ -99,7 +100,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   return solution;
 }
 
-/// Solves for v, f^D, dp (2.5)-(2.7) and the multiplier of (2.8) in one system. rhs = v_inf - R^-1 A f is also the initial guess of v.
+/// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multiplier (2.8) in one system. The right-hand
+/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v.
 Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
@@ -119,11 +121,11 @@ Blocks Capsule::velocity_blocks() const {
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
-/// velocity without tractions and v. The loads that depend on them are added to e.load_.
+/// velocity if the tractions and v are zero. Adds the loads that depend on the tractions and v to e.load_.
 Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow) {
   const auto clock = phases_.time("tractions");
   assemble_layers(x);
-  const auto parts = [this, x, b, c](const Net& y) {  // velocity of deformable particles, and the load that depends on y
+  const auto parts = [this, x, b, c](const Net& y) {  // returns the velocity of deformable particles, and the load that depends on the unknowns y
     std::pair<Net, Net> both{y, Net::Zero(y.rows(), 3)};
     auto& [v, load] = both;
     rigid_.clear(v);
@@ -135,7 +137,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   };
   const auto product = [this, x, b, c, parts](const Net& y, const Net& caused) {
     const auto [v, load] = parts(y);
-    Net other = viscous_ || caused.size() == 0 ? load : Net();  // load whose velocity is not in `caused`
+    Net other = viscous_ || caused.size() == 0 ? load : Net();  // load that does not contribute to the velocity `caused`
     if (viscous_ && caused.size() > 0) rigid_.clear(other);
     if (double_layer_) double_layer_->place(x);
     Net u = layers_of(x, v, other);
@@ -166,7 +168,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   return v;
 }
 
-/// Returns int df r dG of particle p, a rigid body whose traction is known at the shape of `at`.
+/// Returns the first moment int df r dG of the load df on particle p, a rigid body whose unknown is its traction, at the shape of `at`.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   at.rigid();
   const Mat3 moment = tractions_->moment(static_cast<std::size_t>(std::ranges::count_if(

@@ -129,11 +129,11 @@ void CoupledMotion::linearise(const Net& y) {
   capsule_.linearise(shape(y));
 }
 
-/// Multiplies the shape part of delta by B (4.2) and leaves the field part unchanged.
+/// Multiplies the change of shape in delta by the operator B of (4.2). Changes of the fields are unchanged.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
 
-/// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the shape part of
-/// the result is multiplied by B (4.2). No linear system with B needs to be solved in this case.
+/// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the rate of change
+/// of the shape is multiplied by B (4.2), so that no linear system with B needs to be solved.
 Net CoupledMotion::right(const Net& delta, bool solved) {
   Net load = Net::Zero(n_, 3);
   std::vector<Eigen::VectorXd> values;
@@ -152,7 +152,7 @@ Net CoupledMotion::right(const Net& delta, bool solved) {
   return result;
 }
 
-/// Solves (left - shift (right + secants)) delta = rhs.
+/// Solves (left - shift (right + secants)) delta = rhs for the change of state delta, with the operators left() and right().
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   capsule_.prepare_step(shift);
   const auto apply = [&](const double* in, double* out) {

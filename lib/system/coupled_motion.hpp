@@ -46,7 +46,7 @@ class CoupledMotion : public Dynamics {
   /// rows if the field conserves no sum.
   Net conserved(std::size_t k) const;
 
-  /// Returns the change of the state y if control points move along the surfaces by this small displacement and the surfaces do not move.
+  /// Returns the change of the state y if control points slide by the small displacement `along` on surfaces that do not move.
   Net slid(const Net& y, const Net& along);
 
   /// Sets the state of the fields only.

@@ -29,7 +29,7 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
-  /// Returns the bytes of the frozen operators that grow with the square of the number of control points, summed over all ranks.
+  /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
   virtual double frozen_bytes() const { return 0; }
 
   /// Evaluates the membrane tangent H of the Jacobian (4.3) at x.
@@ -38,8 +38,8 @@ class Dynamics {
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
 
-  /// Returns B (dv - J delta) at the last linearisation: the error of the Jacobian for the velocity change dv that the displacement delta caused.
-  /// Used by Secants.
+  /// Returns the error B (dv - J delta) of the Jacobian J at the last linearisation, where dv is the velocity change that the displacement delta
+  /// caused. B is the operator of `defect`. Used by Secants.
   virtual Net missed(const Net& dv, const Net& delta) = 0;
 
   /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
@@ -47,32 +47,32 @@ class Dynamics {
   /// and `missed_of` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
-  /// Returns whether evaluating the velocity takes a linear solve that evaluating the defect of a given velocity does not take.
+  /// Returns true if the velocity requires a linear solve that the defect of a given velocity does not require.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape. Only the `defect` of u is given, so that v
-  /// need not be known.
+  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape and u a given velocity. The argument is the
+  /// `defect` of u, so that v need not be computed.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the result of `missed` for the displacement delta of x if the velocity change dv is not known. `change` is given instead: the change of
-  /// the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
+  /// Returns the result of `missed` for the displacement delta of x without the velocity change dv. The argument `change` replaces dv: it is the
+  /// change of the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
   virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
-  /// Returns the change, due to a displacement, of the velocity at which meshes relax along interfaces, at the last linearisation; no rows if no mesh
-  /// relaxes.
+  /// Returns the change, due to the displacement delta, of the velocity with which meshes relax along interfaces, at the last linearisation. Returns
+  /// no rows if no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
   /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. If the iteration fails, x is not finite afterwards.
   virtual void restore_volume(Net& x) = 0;
 
-  /// Improves the initial guess y of a stage with this shift so that a membrane that nearly conserves area has the tensions that it had in the shape
-  /// `before` the stage.
+  /// Improves the initial guess y of a stage of the step with the given shift. Membranes that nearly conserve area then have the tensions that they
+  /// had in the shape `before` the stage.
   virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
   /// Returns fields that move points along surfaces without changing the shape: rotations of the mesh of each drop whose mesh slides.

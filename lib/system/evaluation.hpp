@@ -39,7 +39,7 @@ class Evaluation {
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
   /// `flow`: flow of the solids. `carried`: integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), 0 next
-  /// to a single plate. `caused` and `caused_carried`: their contributions from the particles, without the flow in the cell without particles.
+  /// to a single plate. `caused` and `caused_carried`: the same quantities minus their values without particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
@@ -64,7 +64,7 @@ class Evaluation {
  private:
   friend class Capsule;
   void find_unknowns();
-  const Net& moving();  // fluid velocity solved at this shape, never taken from `near_`
+  const Net& moving();  // fluid velocity solved for at this shape, never copied from the evaluation `near_`
   const Net& viscous_work();
 
   Capsule* system_;

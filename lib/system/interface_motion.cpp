@@ -64,7 +64,7 @@ Net along_interface(const Net& normals, Net field) {
   return field;
 }
 
-/// Returns the change of the normal part n n.field of a field due to the change `change` of the normals n.
+/// Returns the change of the normal part n (n.field) of a field if its normals n change by `change`.
 Net turned(const Net& normals, const Net& change, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
@@ -91,8 +91,8 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. |b| is used as the area weight of a site.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // regularisation, relative to the sum of area y.y: if the shape deviates from a sphere by less than 3 %, the
-                                 // result tends to 0 and the mesh rotates with the fluid, because noise would dominate the result on a sphere
+  constexpr double hold = 1e-3;  // regularisation, relative to the sum of area y.y. If the shape deviates from a sphere by less than 3 %, noise would
+                                 // dominate the result. It then tends to 0 instead, and the mesh rotates with the fluid
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;

@@ -26,12 +26,12 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// W (4.14) is the rigid motion of the drop. The mesh shares W, so that the mesh of a drop that is convected or rotated as a whole moves rigidly, and
-/// the mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean membrane of modulus 1 whose
-/// unstressed shape is the initial shape; A0 and M0 are the single layer and the mass matrix of the initial shape. The mesh slides along the
-/// interface like an elastic membrane that its tensions drag through the fluid. Elements therefore keep their shape, the mesh comes to rest where E1
-/// is smallest on the given interface, and the system is no stiffer than that of a capsule with Ca = mu rate R_C / (mu speed). A0 never changes,
-/// contains one drop only, and rotates with the mesh by the rotation Q. On all other particles u = v.
+/// W (4.14) is the rigid motion of the drop. The mesh moves with W: the mesh of a drop that is convected or rotated as a whole moves rigidly, and the
+/// mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed
+/// shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape, and the rotation Q turns the initial
+/// shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tensions drag through the fluid. Elements
+/// therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The system is no stiffer than that of a
+/// capsule with Ca = mu rate R_C / (mu speed). On all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. `projection`: least-squares projection of u; if
@@ -64,8 +64,9 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices, among the projection's sites, of the sites on this drop
-    stokes::Rows<double> layer;   // rows `points` of A0 (4.6), in double precision so that the mesh motion does not depend on units or axes
+    std::vector<int> places;      // indices of this drop's sites among the sites of the projection
+    stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision makes the mesh motion independent of
+                                  // units and axes
   };
   void slide(const Net& x, const Net& f, Net& w) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
@@ -83,10 +84,10 @@ class InterfaceMotion {
   membrane::Membrane mesh_;
   membrane::Tangent tangent_;
   struct Latest {
-    Net x, rest, density;  // rest: fluid velocity relative to the mesh motion, v - W - w of (4.6), at the sites where u is evaluated; density:
-                           // M0^{-1} dE1/dx at the collocation sites
+    Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
+                           // density: force density M0^{-1} dE1/dx of the mesh at the collocation sites
   };
-  Latest latest_, known_;  // data of the latest velocity; `known_` equals `latest_` if the system was linearised at that shape and is empty otherwise
+  Latest latest_, known_;  // latest_: data of the latest velocity. known_: a copy of them if the system was linearised at that shape; otherwise empty
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

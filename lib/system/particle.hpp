@@ -30,7 +30,8 @@ struct Particle {
   double viscosity_ratio = 1;                 ///< lambda, viscosity of the inner fluid divided by mu
   double radius = 1;                          ///< R_C, radius of the sphere of equal volume
   membrane::Material material;
-  stokes::Measure measure = stokes::Measure::reference;  ///< area of its load: unstressed (3.7) or current (3.6); not for a rigid body
+  stokes::Measure measure = stokes::Measure::reference;  ///< surface area to which the load (force per area) refers: unstressed (3.7) or current
+                                                         ///< (3.6); not for rigid bodies
   bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time

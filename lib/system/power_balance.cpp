@@ -83,10 +83,10 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   return powers;
 }
 
-/// Returns the power input by the flow. In a duct flow, it is the flow rate times the additional pressure drop due to the particles (2.7). Between
-/// two plates or among posts, it is sum_s V_s.F_s + g.int u dV: V_s is the velocity of solid s, F_s the force on the fluid that particles add to it,
-/// g the pressure gradient, and u the velocity that particles cause. Other flows have a uniform gradient, and (6.11) applies; the wall of a tube
-/// moves with such a flow.
+/// Returns the power input by the flow due to the particles. In a duct flow, it is the flow rate times the additional pressure drop (2.7). Between
+/// two plates or among posts, it is sum_s V_s.F_s + g.int u dV. V_s is the velocity of solid s, F_s the force on the fluid that the particles add to
+/// solid s, g the pressure gradient, and u the velocity that the particles cause. All other flows have a uniform gradient, and their power is (6.11).
+/// If there is a tube, its wall moves with this flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {

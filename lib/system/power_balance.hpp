@@ -21,8 +21,8 @@ struct Powers {
   double forces = 0;       ///< power input of weight, of forces on membranes and bodies, and of contact forces
   double storing = 0;      ///< rate of change of the energy stored in the membranes
   double membranes = 0;    ///< dissipation in the membranes
-  double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow: remainder of the balance (6.12)
-  double left_over = 0;    ///< power of the velocity residual of the boundary integral equation between the collocation sites (6.13)
+  double fluids = 0;       ///< dissipation in the fluids minus dissipation in the ambient flow, computed as the remainder of the balance (6.12)
+  double left_over = 0;    ///< power of the residual velocity of the boundary integral equation at 2 x 2 Gauss points per element (6.13)
 
   void add_columns(Columns& to) const;
 };

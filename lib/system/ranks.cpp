@@ -32,7 +32,7 @@ bool launched() {
   return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}, [](const char* name) { return std::getenv(name); });
 }
 
-/// Command-line arguments of Kokkos, separated from those of the program, because Kokkos would otherwise respond to `--help` too.
+/// Command-line arguments of Kokkos, separated from the arguments of the program, because Kokkos would otherwise respond to `--help` too.
 struct KokkosArguments {
   std::vector<char*> all;
   int count = 0;

@@ -59,7 +59,7 @@ void ShapeCoordinates::add_rigid(const spline::Block& block, const Net& x) {
   }
 }
 
-/// Adds a coordinate for each tangential direction at a site in which fields of this parity need not vanish.
+/// Adds the tangential coordinates of a site: one for each tangential direction in which fields of the given mirror parity may be nonzero.
 void ShapeCoordinates::add_along(int site, const Vec3& normal) {
   const Vec3 left = parity_.signs().row(site).transpose().cwiseAbs();
   const Mat3 tangential = Mat3::Identity() - normal * normal.transpose();
@@ -142,8 +142,8 @@ Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the control values of the displacement with the coordinates y. Leaves out the tangential mesh motion that belongs to y: the motion of
-/// meshes that follow (4.26), and the tangential part of translations of drops.
+/// Returns the control values of the displacement with the coordinates y, without the tangential mesh motion that y implies: the motion of relaxing
+/// meshes (4.26), and the tangential part of translations of drops.
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());
@@ -162,7 +162,7 @@ Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the field with the tangential coordinates t and zero coordinates y across the interface.
+/// Returns the displacement that has the tangential coordinates t and zero normal coordinates y.
 Net ShapeCoordinates::along(const Eigen::VectorXd& t) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   for (std::size_t k = 0; k < along_.size(); ++k) at_sites.row(along_[k].site) += t[static_cast<Eigen::Index>(k)] * along_[k].direction.transpose();

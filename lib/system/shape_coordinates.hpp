@@ -23,9 +23,9 @@ namespace tanktread::coupling {
 ///
 ///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
 ///
-/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: the part of y that
-/// belongs to a translation moves the mesh tangentially as well. If velocities are projected (VelocityProjection), y contains the control values of a
-/// scalar field instead, the best fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
+/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: its coordinates y also
+/// move the mesh tangentially. If velocities are projected (VelocityProjection), y contains the control values of a scalar field instead, the best
+/// fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
 ///
 /// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
 /// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
@@ -33,8 +33,8 @@ namespace tanktread::coupling {
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// If the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there. They
-/// represent the symmetric fields only, or the fields of another parity (surface/symmetry.hpp). For another parity, no other part of the system may
-/// use the symmetry.
+/// represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not (1, 1, 1),
+/// no other part of the system may use the symmetry.
 ///
 /// For a rigid body the coordinates are the coefficients of six orthonormal fields, which span its translations and rotations.
 ///
@@ -55,8 +55,10 @@ class ShapeCoordinates {
 
   Eigen::Index size() const { return shape_size() + fields_.cols(); }
   Eigen::Index n_points() const { return sites_.rows(); }
-  Net displacement(const Eigen::VectorXd& y) const;     ///< displacement with these coordinates (control values); with fields, change of the state
-  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates of a displacement (control values); with fields, of a change of the state
+  Net displacement(const Eigen::VectorXd& y) const;     ///< control values of the displacement with the coordinates y; after add_fields(), change of
+                                                        ///< the whole state
+  Eigen::VectorXd coordinates(const Net& field) const;  ///< coordinates y of a displacement (control values); after add_fields(), of a change of the
+                                                        ///< whole state
   bool admits(const Net& field) const;                  ///< true if the field has, up to small errors, the symmetry of the coordinates
   Net admitted(Net field) const;                        ///< the symmetric field that equals `field` at fundamental points
 
@@ -68,7 +70,7 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // control values of the translation; `field` minus across(coordinates)
+    Net field, rest;              // field: control values of the translation. rest: field - across(coordinates), the displacement that across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;

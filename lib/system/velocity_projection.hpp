@@ -44,7 +44,7 @@ class VelocityProjection {
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // N_A and its derivatives, shape (sites, N); w_q N_A, shape (N, sites)
   membrane::SymmetricSolver mass_;
-  Eigen::SparseMatrix<double> fundamental_, images_;  // fundamental_: adds up sums at the control points to sums at the fundamental points. images_:
+  Eigen::SparseMatrix<double> fundamental_, images_;  // fundamental_: adds the sums at image points to the sums at their fundamental points. images_:
                                                       // maps the fundamental values of a symmetric scalar to all control points
   membrane::DirectSolver scalar_mass_;
 };

@@ -190,11 +190,12 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
 }
 
 void Nearest::add_columns(Columns& to) const {
-  to.add(gap, {"smallest_gap", "length", "smallest distance between two particles or their periodic images"});
+  to.add(gap, {"smallest_gap", "length", "smallest distance between the surfaces of two particles or of their periodic images"});
   to.add(first, {"first_of_gap", "1", "index of the first of the two particles of `smallest_gap`, from 1 in the order of the deck"});
   to.add(second, {"second_of_gap", "1", "index of the second of the two particles of `smallest_gap`, from 1 in the order of the deck"});
   to.add(place, "x1 x2 x3",
-         {"gap_", "length", "component # of the midpoint between the nearest points of the two particles of `smallest_gap`"});
+         {"gap_", "length", "component # of the position of the narrowest gap: midpoint between the nearest points of the two particles "
+                            "of `smallest_gap`"});
 }
 
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,

@@ -52,7 +52,7 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
                                      "relative error of the computed normal n_h: L2 norm of n_h - n divided by the L2 norm of the exact "
                                      "normal n, if it is known (6.3)"});
   to.add(kernel_evaluations,
-         {"kernel_evaluations", "1", "number of kernel evaluations of the boundary integrals, by all quadrature rules"});
+         {"kernel_evaluations", "1", "number of evaluations of the Stokes kernels for the boundary integrals, by all quadrature rules"});
 }
 
 coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube) {

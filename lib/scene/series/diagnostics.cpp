@@ -37,13 +37,14 @@ void add_velocity(const Vec3& velocity, Columns& to) {
   to.add(
       velocity, axes_of_space,
       {"velocity_", "length/time",
-       "component # of the velocity of the particle's centroid (6.4), or of the centre of a rigid body; for several particles their mean"});
+       "component # of the velocity of the particle's centroid (6.4), or of a rigid body's centre; without a particle's name before it, "
+       "the mean over all particles"});
 }
 
 void add_centroid(const Vec3& centroid, Columns& to) {
   to.add(centroid, axes_of_space,
          {"centroid_", "length",
-          "component # of the position of the particle's centroid; in a tube, x1 is the distance travelled since the start"});
+          "component # of the position of the particle's centroid; in a tube, x1 counts from the position at the start"});
 }
 
 /// Returns the cosine of the angle between the vector y and the first direction of the plane.
@@ -97,7 +98,8 @@ void ParticleRow::add_moving(const Scene& one, Columns& to) const {
           "towards the second direction (x3)",
           "the two semi-axes in the plane of the flow (any two if the flow is not planar) differ by less than 1e-6 R_C"});
   add_stresslet(stresslet, to);
-  to.add(shape.lengths, axes_of_space, {"length_", "length", "largest extent of the particle along #"});
+  to.add(shape.lengths, axes_of_space, {"length_", "length", "extent of the particle along #: largest minus smallest coordinate of its "
+                                                             "surface"});
   add_points(n_points, to);
   add_velocity(velocity, to);
   if (to.when(strains(one)))
@@ -147,19 +149,22 @@ void DeformingRow::add_columns(const Scene& one, Columns& to) const {
   to.add(volume_error, {"volume_error", "1", "relative error V/V0 - 1 of the particle's volume V, with its volume V0 at the start"});
   if (to.when(one.adaptation.enabled))
     to.add(refit_error, {"refit_error", "1",
-                         "displacement of the current and the unstressed surface by all changes of the mesh so far, summed and divided by "
-                         "R_C, the radius of the sphere with the particle's volume"});
+                         "sum of the displacements of the current and the unstressed surface by all refinements and coarsenings of the "
+                         "mesh so far, divided by R_C, the radius of the sphere with the particle's volume"});
   add_energy(energy, to);
   if (to.when(one.viscous_membrane()))
     to.add(dissipation, {"membrane_dissipation", "force length/time", "power dissipated by the viscosity of the membrane (3.10), (3.25)"});
   to.add(
       tension.smallest,
       {"smallest_tension", "1",
-       "smallest principal tension of the membrane divided by the surface shear modulus G_s; for a drop divided by the surface tension"});
-  to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative"});
+       "smallest principal tension anywhere on the membrane, negative under compression, divided by the surface shear modulus G_s; for a "
+       "drop divided by the surface tension"});
+  to.add(tension.compressed_area, {"compressed_area", "1", "fraction of the membrane's area where a principal tension is negative, so "
+                                                           "that the membrane may wrinkle"});
   if (to.when(one.membrane.law != "surface tension"))
     to.add(tension.area_change,
-           {"local_area_change", "1", "largest local change of the membrane's area divided by the unstressed area at the same point"});
+           {"local_area_change", "1", "largest relative change of area anywhere on the membrane: maximum of |J - 1|, with J the current "
+                                      "area divided by the unstressed area of the same material"});
   to.add(normal_velocity,
          {"normal_velocity", "1",
           "largest normal velocity |v.n| on the surface divided by rate x R_C, or in a tube by the mean velocity; in a tube or parabolic "
@@ -209,7 +214,9 @@ void add_size(const surface::Measures& measures, Columns& to) {
 }
 
 void add_stresslet(const Mat3& stresslet, Columns& to) {
-  to.add(components(stresslet), "11 22 33 12 13 23", {"stresslet_", "force length", "component # of the particle stresslet (6.7)"});
+  to.add(components(stresslet), "11 22 33 12 13 23", {"stresslet_", "force length", "component # of the particle's stresslet, the "
+                                                                                    "symmetric force dipole by which it contributes to "
+                                                                                    "the stress of a suspension, without its trace (6.7)"});
 }
 
 void add_drag(const Vec3& drag, const Vec3& torque, Columns& to) {
@@ -218,7 +225,7 @@ void add_drag(const Vec3& drag, const Vec3& torque, Columns& to) {
 }
 
 void add_gap(double to_wall, Columns& to) {
-  to.add(to_wall, {"gap", "length", "smallest distance between a particle and the wall", {}, "; in a tube, beside a plane wall"});
+  to.add(to_wall, {"gap", "length", "smallest distance between the surface of a particle and the wall", {}, "; in a tube, beside a plane wall"});
 }
 
 Eigen::Vector<double, 6> components(const Mat3& tensor) {

@@ -79,9 +79,10 @@ void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(step.error, {"step_error", "1",
                       "estimated error of the time step, to be compared with Time/tolerance: root mean square displacement of the control "
                       "points divided by R_C, the radius of the sphere with the particle's volume"});
-  to.add(step.rejected, {"rejected_steps", "1", "number of rejected attempts at this time step"});
+  to.add(step.rejected, {"rejected_steps", "1", "number of attempts at this time step that were rejected because their error was too "
+                                                "large or an iteration failed"});
   to.add(static_cast<double>(evaluations.value_or(work.evaluations)),
-         {"evaluations", "1", "number of velocity evaluations since the start of the run"});
+         {"evaluations", "1", "number of evaluations of the velocity of all control points, since the start of the run"});
   if (!scene.in_system()) return;
   to.add(step.iterations, {"iterations", "1", "number of nonlinear iterations (quasi-Newton or fixed-point) in this time step"});
   to.add(

@@ -47,22 +47,25 @@ Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
 void FlowHistory::declare(deck::Section& section) {
   section.key(
       "type", type, deck::Choice{"table", "sine"},
-      "time dependence of the ambient flow. `table`: the velocity is multiplied by `amplitudes` and rotated by `angles`, which are given "
-      "at `times` and interpolated linearly. `sine`: the velocity is multiplied by mean + amplitude sin(2 pi frequency t + phase)");
+      "time dependence of the ambient flow. `table`: the velocity is multiplied by the factors `amplitudes` and rotated by the `angles`, "
+      "which are given at `times` and interpolated linearly. `sine`: the velocity is multiplied by mean + amplitude sin(2 pi frequency t "
+      "+ phase)");
   section.key("times", times, deck::not_negative(), "time",
               "times at which `amplitudes` and `angles` of the ambient flow are given, in ascending order. Two equal times make a jump, "
               "for example a sudden stop of the flow. Before the first and after the last time the flow is constant");
   section.key("amplitudes", amplitudes, deck::any(), "1",
-              "factors by which the velocity of the ambient flow is multiplied, one for each of `times`; 1 if not given");
+              "factors by which the velocity of the ambient flow is multiplied, one for each of `times`: 0 stops the flow, -1 reverses "
+              "it; 1 if not given");
   section.key("angles", angles, deck::any(), "degree",
-              "angles by which the ambient flow is rotated about `axis`, one for each of `times`; 0 if not given");
+              "angles, in degrees, by which the ambient flow is rotated about `axis`, one for each of `times`; not rotated if not given");
   section.key("file", file, deck::Choice{},
-              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
-              "holds time, amplitude and optionally (in all rows or none) angle, separated by commas; a header row that begins with `time` "
-              "is allowed. The path is relative to the working directory or to the deck");
+              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A "
+              "row holds, separated by commas, the time in the deck's unit, the factor of the velocity, and in all rows or in none the "
+              "angle in degrees; a header row that begins with `time` is allowed. A relative path is looked up in the working directory, "
+              "then in the directory of the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
-              "axis through the origin about which `angles` rotate the ambient flow, by the right-hand rule; `x2` if not given");
+              "axis through the origin about which the ambient flow is rotated by `angles`, with the right-hand rule; `x2` if not given");
   if (type == "sine") mean = 0, amplitude = 1, phase = 0;
   section.key("mean", mean, deck::any(), "1",
               "mean value of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
@@ -71,11 +74,11 @@ void FlowHistory::declare(deck::Section& section) {
               "amplitude of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
               "multiplied; 1 if not given");
   section.key("frequency", frequency, deck::positive(), "1/time",
-              "frequency, in periods per unit of time, of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity "
-              "of the ambient flow is multiplied");
+              "frequency, in periods per unit of time (not radians), of the factor mean + amplitude sin(2 pi frequency t + phase) by "
+              "which the velocity of the ambient flow is multiplied");
   section.key("phase", phase, deck::any(), "degree",
-              "phase at time 0 of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow is "
-              "multiplied; 0 if not given");
+              "phase, in degrees, of the factor mean + amplitude sin(2 pi frequency t + phase) by which the velocity of the ambient flow "
+              "is multiplied; 0 if not given");
 }
 
 void FlowHistory::read() {

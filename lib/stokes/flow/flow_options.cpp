@@ -35,19 +35,19 @@ void FlowOptions::declare(deck::Section& section) {
   section.key("velocity", velocity, deck::any(), "length/time",
               "constant velocity of the ambient flow of Flow/type `uniform`, three numbers");
   section.key("gravity", gravity, deck::any(), "length/time^2",
-              "gravitational acceleration, three numbers. It acts on particles with a Particle/density difference");
+              "gravitational acceleration, three numbers; no gravity if not given. It acts only on particles that have a "
+              "Particle/density difference");
   if (type == "duct") mean_velocity = 1;
   section.key("mean velocity", mean_velocity, deck::positive(), "length/time",
               "mean velocity of Flow/type `duct` in the empty tube or channel: flow rate divided by the area of the cross-section, in a "
               "channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "quantity of Flow/type `duct` that stays constant when particles are in the duct: `flow rate`, or `pressure drop` over the "
-              "computed part of the duct. Its value is the one for which the empty tube or channel has Flow/mean velocity");
+              "quantity that stays constant in Flow/type `duct` when particles enter: the `flow rate`, or the `pressure drop` between "
+              "the ends of the computed part of the duct. Its value is that of the empty tube or channel with Flow/mean velocity");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("pressure gradient", pressure_gradient, deck::any(), "force/length^3",
-              "gradient of the mean pressure, three numbers, in a periodic Domain with two plane walls or with posts (fixed cylinders); "
-              "the fluid is driven in the opposite direction. With posts and without walls it is 0 if not given, and the mean velocity "
-              "follows from the balance of forces");
+              "gradient of the mean pressure, three numbers, in a periodic Domain with two plane walls or with posts (fixed cylinders). "
+              "The fluid is driven in the opposite direction; zero if not given");
   section.key("profile", profile, deck::Choice{"round", "plane"},
               "velocity profile of Flow/type `parabolic`. `round`: v1 = maximum velocity (1 - (x2^2 + x3^2)/half width^2). `plane`: v1 = "
               "maximum velocity (1 - x3^2/half width^2). `round` if not given");

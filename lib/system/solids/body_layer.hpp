@@ -24,17 +24,18 @@ class BodyLayer {
   BodyLayer(std::span<const Particle> particles, double viscosity, const quadrature::Options& quadrature,
             const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
 
-  /// Sets the shape x with the collocation sites `at`, assembles A at the sites of the bodies, without images on a lattice, and factors it.
-  /// `keep_rows`: whether `velocity` will be used for many densities.
+  /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
+  /// lattice. `keep_rows`: whether `velocity` will be used for many densities.
   void place(const Net& x, const Net& at, bool keep_rows);
 
-  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero unless rows are kept.
+  /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero unless place() was called with `keep_rows`.
   Net velocity(const Net& f);
 
-  /// Returns the regularising term that is part of (1/mu) A f.
+  /// Returns the regularising term (2.10) for the density f, which is part of the operator (1/mu) A.
   Net regular(const Net& f) const;
 
-  /// Returns the columns with the velocities at the sites, in rows of bodies, replaced by the densities that produce them. Not collective.
+  /// Solves for the force densities that produce the velocities in `columns`. Returns `columns` with the rows of bodies (velocities at the sites)
+  /// replaced by these densities. Not collective.
   Eigen::MatrixXd solved(Eigen::MatrixXd columns) const;
 
   const stokes::Evaluations& evaluations() const { return layer_.evaluations(); }
@@ -42,16 +43,18 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // with blocks of rows among the bodies
+  std::vector<Particle> bodies_;   // the rigid bodies; their blocks number the rows of bodies only
   std::vector<spline::Block> in_;  // block of each body among all particles
   spline::Space space_;            // common space of the bodies
-  std::vector<int> points_, rows_, others_;  // control points of the bodies; their components; points in `own` of other particles
+  std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points in `own` of other
+                                             // particles
   double viscosity_;
   Ranks& ranks_;
   stokes::Layer layer_;
-  Net at_, flux_, outward_;  // flux vector b of each body; a velocity field with nonzero flux, divided by this flux (2.10)
+  Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
+                             // (2.10)
   Eigen::MatrixXd matrix_;                // kept only for `velocity`
-  stokes::Rows<double> rows_of_others_;  // rows of A at the points `others_`, if kept
+  stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty unless `keep_rows` is set
   std::optional<DenseFactors> factors_;
 };
 

@@ -17,7 +17,7 @@ FreeBodyInTube::FreeBodyInTube(Resistance& body, const Vec3& centre, double radi
       tolerance_(solvers.tolerance),
       unknowns_(Eigen::VectorXd::Zero(body.surface().size() + 6)) {}
 
-/// Returns the solution at this position. The systems are solved in body-fixed axes.
+/// Returns the motion, force density and stresslet of the body at the position `place`. Linear systems are solved in body-fixed axes.
 const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const {
   if (place_.size() > 0 && place == place_) return solution_;
   const Mat3 turn = rotation_of(place);
@@ -94,8 +94,8 @@ void FreeBodyInTube::solve_in_tube(const Net& place) const {
   require_convergence(report, "the traction and the motion of the free body in the tube", tolerance_);
 }
 
-/// Computes f from the densities for the body at rest and for the six unit motions, so that force and torque have their prescribed values. A second
-/// change of the motion corrects the collocation error of force and torque.
+/// Computes the traction f from the densities for the body at rest and for the six unit motions, so that force and torque have their prescribed
+/// values. Then changes the motion and f once more, to correct the collocation errors of force and torque.
 void FreeBodyInTube::solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const {
   using Six = Eigen::Matrix<double, 6, 1>;
   const Mat3 turn = rotation_of(place);

@@ -82,8 +82,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest thickness h of a film for which a film inverse is set up, divided by the smaller radius R of the two bodies. Thicker films need none: the
-/// wave numbers k are at least about 1/R, so the eigenvalues, of the order of k h (see FilmInverses), are not small.
+/// Largest thickness h of a film for which a film inverse is set up, divided by the smaller radius R of the two bodies. Thicker films need no
+/// inverse: the wave numbers k are at least about 1/R, so that the eigenvalues, of the order of k h (see FilmInverses), are not small.
 constexpr double widest = 0.5;
 
 /// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.

@@ -1,5 +1,5 @@
 #pragma once
-// Preconditioner of the system of all particles: inverses for each rigid body alone, and for films between pairs of bodies.
+// Preconditioner of the system of all particles: inverses for isolated rigid bodies, and for films between pairs of bodies.
 
 #include <functional>
 #include <memory>
@@ -78,12 +78,12 @@ class FilmInverses {
   /// `alone`.
   FilmInverses(std::span<const Particle> particles, const OneBodyInverses& alone, const RigidParticles& placed, const Net& x, const RowsOf& rows_of);
 
-  /// Adds ((1 + C)^-1 - 1) y to the values y at the sites of each film.
+  /// Adds ((1 + C)^-1 - 1) y to the values y at the sites of each film, where C is the coupling of the two bodies by their double layers (see above).
   void add(Net& y) const;
 
  private:
   struct Film {
-    std::vector<int> sites;         // sites of one body of the pair next to the film, followed by those of the other body
+    std::vector<int> sites;         // indices of the collocation sites next to the film: sites of the first body, then sites of the second body
     DenseFactors one_and_coupling;  // LU factors of 1 + C
   };
   std::vector<Film> films_;

@@ -10,7 +10,7 @@ namespace {
 
 using Complex = Eigen::MatrixXcd;
 
-/// Returns exp(-2 pi i k s/n), shape (n, n).
+/// Returns the Fourier matrix with the entries exp(-2 pi i k s/n) in row k and column s; shape (n, n).
 Complex waves(int n) {
   Complex all(n, n);
   for (int k = 0; k < n; ++k)

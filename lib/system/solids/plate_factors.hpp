@@ -17,9 +17,9 @@ namespace tanktread::coupling {
 /// Only the rows of one collocation point per plate are assembled.
 class PlateFactors {
  public:
-  /// `rows`: rows of the operator for one collocation point of each plate, which has the indices `point`: three rows per plate, and 3 N columns for
-  /// the N points of all plates. Point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added to M(0), the operator on uniform
-  /// densities, so that its inverse exists.
+  /// `rows`: rows of the operator for one collocation point per plate, three rows per plate and 3 N columns for the N points of all plates. `point`:
+  /// grid indices of these collocation points; point i n2 + j of a plate has the indices i, j. `regular`: matrix that is added to M(0), the operator
+  /// on uniform densities, so that its inverse exists.
   PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>& grid, const std::array<int, 2>& point, const Eigen::MatrixXd& regular);
 
   /// Returns the part of f with wave numbers k != 0 for the velocities u. Sets row p of `uniform` to the mean velocity of plate p, for which the
@@ -36,7 +36,7 @@ class PlateFactors {
   std::array<int, 2> grid_;
   int plates_;
   std::array<Complex, 2> waves_;  // Fourier matrices of both directions: row k, column s is exp(-2 pi i k s/n)
-  std::vector<Complex> inverse_;  // inverse of M(k), at index k1 n2 + k2
+  std::vector<Complex> inverse_;  // inverse of the matrix M(k) (2.50) for the wave numbers k1, k2, at index k1 n2 + k2
   Eigen::MatrixXd uniform_;
 };
 

@@ -30,7 +30,8 @@ Resistance::Resistance(const spline::Space& space, const Net& surface, double vi
   ranks_.own(own_points_, space.n_points);
   sites_ = collocation_matrix(space);
   collocation_.factor(sites_);
-  mass_ = membrane::MassMatrix(space, 8).update(surface);  // eight Gauss points per direction, because the area element is not a polynomial
+  mass_ = membrane::MassMatrix(space, 8).update(surface);  // mass matrix by eight Gauss points per direction, because the area element is not a
+                                                           // polynomial
 
   const surface::Geometry geometry(space);
   flux_ = geometry.volume_gradient(surface);

@@ -66,13 +66,13 @@ class Resistance {
   /// Returns the pressure drop of the tube for the force density f (2.7).
   double pressure_drop(const Net& f);
 
-  /// Returns the correction (2.41) of pressure_drop(f) for collocation errors, if the flow is a duct flow. The correction contains the interpolation
-  /// error of v_inf and `work`. `work`: residual work (2.11) of f for the velocity v_inf on the surface.
+  /// Returns the correction (2.41) of pressure_drop(f) for collocation errors, if the flow is a duct flow. It is the sum of the interpolation error
+  /// of v_inf and of `work`, the integral residual_work() for the velocity v_inf on the surface with z = f.
   double lacking_pressure(const stokes::AmbientFlow& flow, const Net& f, double work = 0);
 
-  /// Returns the correction of (2.11) for a density f that is collocated for the velocity u: int z.(u - (1/mu) A f) dG for each density z, by Gauss
-  /// points between the collocation sites. By the reciprocal theorem, int z_exact.f is smaller than its exact value by this integral, up to the
-  /// product of the errors of f and z. Example: for the density z of a unit translation (rotation), the integral is the error of the force (torque)
+  /// Returns the integral (2.11) of the collocation residual, int z.(u - (1/mu) A f) dG, for each density z, by Gauss points between the sites. f is
+  /// the density collocated for the velocity u. By the reciprocal theorem, int z_exact.f is smaller than its exact value by this integral, up to the
+  /// product of the errors of f and z. Example: if z is the density of a unit translation (rotation), the integral is the error of the force (torque)
   /// of f. The error of the fitted surface is not corrected. In a channel the residual on the wall is included (2.42). `u`: the exact velocity at
   /// points of `surface`, one row each, not its interpolation.
   Eigen::VectorXd residual_work(const std::function<Net(const Net& x)>& u, const Net& f, std::span<const Net> z);
@@ -108,11 +108,11 @@ class Resistance {
   membrane::DirectSolver collocation_;
   Eigen::SparseMatrix<double> mass_;
   Net flux_, normal_;  // b and c
-  double weight_ = 0;  // factor s / (b.c) of the term c b^T (2.10)
+  double weight_ = 0;  // factor s / (b.c) of the regularising term c b^T in (2.10)
   stokes::Rows<double> rows_;
   Tube* tube_;
   std::optional<stokes::PlaneWall> wall_;
-  std::optional<stokes::Layer> images_;  // layer of the images, in the laboratory frame
+  std::optional<stokes::Layer> images_;  // layer of the body's images in the plane wall, in the laboratory frame
   stokes::Rows<double> image_rows_;      // rows of the images
   bool in_front_ = true;
   std::optional<DenseFactors> factors_;  // LU factors of R times the operator of (2.10), without the response of a tube; set only if there are few

@@ -97,8 +97,8 @@ FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const st
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
 
-/// Returns the amplitudes of the modes of the disturbance velocity on the body, in body-fixed axes: the rigid motion relative to the flow, minus the
-/// components of the strain rate of the flow, and, if the flow is quadratic, minus the coefficients of its quadratic part.
+/// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes: the rigid motion relative to the
+/// flow, the negative strain rate of the flow and, if the flow is quadratic, its negative quadratic coefficients.
 Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
   Eigen::VectorXd a(modes_.response.cols());

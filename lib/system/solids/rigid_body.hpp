@@ -25,7 +25,7 @@ struct RigidModes {
   RigidModes(Resistance& body, const Vec3& centre, bool quadratic);
 
   std::vector<Net> density;                     ///< force densities on the fluid: translations, rotations, strains, quadratic fields
-  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid for each solution
+  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid, one column per solution
   std::vector<Mat3> stresslet;                  ///< stresslet of each solution
 };
 
@@ -63,7 +63,7 @@ class LoneRigidBody : public Dynamics {
   /// members are empty if no iterative solver is used.
   struct Start {
     Net place;                 ///< position of the body
-    Eigen::VectorXd unknowns;  ///< unknowns of the linear system at this position
+    Eigen::VectorXd unknowns;  ///< solution of the linear system at this position
   };
   virtual Start start() const { return {}; }
   virtual void start_from(const Start&) {}
@@ -148,7 +148,7 @@ class FreeBodyInTube : public LoneRigidBody {
   double tolerance_;
   mutable Net place_;                 // position of the latest solve
   mutable Solution solution_;         // solution at this position
-  mutable Eigen::VectorXd unknowns_;  // unknowns of the linear system at this position
+  mutable Eigen::VectorXd unknowns_;  // solution of the linear system at the latest position
   mutable long iterations_ = 0;
 };
 

@@ -16,19 +16,19 @@
 
 namespace tanktread::coupling {
 
-/// Correction of the collocation error of the velocity u that the layers of a body induce on the body itself, for unit viscosity: control values of u
-/// by projection minus control values by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R: collocation matrix). A spline surface of n
-/// elements per side is farther out at its collocation sites than between them by about 1/n^4, and the velocity differs on the two sides of the
-/// surface. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4. Its stresslet
-/// in a straining flow has a similar error.
+/// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
+/// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R:
+/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4, and the
+/// velocity differs on the two sides of the surface. Without this correction, the angular velocity of a sphere with a prescribed torque is too small
+/// by the fraction 0.035/n^4, and its stresslet in a straining flow has a similar error.
 struct OwnLacking {
-  std::array<Net, 6> loads;  ///< corrections for u = A f (single layer) with the loads f = e_k and e_k x r, k = 0, 1, 2; r: position from
-                             ///< the centre of volume
-  Eigen::MatrixXd density;   ///< correction for u = H w (double layer) as a matrix acting on w, shape (3 N, 3 N); empty if there are more
-                             ///< than `most_points`
+  std::array<Net, 6> loads;  ///< collocation-error corrections of the single layer A f for six loads f: e_k and e_k x r, k = 0, 1, 2 (r: position
+                             ///< from the centre of volume)
+  Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the collocation-error correction of its double layer; empty if N >
+                             ///< `most_points`
 
-  /// Largest number of control points for which `density` is stored, which takes 72 bytes per pair of control points. It is stored in double
-  /// precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
+  /// Largest number of control points for which the matrix `density` is stored, which takes 72 bytes per pair of control points. It is stored in
+  /// double precision, because GMRES mistakes single-precision rounding for a residual that does not decrease.
   static constexpr int most_points = 2000;
 
   OwnLacking(const spline::Space& space, const Net& surface, const quadrature::Options& quadrature);
@@ -59,23 +59,23 @@ class RigidParticles {
   /// forces act on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
   void push(const Net& work);
 
-  // The next six functions are for bodies whose unknown is w (2.23), not their traction.
+  // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
   void add_load(Net& load) const;            ///< adds the load df (2.23) of bodies with given force and torque
-  void add_lacking(Net& v) const;            ///< adds the collocation correction (OwnLacking) of the velocity -R^-1 A f/mu due to the
-                                             ///< body's load f
+  void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
+                                             ///< df of a body induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w; adds the collocation correction (OwnLacking) of the double
-                                              ///< layer of w; adds <w> (2.23) if force and torque are given, otherwise the collocation correction of
-                                              ///< the load completing_load()
+  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w and adds the collocation-error correction (OwnLacking) of its
+                                              ///< double layer. If force and torque are given, adds the rigid motion <w> (2.23); otherwise adds the
+                                              ///< collocation-error correction of the load completing_load()
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
                                              ///< in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
-  /// Sets the motion, force and torque of body p, if an equation other than (2.23) determines them. Sets the rows of the body in v to this motion.
+  /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the system is solved with each body replaced by its image in the cell. `enter` sets the velocity differences between bodies and
-  /// images: shifts[p] is the position of particle p minus the position of its image, and `gradient` is the velocity gradient of the flow. `carry`
-  /// moves particle p, if it is a body, from its image back by `along`, and adds `faster` to its velocity: the velocity of the flow at the body minus
-  /// the velocity at its image.
+  /// On a lattice, the velocities are solved for with each body replaced by its image in the cell. `enter` sets the ambient velocity at each body
+  /// minus the ambient velocity at its image: shifts[p] is the position of particle p minus the position of its image, and `gradient` is the velocity
+  /// gradient of the flow. After the solve, `carry` moves particle p, if it is a body, from its image back to its position: it adds `along` to the
+  /// centre and `faster` to the velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
   void clear(Net& net) const;                ///< sets all rows of bodies to 0
@@ -89,17 +89,19 @@ class RigidParticles {
   const Vec3& centre(std::size_t p) const { return body(p).centre; }   ///< centre of its volume
   const Vec3& rest_centre(std::size_t p) const { return body(p).rest_centre; }
   Mat3 turn(std::size_t p) const { return body(p).turn; }              ///< rotation from rest
-  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion, or force and torque including those of `push`
+  Rigid given(std::size_t p) const { return body(p).given(); }         ///< prescribed motion; or prescribed force and torque plus the forces set by
+                                                                       ///< push()
   Mat3 load_moment(std::size_t p) const;                               ///< int df r dG
 
   /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// Returns the collocation correction (OwnLacking) of the velocity that a unit load k on the body causes on the body itself, in the axes at rest.
+  /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in axes at
+  /// rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
-  /// Returns the coefficients with which component k of <w> (velocity, then angular velocity) is a linear function of the body's rows of w, three
-  /// coefficients per row. Valid for the body in its position at rest.
+  /// Returns the coefficients of component k of the mean rigid motion <w> (velocity, then angular velocity) as a linear function of the body's rows
+  /// of w, three coefficients per row. Valid for the body in its position at rest.
   Eigen::VectorXd mean_functional(std::size_t p, int k) const;
 
  private:
@@ -126,13 +128,15 @@ class RigidParticles {
     Rigid given() const;
     RigidMotion mean(const Net& w) const;      // rigid motion <w> that fits w best on the body (least squares over its surface) (2.23); `w`: net of
                                                // all particles
-    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // field a + b x r with this integral and moment over the surface
+    RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r whose integral over the surface is `force` and whose moment
+                                                                        // is `torque`
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     RigidMotion load() const;                                           // coefficients a and b of the force density a + b x r on the fluid, which is
                                                                         // -df in (2.23)
-    Net lacking_of(const RigidMotion& load) const;                      // collocation correction (OwnLacking) of R^-1 A f for f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation correction (OwnLacking) of R^-1 H w; `w`: net of all
-                                                                        // particles
+    Net lacking_of(const RigidMotion& load) const;                      // collocation-error correction (OwnLacking) of the single layer R^-1 A f of
+                                                                        // the load f = a + b x r
+    Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of the double layer R^-1 H w;
+                                                                        // `w`: net of all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

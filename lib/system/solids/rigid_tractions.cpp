@@ -68,7 +68,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       measure_(coupling::measure(particles)),
       sites_(collocation_matrix(space)),
-      mass_(space, 8),  // eight Gauss points per direction, because the area element is not a polynomial
+      mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
       bodies_(particles_.size()) {
@@ -88,15 +88,16 @@ void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
   repeats_ = true;
 }
 
-/// Returns B y of the surroundings, with the regularising term of (2.10).
+/// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
   Net all = around_.product(y, repeats_ ? Net() : layer_.velocity(y));
   if (repeats_) all += layer_.regular(y);
   return all;
 }
 
-/// Returns the unknowns y, one column per column of `velocities`. These are velocities of the bodies at the sites and, in other rows, the right-hand
-/// side of the system for the velocity of deformable particles. If nothing responds, only the force densities are found; other rows are unchanged.
+/// Returns the unknowns y, one column per column of `velocities`. In rows of bodies, `velocities` are velocities at the sites; in other rows, they
+/// are the right-hand side for the velocity of deformable particles. If the surroundings do not respond, solves only for the force densities and
+/// copies the other rows.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
   if (!around_.responds) return layer_.solved(velocities);
@@ -116,7 +117,7 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   return all;
 }
 
-/// Returns the unknowns y. If nothing responds, adds the velocity that the force densities cause on deformable particles.
+/// Returns the unknowns y. If the surroundings do not respond, adds the velocity that the force densities cause on deformable particles.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
   if (around_.responds || alone()) return y;
@@ -182,7 +183,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   const Eigen::MatrixXd of_all = densities(velocities), z = of_all.leftCols(m);
 
   const Eigen::SparseMatrix<double>& mass = mass_.update(x);
-  Eigen::MatrixXd work(n, m);  // product of column k with a density: work of this density in the unit motion k
+  Eigen::MatrixXd work(n, m);  // the inner product of column k with a force density is the work of the density in unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
   Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);

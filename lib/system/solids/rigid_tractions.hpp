@@ -65,39 +65,41 @@ class RigidTractions {
   /// Sets the solids in the lattice, which must outlive this object.
   void put_among(SolidResponse& solids) { walls_.solids = &solids; }
 
-  /// What surrounds the bodies. Nets have one row per control point of all particles. Unknowns y are the force densities f in rows of bodies, and the
-  /// velocity v in rows of deformable particles.
+  /// Velocities and loads due to everything that surrounds the bodies. Nets have one row per control point of all particles. The unknowns y are the
+  /// force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
-    Net flow;       ///< control values of the velocity without f and v (4.2)
-    bool responds;  ///< false: velocities on the bodies depend on y only through their own single layers
+    Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
+    bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies
 
-    /// Returns B y. `caused`: velocity at all collocation sites that f causes; empty on a lattice. Rows of bodies contain the velocity that y causes
-    /// at the sites. Other rows contain v minus the control values of this velocity, projected onto constant volumes. Collective.
+    /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to f; empty on a lattice. Rows of
+    /// bodies: velocity at the sites due to y. Other rows: v minus the control values of the velocity due to y, projected onto constant volumes.
+    /// Collective.
     std::function<Net(const Net& y, const Net& caused)> product;
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
   struct Body {
     RigidMotion motion;
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) on the fluid
-    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the correction of moment()
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
+    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the collocation-error correction that moment() adds
   };
 
-  /// Solves for the densities and motions of the bodies, and the velocity of the deformable particles, with net x, for which the tube, if any, must
-  /// have been set. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions. Results are kept until the next
-  /// call. Collective.
+  /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles, for the control net x of all particles.
+  /// If there is a tube, it must have been set to x. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions.
+  /// Results are kept until the next call. Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow, Surroundings around);
 
   /// Returns the results for the bodies in the order of the particles.
   const std::vector<Body>& bodies() const { return bodies_; }
 
-  /// Returns int f r dG of body p for the latest solve. Its symmetric traceless part is corrected for the collocation error. The correction takes
-  /// five additional solves, one for each unit strain. In a tube no part is corrected. Collective.
+  /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
+  /// This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
   bool alone() const { return bodies_.size() == n_particles_; }  ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
-  double lacking_pressure() const { return lacking_pressure_; }         ///< correction of the pressure drop (2.7), for all bodies together
+  double lacking_pressure() const { return lacking_pressure_; }         ///< collocation-error correction of the pressure drop (2.7) due to all bodies
+                                                                        ///< together
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   stokes::Evaluations kernel_evaluations() const {
     const stokes::Evaluations sum = layer_.evaluations() + between_layer_.evaluations();
@@ -118,8 +120,8 @@ class RigidTractions {
   Ranks& ranks_;
   BodyLayer layer_;
   BetweenSites between_;                         // Gauss points on the bodies
-  stokes::Layer between_layer_;                  // single layer of all particles at these points
-  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at these points; set if they have a viscosity contrast
+  stokes::Layer between_layer_;                  // single layer of all particles at the Gauss points `between_`
+  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at the Gauss points; set if a viscosity contrast is not 0
   stokes::Measure measure_;
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;
@@ -128,8 +130,8 @@ class RigidTractions {
   double tolerance_;
   std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
   Surroundings around_;    // surroundings in the latest call of `solve`
-  Net at_;                 // positions of the sites of all particles in this call
-  Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG, the residual of (2.40) with the density f of this call, from which (2.11) computes
+  Net at_;                 // collocation sites of all particles in the latest call of `solve`
+  Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest density f: weighted residual of (2.40), from which (2.11) computes
                            // corrections
   std::vector<Vec3> centres_;
   std::vector<Body> bodies_;

@@ -24,7 +24,7 @@ struct SolidScene {
 /// Returns the solution of (2.46) without particles, in the ambient flow v_inf. Collective.
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow);
 
-/// Returns the integral (2.49) over the cell of the velocity of a flow of the solids.
+/// Returns the integral over the cell (2.49) of the velocity due to the solids, for the solution `flow` of (2.46).
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 
 /// Velocity u that solids (with the surface S) add to the ambient flow v_inf and to the layers of the particles (with the surface C):
@@ -40,7 +40,7 @@ class SolidResponse {
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.
   SolidResponse(const SolidScene& scene, const spline::Space& space, const stokes::AmbientFlow& flow);
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
+  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure, std::vector<bool> present);
 
   /// Sets the contrasts of the double layer, one per control point: 1 - lambda of the particle, or -1 if it is rigid.
@@ -53,7 +53,7 @@ class SolidResponse {
   /// Returns the solution without particles.
   const Solids::Flow& empty();
 
-  /// Returns the part of the solution that the load f and the velocity v cause. Empty nets are skipped.
+  /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. Empty nets are skipped.
   Solids::Flow respond(const Net& f, const Net& v);
 
   /// Computes rows `own` of the velocity u at the points `at` of `place`. Not collective.

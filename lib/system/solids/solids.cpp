@@ -116,7 +116,7 @@ bool Solids::outside(const Net& at) const {
   return true;
 }
 
-/// Returns the rows of the single-layer matrix for control values of f (2.46), three rows for each of these sites.
+/// Returns the rows of the single-layer matrix for control values of f (2.46) at `sites`, three rows per site.
 Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> sites) const {
   stokes::Rows<double> all;
   on_itself.assemble(sites, all);

@@ -39,8 +39,8 @@ struct Rod {
 /// collective.
 class Solids {
  public:
-  /// A connected part of the solids, for example one plate. The density n on this part, and 0 on the other parts, is a null vector of the single
-  /// layer. `velocity`: its prescribed velocity, tangential to its surface.
+  /// A connected part of the solids, for example one plate. Its unit normal n, as a density that is 0 on all other parts, is a null vector of the
+  /// single layer. `velocity`: prescribed velocity of this part, tangential to its surface.
   struct Solid {
     surface::SolidSurface surface;
     Vec3 velocity = Vec3::Zero();
@@ -118,8 +118,8 @@ class Solids {
   std::optional<PlateFactors> plates_;  // set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations so far, except those of the present layer: the assembly, and layers that reach() has
-                                        // replaced
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of earlier layers, which reach() has replaced; without the present
+                                        // layer
 };
 
 }  // namespace tanktread::coupling

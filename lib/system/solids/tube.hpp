@@ -66,11 +66,11 @@ class Tube {
   /// Constructs the tube of a channel, with the wall of the channel's flow.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
-  /// Constructs a tube for another mesh of the particle, which shares all data of the wall with `tube`.
+  /// Constructs a tube for another mesh of the particle. The new tube shares all data of the wall with `tube`.
   Tube(const Tube& tube, const spline::Space& particle);
   ~Tube();
 
-  /// Sets the unstressed net of the particles, and the area to which loads refer; the arguments are those of the layers (Layer::set_reference).
+  /// Sets the unstressed net of the particles, and the area to which loads refer. The arguments are explained at Layer::set_reference.
   void set_reference(const Net& unstressed, stokes::Measure measure = stokes::Measure::reference, std::vector<bool> present = {});
 
   /// Sets the viscosity contrast 1 - lambda at each control point, for several particles with different lambda. The contrast of a rigid body is -1;
@@ -91,7 +91,7 @@ class Tube {
     Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };
 
-  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: known correction of the pressure drop.
+  /// Returns the response. An empty net is treated as zero. v is used only if lambda != 1. `lacking`: collocation-error correction of dp.
   Response respond(const Net& f, const Net& v = {}, double lacking = 0);
 
   /// Computes rows `rows` of the velocity u of a response at the points x (laboratory frame), which may be on the particle or anywhere in the fluid.
@@ -111,23 +111,24 @@ class Tube {
   Net wall_on_wall(const Net& traction);                    ///< (1/mu) G_W f^D
   Net images_on_particle(const Net& f, const Net& v = {});  ///< velocity due to the particle's images in a periodic duct
 
-  /// Returns c (2.5) at the particle's collocation points. In a periodic duct this is v_inf of the empty duct per unit pressure drop of a period.
+  /// Returns the velocity c (2.5) per unit pressure drop at the particle's collocation points. In a periodic duct it is v_inf of the empty duct per
+  /// unit pressure drop of a period.
   const Net& inlet_on_particle() const;
   const Net& ambient() const;                           ///< v_inf (2.7) at the particle's collocation points, with amplitude 1
   Net inlet_on_wall() const;                            ///< c on the wall
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
-  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. Requires that the ambient flow is a duct flow; `amplitude`: its
-  /// amplitude. `work`: residual work (2.11) of the density f for the velocity v_inf on the particle. In a channel, adds the interpolation error of
-  /// v_inf at the Gauss points `between`, at which v_inf is `at_places`.
+  /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow, with the amplitude `amplitude`.
+  /// `work`: integral (2.11) of the residual of v_inf on the particle times f. In a channel, also corrects for the interpolation error of v_inf, by
+  /// its exact values `at_places` at the Gauss points `between`.
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
-  Net solve_wall(const Net& rhs);  ///< f^D of (1/mu) G_W f^D = rhs
+  Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle. It is
-                              ///< divided by the same area times pressure gradient times radius of the empty duct
+    double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle; divided
+                              ///< by section area times radius times pressure gradient of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop that would make `flux` zero; pressure drop that would make `force` zero
   };
@@ -141,8 +142,8 @@ class Tube {
   };
   Leak leak(const Net& f);
 
-  /// Returns the contribution of the wall and the inlet to the correction (2.42): f^D.leak.velocity - dp leak.flow. `leak`: residual for one load.
-  /// `of`: response (f^D, dp) to another load.
+  /// Returns f^D.leak.velocity - dp leak.flow, the contribution of the wall and the inlet to the collocation-error correction (2.42). `leak`:
+  /// discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
   /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the
@@ -183,9 +184,9 @@ class Tube {
   std::unique_ptr<Particle> particle_;
   Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
                                       // set by weigh_flow(), like the members below
-  Net flow_of_wall_;  // weights for a velocity u on the wall; weights.u is the flow rate through the inlet of the traction that cancels u
+  Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
-                                                // pressure drop of c and of the wall traction that it causes
+                                                // pressure drop, due to c and the wall traction that c causes
 };
 
 }  // namespace tanktread::coupling

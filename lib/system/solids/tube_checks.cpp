@@ -12,8 +12,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number, so that the
-                                                             // surface itself contributes to all targets
+constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surface itself
+                                                             // then contributes to all targets
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor on the tolerance of integrals over the wall in leak(), where
                                                            // pressures are large. sharpest: upper limit of the resulting tolerance
 

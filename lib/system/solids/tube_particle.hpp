@@ -56,7 +56,7 @@ struct Tube::Particle {
   };
   Cause cause(const Net& f, const Net& v, const Wall& wall);
 
-  /// Returns the weights with which the strength (1 - lambda) v contributes to the flow rate along the duct by its double layer. Cached for the
+  /// Returns the weights of the double-layer strength (1 - lambda) v in the flow rate along the duct that this double layer causes. Cached for the
   /// current shape.
   const Net& flow_of_strength(const Wall& wall);
 

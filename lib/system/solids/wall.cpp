@@ -77,8 +77,9 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 namespace {
 
 constexpr double residual = 1e-2;        // tolerance of the iterative solve divided by the quadrature tolerance
-constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints. The k-th harmonic
-                                        // of the error decreases as k^-5: k^-4 for spline interpolation, and k^-1 for the single layer
+constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints, for harmonics of the
+                                        // error that decrease as k^-5 with the wave number k (k^-4 from spline interpolation, k^-1 from the single
+                                        // layer)
 
 /// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {

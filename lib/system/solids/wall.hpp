@@ -23,8 +23,8 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner for the wall's operator. For each control point, the operator is restricted to the 5 x 5 neighbouring points and inverted, and the
-/// rows of the point in this inverse are kept.
+/// Preconditioner for the wall's operator. For each control point, the block of the operator for the 5 x 5 neighbouring points is inverted, and the
+/// rows of the inverse that belong to the point are kept.
 class WallPatches {
  public:
   /// `points`: control points to compute. `layer`: layer of the wall at its collocation points, with the shape set.
@@ -105,7 +105,7 @@ class Wall {
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
-  void from_space(stokes::Rows<float>& rows) const;  ///< multiplies each row of a matrix of the layer by this transpose
+  void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
 
   /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
   /// a periodic wall, A includes the condition int f.n dG = 0.
@@ -118,7 +118,8 @@ class Wall {
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
-  const Net& pumped() const { return pumped_; }              ///< A^-1 c (2.13): traction in the open, empty tube per unit pressure drop
+  const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
+                                                             ///< the operator A
 
   /// Return weights, one row per control point A, for inner products with tractions on the wall. flow_weights: int N_A c dG, with c =
   /// flow_of_forces(x); the inner product is mu times the flow rate that the traction causes. force_weights: int N_A e1 dG; the inner product is the
@@ -163,7 +164,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only: traction w n of a constant pressure w, at the sites; int N_A n dG
+  Net pressure_, flux_;  // periodic wall only. pressure_: traction w n of a constant pressure w at the sites. flux_: int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

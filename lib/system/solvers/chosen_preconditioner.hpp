@@ -11,8 +11,8 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y: maps the part of a vector in the span of the y by Z
-/// Y^T, and the remaining part by another preconditioner (2.24).
+/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y. The columns of Y and Z are the stored y and z. Maps
+/// the projection of a vector onto the span of Y by Z Y^T, and the remaining component by another preconditioner (2.24).
 class RecycledProducts {
  public:
   /// Records a product y = A z of the current solve. It is used from the next solve on.
@@ -21,7 +21,7 @@ class RecycledProducts {
   /// Ends the current solve.
   void refresh();
 
-  /// Computes out = Z Y^T in + P (in - Y Y^T in), with the preconditioner `other` as P (2.24).
+  /// Computes out = Z Y^T in + P (in - Y Y^T in) (2.24). The columns of Z and Y are the stored z and y = A z; P is the preconditioner `other`.
   void apply(const Eigen::VectorXd& in, const Apply& other, Eigen::Map<Eigen::VectorXd> out) const;
 
   double scale() const { return scale_; }

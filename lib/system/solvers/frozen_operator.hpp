@@ -32,8 +32,8 @@ class FrozenOperator {
  private:
   std::vector<int> targets_;
   int n_ = 0;
-  std::vector<std::uint16_t> entries_;       // the six entries e = 0 .. 5 (11, 12, 13, 22, 23, 33) of each block: block of point p of n in the row of
-                                             // a target at (6 target + e) n + p
+  std::vector<std::uint16_t> entries_;       // six entries (11, 12, 13, 22, 23, 33) of each symmetric 3 x 3 block. Entry e = 0 .. 5 of the block for
+                                             // row `target` and control point p of n is at (6 target + e) n + p
   mutable std::vector<float> f1_, f2_, f3_;
 };
 
@@ -57,7 +57,7 @@ class Corotation {
   Net back(const Net& f) const;    ///< returns Q^T f
   Net forth(const Net& f) const;  ///< returns Q f
 
-  /// Returns the displacement to - from without the best-fitting rigid motion of each particle.
+  /// Returns the displacement `to` - `from` minus the best-fitting rigid motion of each particle.
   static Net deformation(std::span<const Particle> particles, const Net& from, const Net& to);
 
  private:

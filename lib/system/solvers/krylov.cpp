@@ -26,8 +26,8 @@ constexpr const char* block_gmres = "Block GMRES";
 
 constexpr double least_recursive_residual = 1e-12;  // relative residual below which the recursively computed residual is only round-off
 
-/// Returns the names that Stratimikos uses for the solvers of Belos' factory. "GMRES" is flexible GMRES, which needs no additional product to detect
-/// convergence.
+/// Returns the names that Stratimikos uses for the solvers of Belos' factory. "GMRES" is mapped to flexible GMRES, which detects convergence without
+/// an additional product.
 const std::map<std::string, std::string>& solver_types() {
   static const std::map<std::string, std::string> types = {{"GMRES", block_gmres},
                                                            {"FLEXIBLE GMRES", block_gmres},

@@ -27,8 +27,7 @@ using Apply = std::function<void(const double* in, double* out)>;
 struct LinearSystem {
   Blocks blocks;
   Apply product;
-  Apply precondition;  ///< optional: approximate inverse of `product`; applied from the right, so that residuals are those of the
-                       ///< unpreconditioned system
+  Apply precondition;  ///< optional: approximate inverse of `product`; applied from the right, so that residuals refer to the unpreconditioned system
 };
 
 /// Result of a linear solve.

@@ -16,7 +16,7 @@
 
 namespace tanktread::coupling {
 
-/// A of (4.2) by the trapezoidal rule at the collocation sites x_B, corrected for control points near the target:
+/// The single layer A of (4.2) by the trapezoidal rule at the collocation sites x_B, corrected for control points near the target:
 ///
 ///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
@@ -36,14 +36,14 @@ class NodalOperator {
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
   };
 
-  /// Function that computes the blocks A_iC of near control points (Layer::assemble).
+  /// Function that computes the 3 x 3 blocks A_iC of the single layer for control points C near target i (Layer::assemble).
   using Assemble = std::function<void(std::span<const int> targets, const stokes::NearPoints& near, std::vector<double>& entries)>;
 
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Lets ranks share the sums by clusters. This rank computes share `part` of `parts` equal shares of the work, for the rows `everybody`, which
-  /// include its own targets.
+  /// Lets ranks share the sums by clusters. This rank computes the share number `part` of `parts` equal shares of the work, for the rows `everybody`,
+  /// which include its own targets.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to
@@ -71,7 +71,7 @@ class NodalOperator {
   std::vector<double> node_[3], force_[3];
   std::optional<stokes::TreeSum> tree_;                  // set if clusters are faster
   stokes::NearPoints near_;
-  std::vector<double> entries_;                          // entries 11, 12, 13, 22, 23, 33 of K for each near point of each target
+  std::vector<double> entries_;                          // entries 11, 12, 13, 22, 23, 33 of the near-field blocks K_iC (4.11) of each target
 };
 
 }  // namespace tanktread::coupling

@@ -23,8 +23,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Unit in which positions and residuals are passed to NOX. It is small, so that their values are large, because NOX treats residual differences
-/// below 1e-16, which occur near the solution, as singular.
+/// Unit in which positions and residuals are passed to NOX. It is small so that their values are large. NOX would treat differences of residuals
+/// below 1e-16 as singular, and these occur near the solution.
 constexpr double unit = 0x1p-20;
 
 Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }

@@ -24,8 +24,8 @@ class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
-  /// Returns the number of iterates that Anderson's method combines for a steady shape with `size` unknowns. Near a fold and with travelling waves
-  /// four iterates do not converge, and on fine meshes twenty do not; on coarse meshes forty are linearly dependent.
+  /// Returns the number of iterates that Anderson's method combines for a steady shape with `size` unknowns. Four iterates do not converge near a
+  /// fold or for travelling waves. Twenty do not converge on fine meshes. Forty are linearly dependent on coarse meshes.
   static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`. `linear`: Belos solver and preconditioner of the linear

@@ -18,23 +18,25 @@ void InterfaceOptions::declare(deck::Section& section) {
               "`relaxed`: with the fluid in the normal direction, and tangentially so that elements keep their shape; the default for "
               "Membrane/law `surface tension`");
   section.key("relaxation", relaxation, deck::not_negative(), "1",
-              "speed of the tangential mesh relaxation with Interface/motion `relaxed`: the mesh slides like an elastic membrane of "
-              "capillary number 1/relaxation");
+              "dimensionless speed at which the mesh of a drop slides along the interface to keep its elements well shaped, with "
+              "Interface/motion `relaxed`: it slides like an elastic membrane of capillary number 1/relaxation. Increase it if elements "
+              "become distorted");
 }
 
 void IterativeOptions::declare(deck::Section& section) {
   path = section.path();
   section.key("iterative solver", solver, deck::Choice{},
-              "name, in Belos (a package of Trilinos), of the iterative solver for the linear system of this section, instead of "
-              "Solvers/iterative solver");
+              "name of the iterative solver in Belos (a package of Trilinos), for example `GMRES` or `BICGSTAB`, for the linear system "
+              "after which the enclosing section is named; Solvers/iterative solver if not given");
   section.foreign("Belos", belos,
-                  "parameters that are passed unchanged to Belos (a package of Trilinos), the iterative solver of the linear system that "
-                  "the section above describes, instead of Solvers/Belos");
+                  "parameters that are passed unchanged to the iterative solver in Belos (a package of Trilinos) of the linear system "
+                  "after which the enclosing section is named, instead of Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
-              "preconditioner of the iterative solver for the linear system of this section. `own`: preconditioner specific to the system "
-              "(for several rigid bodies: inverses of isolated bodies and of films between them; in a tube: the one of Solvers/tube), or "
-              "none if it has none. `none`: no preconditioner. `neumann`: 2I - A for the scaled matrix A, one more product per "
-              "application. `recycled`: exact for directions whose products are known from earlier solves, and `own` for the remainder");
+              "preconditioner of the iterative solver for the linear system after which the enclosing section is named. `own`: the one "
+              "that the program has for this system (for several rigid bodies: inverses of isolated bodies and of films between them; in "
+              "a tube: see Solvers/tube), or none if it has none. `none`: no preconditioner. `neumann`: 2I - A for the scaled matrix A, "
+              "one more product with A per application. `recycled`: exact for directions whose products are known from earlier solves, "
+              "and `own` for the remainder");
 }
 
 IterativeOptions SolverOptions::of(IterativeOptions system) const {
@@ -46,8 +48,8 @@ IterativeOptions SolverOptions::of(IterativeOptions system) const {
 
 void SolverOptions::declare(deck::Section& section) {
   section.key("iterative solver", krylov, deck::Choice{},
-              "name of the iterative linear solver in Belos, a package of Trilinos. It is used for all linear systems for which no other "
-              "solver is set");
+              "name of the iterative linear solver in Belos (a package of Trilinos), for example `GMRES` or `BICGSTAB`. It is used for "
+              "every linear system for which no other solver is set in its own section of Solvers");
   section.foreign("Belos", belos,
                   "parameters that are passed unchanged to the iterative solver of Belos, a package of Trilinos. Verbosity, Output Style and Output "
                   "Frequency cannot be set");
@@ -63,11 +65,12 @@ void SolverOptions::declare(deck::Section& section) {
                   "with a Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual to which the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid "
-              "particles) are solved");
+              "particles) are solved. Keep it well below Quadrature/tolerance");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
               "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. "
-              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver. `auto`: "
-              "`matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes less than 1 GB");
+              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs "
+              "less memory. `auto`: `matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes "
+              "less than 1 GB");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
               "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction "
               "and pressure drop are eliminated with the LU factors of the wall, so that no system is left at viscosity ratio 1. `block "
@@ -79,18 +82,18 @@ void SolverOptions::declare(deck::Section& section) {
               "factors would take more than 4 GB");
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
-      "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, with sums by clusters. "
-      "`first kind`: tractions as unknowns (2.40), a dense matrix of the bodies factored for every configuration. Its forces and motions are "
-      "far more accurate if gaps are small. `auto`: `first kind` if there are two or more rigid bodies, the meshes of all of them adapt to "
-      "films, and their tractions are at most 4500 unknowns at the start; otherwise `second kind`");
+      "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
+      "`first kind`: the tractions are the unknowns (2.40) of a dense matrix, which is factored for every configuration; far more "
+      "accurate if gaps are small. `auto`: `first kind` if there are at least two rigid bodies, all with Adaptation/enabled and together "
+      "with at most 4500 unknowns at the start, and otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
               "in a tube, at a wall or with rigid bodies");
   section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
-              "storage of the single-layer operator in the Jacobian of implicit steps, which is kept over several steps (4.3). `nodal`: "
-              "one quadrature node per control point, summed in every product, with near-field corrections. `assembled`: a matrix, 12 "
-              "bytes per pair of points");
+              "storage of the single-layer operator in the approximate Jacobian of implicit time steps, which is kept over several steps "
+              "(4.3). `nodal`: one quadrature node per control point, summed in every product, with near-field corrections. `assembled`: "
+              "a full matrix, 12 bytes per pair of points");
   direct.declare(section);
 }
 

@@ -17,7 +17,7 @@ struct VolumeOptions {
   void declare(deck::Section& section);
 };
 
-/// Options `Interface/*` of the deck: tangential motion of the control points along an interface, which is arbitrary if there is no membrane.
+/// Options `Interface/*` of the deck: tangential motion of the control points along an interface. Without a membrane this motion is arbitrary.
 struct InterfaceOptions {
   /// material: with the fluid; normal: only normal to the surface; relaxed: with the fluid in the normal direction, and tangentially so that elements
   /// keep their shape. If not set: relaxed for a surface tension, material otherwise.
@@ -30,8 +30,8 @@ struct InterfaceOptions {
 /// Options `Solvers/<system>` of the deck: the iterative solver of one kind of system.
 struct IterativeOptions {
   std::optional<std::string> solver{};            ///< Belos' name of the solver; if not set, the solver of SolverOptions
-  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< Belos' parameter list of the solver, passed unchanged. If this and `solver` are not set, the
-                                                    ///< parameter list of SolverOptions is used
+  std::shared_ptr<Teuchos::ParameterList> belos{};  ///< parameter list of the Belos solver, passed unchanged. If neither this list nor `solver` is
+                                                    ///< set, the parameter list of SolverOptions is used
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
   int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
@@ -50,8 +50,8 @@ struct SolverOptions {
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
   std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
                                       ///< auto: matrix-free if far sums are taken by clusters
-  std::string tube = "schur";                     ///< unknowns in a tube: schur: v, with the wall tractions eliminated; otherwise all blocks
-                                                  ///< (BlockForm)
+  std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: all
+                                                  ///< unknowns in one system (BlockSystem), with this preconditioner
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
                                                   ///< factors are large, see Wall)
   std::string rigid_bodies = "auto";  ///< equation of rigid bodies: second kind (RigidParticles), first kind

@@ -9,7 +9,7 @@
 
 namespace tanktread::coupling {
 
-/// The last few quasi-Newton corrections d_i, and the error e_i = B (dv_i - J d_i) of the Jacobian (4.3) for the velocity change dv_i of each:
+/// The last few quasi-Newton corrections d_i, and the errors e_i = B (dv_i - J d_i) of the Jacobian J (4.3) if d_i changes the velocity by dv_i:
 ///
 ///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
 ///

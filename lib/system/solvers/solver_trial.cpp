@@ -63,8 +63,8 @@ bool solves(IterativeOptions options, const List& list) {
   });
 }
 
-/// Adds the parameters in `given` one by one to `grown`, the sublist of `whole` at `path`. Returns the path and value of the first parameter after
-/// whose addition works(whole) is false. Returns an empty text if there is none.
+/// Adds the parameters in `given` one by one to `grown`, the sublist of `whole` at `path`, until works(whole) is false. Returns the path and value of
+/// the parameter added last, or an empty text if works(whole) remains true.
 std::string culprit(const List& given, const Works& works, const std::string& path, const List& whole, List& grown) {
   for (const auto& item : given) {
     const std::string here = path + "/" + item.first;

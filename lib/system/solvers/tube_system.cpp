@@ -8,7 +8,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Views of the four blocks (v, f^D, dp, multiplier) in one array of unknowns or residuals.
+/// Access to the four blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and volume multiplier.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
@@ -42,9 +42,9 @@ void product(const BlockSystem& s, const In& x, Out r) {
   r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
 }
 
-/// Applies the preconditioner, in which 1 replaces the operator B of (2.5). Solves for the velocity and the multiplier, then for the pressure drop
-/// and the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions of the unknowns
-/// solved for before.
+/// Applies the preconditioner, in which the identity replaces the operator B of (2.5). Solves for the velocity and the multiplier, then for the
+/// pressure drop, then for the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions
+/// of the unknowns computed before.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
   x.multiplier = r.multiplier;

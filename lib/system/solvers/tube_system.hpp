@@ -10,7 +10,7 @@
 
 namespace tanktread::coupling {
 
-/// Particles in a tube, without elimination of unknowns: v (control values), f^D on the wall, dp and the multiplier pi of (2.8),
+/// Linear system for particles in a tube. Unknowns: velocity v (control values), wall traction f^D, pressure drop dp and multiplier pi of (2.8),
 ///
 ///   B v + R^-1 [(1/mu) G_W f^D - dp c] + pi n = r_v,   B = 1 - (1 - lambda) R^-1 H        at the particle                (2.5)
 ///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dG = r_W                    at the wall                    (2.6)
@@ -25,11 +25,12 @@ struct BlockSystem {
   std::function<Net(const Net&)> control_values;   ///< applies R^-1
   const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, so that the multiplier pi is 0
   const Net& normal;                               ///< n = M0^-1 b
-  double unit = 1;                                 ///< R_T/mu, factor that converts f^D and dp to velocities
+  double unit = 1;                                 ///< tube radius divided by mu: converts f^D and dp to velocities
 
-  /// Returns the system with one of three preconditioners. `block triangular` replaces B by 1 and uses the LU factors of the wall. It solves for the
-  /// velocity v and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D, each with the contributions of the unknowns
-  /// solved for before. `block diagonal` omits these contributions. `block` does not precondition. The result refers to this object.
+  /// Returns the system with the named preconditioner. `block triangular` approximates the operator B by the identity and solves for the velocity v
+  /// and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D (by the LU factors of the wall). Each right-hand side
+  /// includes the unknowns found before. `block diagonal` omits these contributions. `block` uses no preconditioner. The result refers to this
+  /// object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;
 
   /// Returns the right-hand side for the load f. `velocity`: right-hand side r_v of (2.5), in a periodic duct without the images of the particle. The
