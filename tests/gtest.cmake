@@ -12,7 +12,7 @@ target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/lib/sce
 
 # gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
 # Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
-# but for the suites named after SERIAL, of code that knows of no ranks: each would do there what it did alone.
+# but for the suites named after SERIAL: their code knows of no ranks, or is run on several ranks by tests in tests/cli.
 function(gtest_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;ROOMS;SERIAL")
   add_executable(${name} ${arg_SOURCES})

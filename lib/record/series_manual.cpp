@@ -87,7 +87,7 @@ std::vector<Kind> kinds() {
   Scene deforming, free, free_in_tube, prescribed, several, returning;
   free.particle.motion = free_in_tube.particle.motion = Motion::free, prescribed.particle.motion = Motion::prescribed;
   free_in_tube.tube.present = true;
-  several.particles.resize(1), returning.periodic.present = true;
+  several.particles.resize(2), returning.periodic.present = true;
   Scene among_others = free;
   among_others.name = "one";
   Columns capsule = run_columns(deforming, true), spectrum, branch, folds, periodic;
