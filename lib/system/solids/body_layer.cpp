@@ -34,8 +34,9 @@ BodyLayer::BodyLayer(std::span<const Particle> particles, double viscosity, cons
       space_(common_space(bodies_)),
       viscosity_(viscosity),
       ranks_(ranks),
-      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, quadrature) {
-  if (wall) layer_.set_wall(*wall);
+      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, quadrature),
+      beyond_(stokes::Layer::Kernel::single_layer, space_, {}, quadrature) {
+  if (wall) layer_.set_wall(*wall), beyond_.set_wall(*wall);
   for (const Particle& particle : particles) {
     const spline::Block& block = particle.block;
     if (particle.rigid) in_.push_back(block);
@@ -64,6 +65,7 @@ void BodyLayer::place(const Net& x, const Net& at, bool keep_rows) {
   at_ = at;
   make_regular(x);
   layer_.place(x(points_, Eigen::all));
+  if (!others_.empty()) beyond_.place(x(points_, Eigen::all));
   const std::vector<int> own = ranks_.share(static_cast<int>(points_.size()));
   const auto n = static_cast<Eigen::Index>(rows_.size());
   matrix_ = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
@@ -76,7 +78,7 @@ void BodyLayer::place(const Net& x, const Net& at, bool keep_rows) {
     matrix_.block(first, first, length, length) += flat(outward_).segment(in, length) * flat(flux_).segment(in, length).transpose();
   }
   rows_of_others_.resize(0, 0);
-  if (keep_rows && !others_.empty()) layer_.assemble(at_, others_, rows_of_others_);
+  if (keep_rows && !others_.empty()) beyond_.assemble(at_, others_, rows_of_others_);
   if (keep_rows) factors_.emplace(matrix_);
   else factors_.emplace(std::exchange(matrix_, {}));
 }
@@ -87,7 +89,7 @@ Net BodyLayer::velocity(const Net& f) {
   if (own.rows() < f.rows())
     u = ranks_.assembled<Net>(f.rows(), 3, [&](Net& all) {
       if (others_.empty()) return;
-      if (rows_of_others_.size() == 0) return layer_.apply(own, at_, others_, all);
+      if (rows_of_others_.size() == 0) return beyond_.apply(own, at_, others_, all);
       const Eigen::VectorXd there = rows_of_others_ * flat(own);
       for (std::size_t k = 0; k < others_.size(); ++k) all.row(others_[k]) = there.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
     });

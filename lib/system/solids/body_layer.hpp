@@ -38,7 +38,7 @@ class BodyLayer {
   /// replaced by these densities. Not collective.
   Eigen::MatrixXd solved(Eigen::MatrixXd columns) const;
 
-  const stokes::Evaluations& evaluations() const { return layer_.evaluations(); }
+  stokes::Evaluations evaluations() const { return layer_.evaluations() + beyond_.evaluations(); }
 
  private:
   void make_regular(const Net& x);
@@ -50,7 +50,7 @@ class BodyLayer {
                                              // particles
   double viscosity_;
   Ranks& ranks_;
-  stokes::Layer layer_;
+  stokes::Layer layer_, beyond_;  // single layer at the sites of the bodies, and at the points `others_`
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
                              // (2.10)
   Eigen::MatrixXd matrix_;                // kept only for `velocity`
