@@ -33,8 +33,9 @@ class MassMatrix {
   // Values of the basis functions A at the Gauss points q of a batch of elements, entry [A n_gauss + q], one array per group of batches. Batches with
   // equal extraction matrices share the values.
   std::vector<std::vector<Pack>> values_;
-  // Positions in matrix_ of the entries (A, B) and (B, A) for each pair B <= A of functions of a batch, one array per group. Pairs k are counted
-  // through all batches of the group; pair k has the array entries [2 k pack_lanes() + lane] and [(2 k + 1) pack_lanes() + lane].
+  // Positions in matrix_ of the entries (A, B) and (B, A), for each pair B <= A of basis functions of a batch; one array per group. A batch holds one
+  // element per SIMD lane, and a group holds batches of equal degree (packed.hpp). The pairs of all batches of a group are numbered consecutively.
+  // The positions for pair k are stored at indices 2 k n + lane for (A, B) and (2 k + 1) n + lane for (B, A), with n = pack_lanes().
   std::vector<std::vector<int>> slots_;
   Eigen::SparseMatrix<double> matrix_;
   Net updated_;  // x of the latest update

@@ -51,11 +51,12 @@ struct AdaptationOptions {
   AdaptationOptions coarser(double factor) const;
 };
 
-/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). An element is refined along a direction a under the
-/// following condition, in which L_a is its length along a, L_b its length along the other direction, and phi_a the variation of a quantity phi along
-/// a. The minimum is over all quantities whose reference variation phi_ref is set. L_min, L_ref, kappa and D_ref are members of AdaptationOptions.
+/// Returns the elements and directions to refine (P-37), in the order of elements(mesh). An element is refined along the direction a if
 ///
 ///   L_a > L_min  and  ( L_a > L_ref min{1, (phi_ref / phi_a)^kappa}  or  L_a / L_b > D_ref )
+///
+/// L_a is the length of the element along a, L_b its length along the other direction, and phi_a the variation of a quantity phi along a. The minimum
+/// is over all quantities whose reference variation phi_ref is set. L_min, L_ref, kappa and D_ref are members of AdaptationOptions.
 std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
 /// Returns the elements and directions to coarsen. An element is merged along a direction if the merged element, of twice the length, stays below

@@ -83,7 +83,7 @@ class DenseOutput {
   DenseOutput(const State& before, const State& after);
 
   Net place(double time) const;
-  Net slope(double time) const;  ///< derivative of place() with respect to time, of third order
+  Net slope(double time) const;  ///< time derivative of place(), accurate to third order in the step
 
  private:
   double start_, step_;

@@ -45,9 +45,10 @@ double rho_along_ray(const Vec3& a, const Vec3& b) {
   return ellipse(-2 * a.dot(b) / square - 1, 2 * a.cross(b).norm() / square);
 }
 
-/// Side from A to B of a triangle with its apex at the target. Lengths are measured in a plane, to which a linear map takes the parameter plane so
-/// that the tangents x_,s and x_,t keep their angle and their ratio of lengths. h: distance of the side from the apex. tau_a, tau_b: positions of A
-/// and B along the side, from the foot of the perpendicular. mu_a: angular coordinate mu of A, see polar(). range: length of the interval of mu.
+/// Side from A to B of a triangle whose apex is the target. A linear map takes the parameter plane to a plane in which the tangents x_,s and x_,t
+/// keep their angle and their ratio of lengths. All lengths below are measured in that plane. h: distance of the side from the apex. tau_a, tau_b:
+/// positions of A and B along the side, from the foot of the perpendicular. mu_a: angular coordinate mu of A, see polar(). range: length of the
+/// interval of mu.
 struct FarSide {
   double h, tau_a, tau_b, mu_a, range;
 

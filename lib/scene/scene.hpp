@@ -76,7 +76,8 @@ struct ParticleKind {
   CopiesOptions copies;
   bool membrane_given = false;  ///< true if the deck has the section Membrane
 
-  void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the other sections
+  void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
+                                               ///< Surface, Interface and Adaptation
   void declare_lists(deck::Section& section);  ///< declares the sections Membrane, Surface, Interface and Adaptation
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices that contradict the particle's mesh, membrane or interface
 };

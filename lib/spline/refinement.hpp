@@ -55,7 +55,7 @@ struct RepairRules {
 struct Refinement {
   TMesh mesh;
   int refused = 0;   ///< number of bisections not done because the lattice is too coarse
-  int repairs = 0;   ///< number of line segments between perpendicular edges that were added to satisfy RepairRules
+  int repairs = 0;   ///< number of line segments (bays) added by the repair, each between two successive perpendicular edges
   int halvings = 0;  ///< number of times that the spacing around an extraordinary point was halved
 };
 

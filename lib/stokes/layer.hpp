@@ -147,7 +147,7 @@ class Layer {
   /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
-  /// Assembles the rows at `sites` of the contribution of the images in the plane wall only.
+  /// Assembles the matrix rows at `sites` of the layer's images in the plane wall. The contribution of the layer itself is not included.
   void assemble_images(std::span<const int> sites, Rows<double>& a);
 
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
@@ -267,8 +267,8 @@ class Layer {
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
-  std::vector<Mat3> image_stress_;                                 // double layer of the images in the wall at the targets, for constant unit
-                                                                   // densities
+  std::vector<Mat3> image_stress_;                                 // for each target, the double layer of the images in the wall for the constant
+                                                                   // densities e_1, e_2 and e_3, as columns
   std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are divided among callers by share()
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew

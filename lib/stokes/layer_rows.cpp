@@ -102,8 +102,8 @@ class Layer::RowSums {
   RowSums(Layer& layer, const Net* at) : layer_(layer), at_(at) {}
 
   FarBasis<Real> basis;
-  std::vector<Real> sums;  ///< entry c of the kernel (11, 12, 13, 22, 23, 33) for control point `row` at target l: index 6 block row + block c + l,
-                           ///< with block = assembly_block
+  std::vector<Real> sums;  ///< sums[m (6 row + c) + l], with m = assembly_block: entry c of the kernel (11, 12, 13, 22, 23, 33) for control point
+                           ///< `row` at target l
 
   void add(std::span<const int> targets, int rows) {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));

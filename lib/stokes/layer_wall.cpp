@@ -64,7 +64,8 @@ void Layer::add_images(const Targets& targets, Net& u) {
   add_near_images(targets, u);
 }
 
-/// Computes the sums over the images in the wall for constant unit densities, one column per component.
+/// Computes the far sums of the double layer of the images in the wall, at all targets, for the constant densities e_1, e_2 and e_3. The result for
+/// e_c is column c of the matrices image_stress_.
 void Layer::take_image_stress() {
   for (int c = 0; c < 3; ++c) {
     take_constant_moments(c);

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// Disc that gives a lower bound of the distance from a piece of the surface to the outline. The outline does not enter the disc, except where it is
-/// too far away to be nearest to the piece. So a point of the piece at the distance d from `centre` is at least radius - d away from the outline.
-/// gap(d^2) returns this bound.
+/// Disc that gives a lower bound of the distance from a piece of the surface to the outline. The disc contains no point of the outline that can be
+/// nearest to a point of the piece. So a point of the piece at the distance d from `centre` is at least radius - d away from the outline. gap(d^2)
+/// returns this bound.
 struct Disc {
   Vec2 centre;
   double radius;

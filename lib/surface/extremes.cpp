@@ -251,7 +251,8 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     longest.push_back({e, *farthest, spread});
     shortest.push_back({e, *nearest, spread});
   }
-  Range range;  // range over all candidates, because near a circle the sampled minimum may be a maximum of the exact curve
+  Range range;  // extended at both ends by all distances found, because on a nearly circular section curve the search from a sampled minimum may
+                // converge to a maximum
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
   if (range.smallest <= range.largest) return range;

@@ -59,7 +59,8 @@ struct InitialShape {
   /// Throws UserError unless exactly one of `map`, `stretch`, `file` and `run` is given and valid.
   void check() const;
 
-  /// Returns `map`, or the map given by `stretch` along the columns of `rotation`, in space-fixed axes; none if the shape is read from a file or run.
+  /// Returns the linear map of the initial shape as a matrix in space-fixed axes. It is `map`, or the map that stretches by the factors `stretch`
+  /// along the columns of `rotation`. Returns nothing if the shape is read from a file or run.
   std::optional<Mat3> affine(const Mat3& rotation) const;
 };
 

@@ -275,8 +275,10 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
   return result;
 }
 
-/// Completes the sums at the fundamental points. Images of fundamental elements contribute the reflected rows of their points. So every row is
-/// reflected to the fundamental point of its orbit and added there, multiplied by the number of images that map this fundamental point onto itself.
+/// Completes the sums at the fundamental points. `sums` contains the contributions of fundamental elements only. An image of such an element
+/// contributes to a fundamental point what the element itself contributes to another point of the orbit, up to a reflection. Therefore the row of
+/// every point is reflected to the fundamental point of its orbit and added there. It is multiplied by the number of images that map the fundamental
+/// point to this point, which is the order of the group divided by the number of points of the orbit.
 void fold(const Symmetry& symmetry, Net& sums) {
   if (symmetry.order() == 1) return;
   const std::vector<int>& source = symmetry.source();
@@ -294,7 +296,8 @@ Parity::Parity(const Symmetry& symmetry, const Vec3& of_planes)
     : source_(symmetry.source()), signs_(Net::Zero(static_cast<Eigen::Index>(source_.size()), 3)),
       scalar_signs_(Eigen::VectorXd::Zero(signs_.rows())) {
   for (const int a : symmetry.fundamental()) signs_.row(a).setOnes(), scalar_signs_[a] = 1;
-  for (const Image& g : symmetry.images()) {  // adds up, for each point b, the factors of the images g that map a fundamental point a to b
+  for (const Image& g : symmetry.images()) {  // adds, for each image b of a fundamental point a, the factors by which the images g that map a to b
+                                              // multiply a vector (signs_) and a scalar (scalar_signs_)
     const double turned = (g.signs.array() < 0).select(of_planes, Vec3::Ones()).prod();
     for (const int a : symmetry.fundamental()) {
       const int b = g.point[static_cast<std::size_t>(a)];

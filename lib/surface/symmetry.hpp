@@ -97,9 +97,9 @@ FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_element
 /// Computes the rows at the fundamental points of a symmetric field from the weighted contributions of fundamental elements to all rows.
 void fold(const Symmetry& symmetry, Net& sums);
 
-/// Fields of one parity. The mirror plane across each axis maps them to themselves (1) or to their negative (-1). Half turns and the point symmetry
-/// multiply them by the product of the parities of their axes. Symmetric fields have parity 1 for all planes. Any field is a sum of one field of each
-/// parity.
+/// Fields of one parity. The parity has one factor per axis, 1 or -1: the reflection along this axis multiplies the fields by this factor. Half turns
+/// and the point symmetry reverse several axes and multiply the fields by the product of the factors of these axes. Symmetric fields have parity (1,
+/// 1, 1). Any field is a sum of one field of each parity.
 class Parity {
  public:
   explicit Parity(const Symmetry& symmetry, const Vec3& of_planes = Vec3::Ones());

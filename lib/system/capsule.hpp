@@ -332,7 +332,8 @@ class Capsule : public Dynamics {
   std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
   stokes::Rows<double> double_rows_, single_rows_;
   std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); empty unless the flow is not affine or there is a tube or a wall
+  Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); set if there is a tube, a solid or a wall, or if the flow is not affine;
+                                        // otherwise empty
   Lattice lattice_;
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift gamma dt of the implicit system solved last

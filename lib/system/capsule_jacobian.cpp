@@ -251,7 +251,8 @@ void Capsule::prepare_step(double shift) {
   if (area_) area_->factor(shift);
 }
 
-/// Solves the system of the implicit step (see `solve`) for the right-hand side rhs: r multiplied by the operator B, or r if control points slide.
+/// Solves the linear system of the implicit step (see `solve`) with the right-hand side `rhs`. If no control points slide, both sides are multiplied
+/// by B (4.2), so that `rhs` is B r, where r is the argument of `solve`. Otherwise `rhs` is r.
 Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {

@@ -121,7 +121,7 @@ Blocks Capsule::velocity_blocks() const {
 }
 
 /// Solves for the tractions on rigid bodies (2.40) and the velocity v of deformable particles (2.52). Returns the velocity of all particles. `flow`:
-/// velocity if the tractions and v are zero. Adds the loads that depend on the tractions and v to e.load_.
+/// part of the velocity that does not depend on these unknowns. Adds the loads that depend on the unknowns to e.load_.
 Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow) {
   const auto clock = phases_.time("tractions");
   assemble_layers(x);

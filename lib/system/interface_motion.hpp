@@ -40,7 +40,8 @@ class InterfaceMotion {
                   const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
                   const membrane::SymmetricSolver& mass, const Ranks& ranks, const VelocityProjection* projection = nullptr);
 
-  /// Returns the control values of the velocity u at x for the fluid velocity v (control values), where b = dV/dx. Collective.
+  /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.
+  /// Collective.
   Net velocity(const Net& x, const Net& b, const Net& v);
 
   /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y starts at the mean of the drop's control points.
@@ -87,7 +88,8 @@ class InterfaceMotion {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx of the mesh at the collocation sites
   };
-  Latest latest_, known_;  // latest_: data of the latest velocity. known_: a copy of them if the system was linearised at that shape; otherwise empty
+  Latest latest_, known_;  // latest_: data of the latest velocity. known_: copy of latest_ for the shape at which the system was linearised; empty if
+                           // the latest velocity belongs to another shape
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

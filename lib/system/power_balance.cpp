@@ -76,7 +76,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
     powers.membranes += e->membrane_dissipation(p);
     powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
   }
-  const double done = product(work, v);  // power of the fluids on all surfaces
+  const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the remainder of the power `flow`
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
   powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);

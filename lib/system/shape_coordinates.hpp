@@ -17,29 +17,30 @@
 
 namespace tanktread::coupling {
 
-/// Coordinates y of small displacements d of a net x, and of rates of change. At each collocation site there are three coordinates, the components of
-/// d. If the mesh of a drop slides along its interface, there is one coordinate per site, the component along the normal of x, because tangential
-/// displacements do not change the shape,
+/// Coordinates y of small displacements d of a net x, and of rates of change of x. They depend on the kind of particle:
 ///
-///   y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                     (4.15)
+/// - Control points that move with the material: three coordinates per collocation site, the components of d.
+/// - Control points that slide along the interface of a drop: one coordinate per site, the normal component of d, because tangential displacements do
+///   not change the shape,
 ///
-/// Here n_i is the unit normal of x at site i and R the collocation matrix. A translation of a drop is represented exactly: its coordinates y also
-/// move the mesh tangentially. If velocities are projected (VelocityProjection), y contains the control values of a scalar field instead, the best
-/// fit to n.d. Otherwise y would be affected by tangential mesh motion, to fourth order in the element size.
+///     y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                   (4.15)
 ///
-/// After `follow` has been called, a mesh that relaxes by itself also moves tangentially with the displacement d, so that the mesh remains at rest on
-/// the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
+///   Here n_i is the unit normal of x at site i and R the collocation matrix. If y contains a translation of the drop, its tangential part is added to
+///   d, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the control values of the
+///   scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
+/// - Rigid body: the coefficients of six orthonormal fields, which span its translations and rotations.
+///
+/// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i, by which a relaxing mesh remains at
+/// rest on the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
-/// If the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there. They
-/// represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not (1, 1, 1),
-/// no other part of the system may use the symmetry.
+/// Symmetry: if the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there.
+/// They represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not
+/// (1, 1, 1), no other part of the system may use the symmetry.
 ///
-/// For a rigid body the coordinates are the coefficients of six orthonormal fields, which span its translations and rotations.
-///
-/// For a state with fields on the surfaces (CoupledMotion), after `add_fields` has been called, the changes of the field coefficients q follow,
-/// without the contribution of the tangential part of the displacement:
+/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y contains in addition coordinates y_q of the change dq of the field
+/// coefficients q. The change of q due to the tangential part of d is subtracted:
 ///
 ///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q if control points only slide along the surface by t      (4.34)
 class ShapeCoordinates {
@@ -96,7 +97,8 @@ class ShapeCoordinates {
   Net normals_;  // normals of drops at the sites where velocities are projected onto the splines
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
   Net state_;                           // state y relative to which add_fields() defines changes
-  Eigen::SparseMatrix<double> fields_;  // orthonormal changes of the field coefficients of a state, one column each
+  Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of a state's field coefficients that symmetry and parity allow, one column
+                                        // per basis vector
 };
 
 }  // namespace tanktread::coupling

@@ -36,7 +36,8 @@ struct RunTotals {
   output::Entries<double> seconds;  ///< wall time of the first rank, by phase of the program
 };
 
-/// Calls act(name, kinds of particles with this count, description, count) for every count of a run. Checkpoints and the summary use these names.
+/// Calls act(name, kinds of particles, description, value) for every counter of a run, for example the number of accepted steps. The kinds of
+/// particles are those for which the counter is reported. Checkpoints and the summary use these names.
 template <class Some, class Act>
 void each_count(Some& totals, const Act& act) {
   constexpr const char *moving = "capsule, drop, free body", *all = "all";

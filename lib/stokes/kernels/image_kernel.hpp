@@ -26,9 +26,10 @@ struct ImageStressletKernel {
   static constexpr auto *sum = image_stresslet_sum, *single = sum;
 };
 
-/// Compute the contribution of the image in the wall to the single or double layer u of one panel with a panel-specific rule, or its moments:
-/// moment[9 b + 3 i + j] is entry i, j of the kernel integrated with Bernstein polynomial b. The arguments are those of pair_kernel.hpp, but x0 is
-/// the mirror image of the target. `scratch`: 9 packs per pack of points.
+/// Compute the velocity u that the mirror image of one panel in the wall induces at a target, as a single or double layer, or the moments of this
+/// image. The quadrature rule is specific to the panel. moment[9 b + 3 i + j] is the integral over the panel of entry i, j of the image kernel times
+/// Bernstein polynomial b. The arguments are those of pair_kernel.hpp, except that x0 is the mirror image of the target. `scratch`: 9 packs per pack
+/// of points.
 void image_single_sum(const PointTable& table, const double* x, const double* f, const Pack* weight, const double* x0, double* u);
 void image_double_sum(const PointTable& table, const double* x, const double* v, const double* x0, const double* v0, double* u);
 void image_single_moments(const PointTable& table, const double* x, const Pack* weight, const double* x0, Pack* scratch, double* moment);

@@ -55,8 +55,8 @@ class PeriodicSum {
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // per direction, at index n a + b (n: number of nodes): index of the difference of nodes a and b
-                                                // among the distinct differences
+  std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): which of the distinct differences nodes a
+                                                // and b have, counted from 0
   std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
   std::vector<double> table_;  // table of the smooth kernel sum: components_ values for the node difference (i, j, k), from index components_ ((n_1 i
                                // + j) n_2 + k)

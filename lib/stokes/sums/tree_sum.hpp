@@ -28,8 +28,8 @@ class TreeSum {
   void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
-  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(), and without
-  /// reflections.
+  /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(). If there are
+  /// other lattice vectors than 0, place() must be called without `reflections`.
   void repeat(std::vector<Vec3> images) { images_ = std::move(images); }
 
   /// Sets the rows that later sums compute. A row does not depend on which other rows are computed.

@@ -18,9 +18,10 @@ namespace tanktread::coupling {
 
 /// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
 /// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R:
-/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4, and the
-/// velocity differs on the two sides of the surface. Without this correction, the angular velocity of a sphere with a prescribed torque is too small
-/// by the fraction 0.035/n^4, and its stresslet in a straining flow has a similar error.
+/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4. Across the
+/// surface the velocity of a double layer and the velocity gradient of a single layer jump. Therefore the velocity at the sites has a systematic
+/// error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and its
+/// stresslet in a straining flow has a similar error.
 struct OwnLacking {
   std::array<Net, 6> loads;  ///< collocation-error corrections of the single layer A f for six loads f: e_k and e_k x r, k = 0, 1, 2 (r: position
                              ///< from the centre of volume)
@@ -115,7 +116,7 @@ class RigidParticles {
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG
-    Eigen::Matrix<double, 6, 6> inertia;  // column k: force and torque of a load that equals the velocity field of unit motion k
+    Eigen::Matrix<double, 6, 6> inertia;  // entry (j, k): integral of u_j.u_k over the surface, with the velocity field u_k of unit motion k
     Mat3 second;                          // int r r dG
     Vec3 first;                           // int r dG
     Vec3 rest_centre, centre;

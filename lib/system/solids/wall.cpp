@@ -182,8 +182,9 @@ void Wall::find_pressure() {
   pressure_ *= surface_.radius() / dot(flux_, pressure_);
 }
 
-/// Returns, on every rank, the matrix between the components of fundamental points that symmetry does not make zero (4.12). Many rows are assembled
-/// at a time, because neighbouring points share element midpoints (2.39).
+/// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
+/// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
+/// and neighbouring collocation points share these midpoints.
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();

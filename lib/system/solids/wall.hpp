@@ -127,14 +127,15 @@ class Wall {
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Returns mu times the flow rate along the duct that a unit force at each point of `at` causes, one column per component of the force. If the wall
-  /// is open, this is the integral c (2.13) over the inlet. If it is periodic with the period L, this is -rho^2/(4 L) e1, where rho is the distance
-  /// from the axis x1 (2.44); the sum of all forces must then be 0.
+  /// Returns mu times the flow rate along the duct that a unit force causes, for each point of `at` separately, one column per direction of the
+  /// force. If the wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1,
+  /// where rho is the distance from the axis x1 (2.44). In this case only the sum over several forces is meaningful, and these forces must sum to 0.
   Net flow_of_forces(const Net& at) const;
 
   /// Returns the flow rate that a double layer of unit strength at the point `at` with normal n causes, one entry per component of the strength. If
   /// the wall is open, this is the flow rate through the inlet. If it is periodic with the period L, this is (x1 n - ((n.rho) e1 + n1 rho)/2)/L,
-  /// where rho is the vector from the axis x1 to the point (2.45); the total flux of the strengths through their surface must then be 0.
+  /// where rho is the vector from the axis x1 to the point (2.45). In this case only the integral over a surface is meaningful, and the total flux of
+  /// the strength through this surface must be 0.
   Vec3 flow_of_double_layer(const Vec3& at, const Vec3& n) const;
 
   /// Returns the bounding boxes of the elements of a channel wall, to compute distances.

@@ -10,7 +10,8 @@
 
 namespace tanktread::coupling {
 
-/// Linear system for particles in a tube. Unknowns: velocity v (control values), wall traction f^D, pressure drop dp and multiplier pi of (2.8),
+/// Linear system for particles in a tube. The unknowns are the velocity v (control values), the wall traction f^D, the pressure drop dp and the
+/// Lagrange multiplier pi of the constraint (2.8). The equations are
 ///
 ///   B v + R^-1 [(1/mu) G_W f^D - dp c] + pi n = r_v,   B = 1 - (1 - lambda) R^-1 H        at the particle                (2.5)
 ///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dG = r_W                    at the wall                    (2.6)
