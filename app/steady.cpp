@@ -80,7 +80,8 @@ class SteadyRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Computes one shape: a periodic or steady one from the initial shape, or if none is requested, the initial shape itself.
+  /// Computes the shape to examine: the periodic or steady shape that the deck requests, searched from the initial shape, otherwise the initial shape
+  /// itself.
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using deck::in_quotes;
 using deck::real_text;
 
-/// Makes the files of `from` available in `to` under the same names, by links to the same data if the file system has them.
+/// Makes the files of `from` available in `to` under the same names: by hard links if the file system supports them, otherwise by copies.
 void link_files(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     if (!entry.is_regular_file()) continue;

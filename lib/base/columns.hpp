@@ -56,7 +56,8 @@ class Columns {
   /// Returns the value of one column. Throws std::out_of_range if no column has this name.
   double value(std::string_view name) const;
 
-  /// Returns the values of the columns `<particle>/<name>` in the order of the particles, or the value of the column `name` if there are none.
+  /// Returns the values of the columns `<particle>/<name>` in the order of the particles, or the value of the column `name` if there are no such
+  /// columns.
   std::vector<double> of_particles(std::string_view name) const;
 
   double smallest(std::string_view name) const;  ///< returns the smallest value of `of_particles(name)`; 0 if there are none

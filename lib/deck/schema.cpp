@@ -69,7 +69,7 @@ std::string schema_text(const List& list, int depth) {
   std::string properties, others = list.foreign ? "true" : "false";
   const auto add = [&](const std::string& text) { properties += (properties.empty() ? "\n" : ",\n") + indent + "  " + text; };
   for (const Entry& entry : list.entries) add(key_text(entry));
-  const bool shared = !list.mentioned.empty();  // true if inner sections may inherit keys, also from one named `defaults`
+  const bool shared = !list.mentioned.empty();  // true if inner sections may inherit keys, for example from the section named `defaults`
   for (const auto& inner : list.lists) {
     if (shared)
       others = R"({"type": "object"})";

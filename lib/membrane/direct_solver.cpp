@@ -39,7 +39,8 @@ constexpr Eigen::Index worth_iterating = 5000;
 std::vector<Eigen::Index> block_starts(const RowMajor& a) {
   const Eigen::Index n = a.rows();
   const int *row = a.outerIndexPtr(), *column = a.innerIndexPtr();
-  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // smallest column index of a nonzero in row i and all later rows
+  std::vector<Eigen::Index> starts{0}, least(static_cast<std::size_t>(n) + 1, n);  // entry i: smallest column index of the nonzeros in rows i, i + 1,
+                                                                                   // ..., n - 1
   for (Eigen::Index i = n; i-- > 0;) {
     if (row[i] == row[i + 1]) return {0, n};
     least[static_cast<std::size_t>(i)] = std::min<Eigen::Index>(least[static_cast<std::size_t>(i) + 1], column[row[i]]);

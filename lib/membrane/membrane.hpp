@@ -62,7 +62,7 @@ class Membrane {
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
   /// Evaluates the strong form of the load at the collocation points `targets`, as the average over the elements that meet there. Sets only the rows
-  /// `targets` of t. The strong form fails in the cases shown in the paper and in `tests/stability`.
+  /// `targets` of t. The strong form fails in the cases documented in `tests/stability`.
   void strong_load(const Net& x, std::span<const int> targets, Net& t) const;
 
   const spline::Space& space() const { return *space_; }

@@ -29,7 +29,8 @@ struct Batch {
 struct Group {
   int degree = 3, order = 4;
   int material = 0;                        ///< material of its elements
-  std::vector<double> value, slope, bend;  ///< 1-D Bernstein polynomials, first and second derivatives at the Gauss nodes, [q * (p + 1) + i]
+  std::vector<double> value, slope, bend;  ///< values, first and second derivatives of the 1-D Bernstein polynomials i at the Gauss nodes q, at index
+                                           ///< q * (p + 1) + i
   std::vector<double> weight;              ///< tensor weights, [q_t * order + q_s]
   std::vector<Batch> batches;
   std::vector<int> points;

@@ -23,7 +23,7 @@ std::unique_ptr<Integrator> smooth_integrator(const TimeOptions& options, const 
   throw UserError("Time/scheme: '" + options.scheme + "' is not a scheme that this program has");
 }
 
-/// Wrapper of a scheme: its steps end at kinks of the motion (times of non-smooth change), after which the scheme starts again.
+/// Wrapper of a scheme. It ends steps at kinks of the motion (times at which the motion is not smooth in time), and restarts the scheme there.
 class PiecewiseSmooth : public Integrator {
  public:
   explicit PiecewiseSmooth(std::unique_ptr<Integrator> scheme) : scheme_(std::move(scheme)) {}

@@ -38,7 +38,8 @@ Eigen::MatrixXd constrained_biquartic();
 /// extraordinary point at u = v = 0.
 struct Piece {
   double u, v, size;           ///< lower left corner, side
-  Eigen::MatrixXd extraction;  ///< extraction matrix, shape (19, 16): points in the order of OneRing, column 4 j + i with i along u
+  Eigen::MatrixXd extraction;  ///< extraction matrix, shape (19, 16). Rows: control points in the order of OneRing. Column 4 j + i: Bernstein
+                               ///< polynomial i in u times j in v
 };
 
 /// Returns 3 depth + 1 pieces of face 0: `depth` rings of three pieces with sides 1/2, 1/4, ... 2^-depth, which represent the limit surface exactly,

@@ -89,8 +89,8 @@ struct Cut {
   auto operator<=>(const Cut&) const = default;
 };
 
-/// Returns the first of the images of a cut under the symmetries, including the cut itself, in the order of elements, then directions. Equivalent
-/// cuts thus have one representative. If the lattice is too coarse for them, they are counted as one refused bisection.
+/// Returns the representative of a cut: the first of the cut and its images under the symmetries, in the order of elements, then directions.
+/// Equivalent cuts have one representative, so that a bisection refused because the lattice is too coarse is counted once for all of them.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

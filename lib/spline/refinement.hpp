@@ -20,7 +20,7 @@ struct LatticeMap {
 
 Ray image(const Lattice& lattice, const LatticeMap& map, Ray ray);
 
-/// Returns the image of each ray of a path.
+/// Returns the image, under the symmetry `map`, of each ray of a path.
 std::vector<Ray> image(const Lattice& lattice, const LatticeMap& map, const std::vector<Ray>& path);
 
 /// Index of the element that a symmetry of the mesh maps a mesh element to, and whether the map exchanges s and t.

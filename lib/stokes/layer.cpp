@@ -293,8 +293,8 @@ void Layer::add_stresslets_by_clusters(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the weights of a rule on panel e, area included. If the panel contains the target and the areas are unstressed areas, the weights are
-/// cached.
+/// Returns the weights of a quadrature rule on panel e, multiplied by the area element. If the panel contains the target and the areas are unstressed
+/// areas, the weights are cached.
 const Pack* Layer::area_weights_of(int e, const PointTable& table, SelfPair* pair) {
   const bool unstressed = on_reference(e), kept = pair && unstressed;
   std::vector<Pack>& weights = kept ? pair->weights : point_weights_;

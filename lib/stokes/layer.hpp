@@ -129,8 +129,8 @@ class Layer {
   /// Returns the corrections at points `at` for the current shape, to be reused for many densities with equal `at` and `targets`.
   Near near(const Net& at, std::span<const int> targets);
 
-  /// Computes the rows `targets` of u. The points x0 are the rows of `at` and are off the surfaces; u has the shape of `at`. `kept`: near(at,
-  /// targets), or null.
+  /// Computes the layer potential at points off the surfaces: row i of u at the point `at.row(i)`, for each i in `targets`. u has the shape of `at`.
+  /// `kept`: result of near(at, targets), or null.
   void apply(const Net& f, const Net& at, std::span<const int> targets, Net& u, const Near* kept = nullptr);
 
   /// Computes the double layer after a constant, row k of `f0`, is subtracted from f for target k. Outside a closed surface the result does not

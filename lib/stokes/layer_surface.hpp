@@ -34,7 +34,7 @@ class LayerSurface {
   /// Returns the fundamental panels (one panel of each orbit under the symmetry), and their weights in a far sum over the fundamental panels only.
   const surface::FundamentalElements& fundamental() const { return fundamental_; }
 
-  /// Returns all symmetry images except the identity, about the centre of the current shape.
+  /// Returns the reflections of all symmetry images except the identity. The reflections are about the centre of the current shape.
   const std::vector<surface::Reflection>& reflections() const { return images_.reflections; }
 
   /// Sets the shape. Returns false, at no cost, if the shape is unchanged.

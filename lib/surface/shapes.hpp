@@ -19,7 +19,7 @@ namespace tanktread::surface {
 /// The surface has all symmetries of the cube, so one face is stored; its neighbours are its mirror images.
 class CubeSphere {
  public:
-  /// Subdivides the 3 x 3 net `levels` times.
+  /// Constructs the net of one face of the cube by subdividing the initial net of 3 x 3 elements `levels` times.
   explicit CubeSphere(int levels = 5);
 
   int elements_per_side() const { return n_; }

@@ -156,7 +156,8 @@ class Capsule : public Dynamics {
   };
   RateChange rate_change(const Net& dx, const Net& work);      ///< `rate` is B J dx (4.3) with the operator B and the Jacobian J, or J dx if control
                                                                ///< points slide. Collective
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< `rate` is J dx, with the Jacobian J of the velocity. Collective
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns a RateChange whose `rate` is J dx, with the Jacobian J of the velocity.
+                                                               ///< Collective
   /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
@@ -324,7 +325,7 @@ class Capsule : public Dynamics {
   NodalOperator nodal_;                     // frozen single layer; the options select either nodal_ or frozen_
   FrozenOperator frozen_, frozen_double_;  // frozen layers; empty until the first call of `freeze`
   Net frozen_at_;                          // shape at which the frozen operators were assembled
-  Corotation corotation_;                  // rotation from `frozen_at_` to the shape linearised last
+  Corotation corotation_;                  // rotations of the particles from `frozen_at_` to the shape of the latest linearisation
   RigidParticles rigid_;
   std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies whose unknowns are their tractions
   std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first

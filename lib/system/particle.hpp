@@ -88,7 +88,7 @@ class Loads {
 
   /// Returns the energy that the membrane of particle p stores through its loads.
   double energy(const Net& x, const std::vector<Net>& sums, std::size_t p) const;
-  /// Adds dE/dx of the loads that store energy in the membrane, integrated over all elements.
+  /// Adds dE/dx to `work`, where E is the energy that loads store in the membrane. Integrates over all elements.
   void add_stored_work(const Net& x, Net& work) const;
 
   void linearise(const Net& x, const std::vector<Net>& sums);

@@ -49,7 +49,8 @@ void sync(const std::filesystem::path& path);
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 
-/// Renames a file to `<name>.damaged`, or `<name>.damaged.2` and so on. No run is resumed from such a file. Returns the new path. Throws RunFailure.
+/// Renames a file to `<name>.damaged`, or `<name>.damaged.2` and so on. No run is resumed from such a file. Returns the new path. Throws RunFailure
+/// if the file cannot be renamed.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
 /// Throws UserError if a directory holds results of a run.

@@ -62,7 +62,8 @@ class RunRecord {
 
   std::size_t rows() const { return series_.empty() ? 0 : series_.front().values.size(); }
   const std::vector<Series>& series() const { return series_; }
-  const std::vector<double>& values(std::string_view name) const;  ///< returns the values of a series; throws std::out_of_range
+  const std::vector<double>& values(std::string_view name) const;  ///< returns the values of a series; throws std::out_of_range if there is no series
+                                                                   ///< of this name
   const std::string& deck() const { return deck_; }
   const std::map<std::string, std::string>& provenance() const { return provenance_; }
 

@@ -43,7 +43,7 @@ class ParticleSystem {
                                                                  ///< fields
   virtual const Body& body() const = 0;
   virtual Net start() const = 0;                                                 ///< returns State::x at time zero
-  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if body() has another mesh now
+  virtual bool resume(Resumed& resumed) = 0;                                     ///< resumes a run; returns true if the mesh of body() has changed
   virtual void store(output::Checkpoint& checkpoint) const = 0;  ///< adds the data that `resume` needs in addition to state and totals
   /// Discards data that preconditioners of the type `recycled` have stored in earlier solves. Checkpoints do not contain these data. A run
   /// therefore discards them after each checkpoint.

@@ -1,6 +1,6 @@
 #pragma once
-// Warnings when a run comes close to a limit of its method. Each limit gives one warning, with the key of the deck to change. The limits are those of
-// tests/stability/README.md.
+// Warnings when a run comes close to a limit of its method. Each limit gives one warning, with the key of the deck to change. The limits are
+// documented in tests/stability/README.md.
 
 #include <optional>
 #include <string>
@@ -39,7 +39,7 @@ class Warnings {
   /// Data with which a resumed run continues.
   struct Memory {
     double waves = 0;            ///< estimated growth of unresolved waves on the compressed membrane so far: logarithm of their amplitude ratio
-    int limited = 0;             ///< number of consecutive latest steps whose size was limited by stability
+    int limited = 0;             ///< number of consecutive steps, up to the latest, whose size was limited by stability
     std::vector<Warning> said;  ///< warnings shown so far
   };
 

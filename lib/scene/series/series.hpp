@@ -33,7 +33,8 @@ struct SteadyRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the columns of all rows of a run in their order, without values. The columns of one of several particles are named `<particle>/<name>`.
+/// Returns the columns that each row of a run's results has, in their order and without values. The columns of one of several particles are named
+/// `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
 /// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).

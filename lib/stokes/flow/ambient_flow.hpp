@@ -50,7 +50,7 @@ class AmbientFlow {
   Mat3 gradient(const Vec3& x) const;
   std::vector<Mat3> gradients(const Net& x) const;
 
-  /// Returns whether the gradient is uniform.
+  /// Returns whether the velocity gradient is uniform in space.
   bool affine() const { return user_ ? user_->affine() : !duct_ && steady_.direction.isZero(0); }
 
   /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.

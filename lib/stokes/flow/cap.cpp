@@ -146,7 +146,8 @@ Vec3 Cap::double_layer_flow(const Vec3& y, const Vec3& n) const {
   return 6 * over_8_pi * (m * n);
 }
 
-/// Computes int int G_11/(8 pi) dS dS' over the cap. In its plane G_11 = 1/|x - x'|, and the integral of G_11 is - oint oint |x - x'| nu.nu' dl dl'.
+/// Computes int int G_11/(8 pi) dS dS' over the cap. In the plane of the cap, G_11 = 1/|x - x'|, and the integral of G_11 is - oint oint |x - x'|
+/// nu.nu' dl dl'.
 double Cap::own_flow() const {
   const Nodes n = nodes(6);
   double sum = 0;

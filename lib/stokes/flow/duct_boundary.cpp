@@ -42,7 +42,7 @@ double uncrowded(const Crowding& c, double w) {
   return (low + high) / 2;
 }
 
-/// Returns the knots of the outline's own spline on this side, as values of the parameter t of OutlineSpace.
+/// Returns the knots of the spline that represents this side of the outline, as values of the parameter t of OutlineSpace.
 std::vector<double> own_knots(const PlaneCurve& side, const Crowding& crowding) {
   const auto [first, last] = surface::range(side);
   const bool open = !surface::closed(side);

@@ -25,7 +25,7 @@ struct Ellipsoid {
   /// uniform stress. Its antisymmetric part is the torque; its symmetric part follows from the torque by the reciprocal theorem.
   Vec3 force_density(double viscosity, const Vec3& velocity, const Vec3& angular_velocity, const Vec3& x) const;
 
-  /// Returns the point of the surface in the direction of x.
+  /// Returns the point of the surface on the ray from the centre through x.
   Vec3 point(const Vec3& x) const;
   /// Returns the outward unit normal at `point(x)`.
   Vec3 normal(const Vec3& x) const;

@@ -115,8 +115,8 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
   return number;
 }
 
-/// Computes the box of a cluster and its nodes. The box of a leaf encloses its points. The box of another cluster encloses the Chebyshev nodes of its
-/// two children, or the points of a child that has no nodes.
+/// Computes the bounding box of a cluster, and the cluster's Chebyshev nodes. The box of a leaf encloses its points. The box of another cluster
+/// encloses the Chebyshev nodes of its two children, or the points of a child that has no nodes.
 void Clusters::enclose(Cluster& cluster) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const auto take = [&](const std::vector<double>(&at)[3], int first, int n) {

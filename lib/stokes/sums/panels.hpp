@@ -16,7 +16,7 @@ struct NodeTable {
   std::vector<double> value, along_s, along_t, weights;
 };
 
-/// One Bezier element. Its Bezier points lie at first_bezier + n_bernstein c + b, component c of point b = (p + 1) j + i.
+/// One Bezier element. Component c of its Bezier point b = (p + 1) j + i is stored at index first_bezier + n_bernstein c + b.
 struct Panel {
   const NodeTable* table = nullptr;
   int functions = 0;                 ///< number m of basis functions

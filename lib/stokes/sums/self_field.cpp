@@ -17,8 +17,8 @@ namespace {
 int radial_points(double tolerance) { return std::max(4, static_cast<int>(std::ceil(-std::log10(tolerance))) - 1); }
 
 /// Returns the permitted distance of a corner from the position predicted by the tangents, relative to the distance of the corner from the target. If
-/// the distance is larger, more quadrature points are used. The permitted distance decreases with the tolerance. Measured on spheroids of aspect
-/// ratio 10 (tests/verify/layer_shapes.cpp), whose tip radius is as small as their elements.
+/// the distance is larger, more quadrature points are used. The permitted distance decreases with the tolerance. The constants were chosen from
+/// errors on spheroids of aspect ratio 10 (tests/verify/layer_shapes.cpp), whose tip radius is as small as their elements.
 double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow(1e4 * tolerance, 1. / 6)); }
 
 /// Maximum number of cached rules, and of their points (136 bytes each). The limit is needed because metrics change in a long run, and a strongly

@@ -83,7 +83,7 @@ class TreeSum {
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
   Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
-  int n_trees_ = 1;                             // number of target trees: one of the targets, and one per reflection of the targets
+  int n_trees_ = 1;                             // number of target trees: one for the targets, and one for each reflection of the targets
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
   std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points

@@ -50,7 +50,8 @@ class BodyLayer {
                                              // particles
   double viscosity_;
   Ranks& ranks_;
-  stokes::Layer layer_, beyond_;  // single layer at the sites of the bodies, and at the points `others_`
+  stokes::Layer layer_, beyond_;  // layer_: single layer evaluated at the sites of the bodies. beyond_: the same single layer evaluated at the points
+                                  // `others_`
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
                              // (2.10)
   Eigen::MatrixXd matrix_;                // kept only for `velocity`

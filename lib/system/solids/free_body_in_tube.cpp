@@ -73,8 +73,8 @@ RigidMotion FreeBodyInTube::motion_of_unknowns() const {
   return {motion.head<3>(), motion.tail<3>() / radius_};
 }
 
-/// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C; so are the equations of
-/// force and torque, divided by 6 pi mu R_C and 6 pi mu R_C^2.
+/// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is
+/// divided by 6 pi mu R_C and the torque balance by 6 pi mu R_C^2, so that their residuals are velocities too.
 void FreeBodyInTube::solve_in_tube(const Net& place) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();

@@ -36,7 +36,7 @@ class PlateFactors {
   std::array<int, 2> grid_;
   int plates_;
   std::array<Complex, 2> waves_;  // Fourier matrices of both directions: row k, column s is exp(-2 pi i k s/n)
-  std::vector<Complex> inverse_;  // inverse of the matrix M(k) (2.50) for the wave numbers k1, k2, at index k1 n2 + k2
+  std::vector<Complex> inverse_;  // entry k1 n2 + k2: inverse of the matrix M(k) (2.50) for the wave numbers k1, k2
   Eigen::MatrixXd uniform_;
 };
 

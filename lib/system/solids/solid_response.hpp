@@ -56,7 +56,7 @@ class SolidResponse {
   /// Returns the part of the solution of (2.46) due to the load f and the velocity v of the particles. Empty nets are skipped.
   Solids::Flow respond(const Net& f, const Net& v);
 
-  /// Computes rows `own` of the velocity u at the points `at` of `place`. Not collective.
+  /// Computes the rows `own` of the velocity u at the points `at`; both were passed to `place`. Not collective.
   void velocities(const Solids::Flow& flow, Net& u);
 
   /// Computes rows of the velocity u at any points in the fluid. Not collective.

@@ -63,7 +63,7 @@ class Tube {
   Tube(const surface::TubeWall& wall, const stokes::DuctFlow& flow, const spline::Space& particle, const TubeParameters& parameters,
        Phases& phases);
 
-  /// Constructs the tube of a channel, with the wall of the channel's flow.
+  /// Constructs the tube for a channel. Its wall is the wall of `flow`.
   Tube(std::shared_ptr<const ChannelFlow> flow, const spline::Space& particle, const TubeParameters& parameters, Phases& phases);
 
   /// Constructs a tube for another mesh of the particle. The new tube shares all data of the wall with `tube`.

@@ -31,7 +31,7 @@ Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(nu
 
 Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
 
-/// F(x) = g(x) - x, with products F' d by finite differences whose steps exceed the noise of adaptive quadrature.
+/// Residual F(x) = g(x) - x. Products F' d are computed by finite differences, with steps that exceed the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
  public:
   using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;

@@ -20,7 +20,7 @@ using List = Teuchos::ParameterList;
 using Works = std::function<bool(const List&)>;
 
 constexpr Eigen::Index n = 60;           // number of unknowns, larger than the number of products that Krylov stores
-constexpr int most_products = 10 * n;  // products with the matrix after which a method counts as not converging
+constexpr int most_products = 10 * n;  // number of matrix-vector products after which a method counts as not converging
 
 /// Returns the result of a trial, or false if a library throws anything.
 bool runs(const std::function<bool()>& trial) {
