@@ -47,7 +47,7 @@ class Section {
   template <class Field>
   void key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning);
 
-  /// Declares a key with text. `Field`: std::string or std::optional<std::string>.
+  /// Declares a key whose value is text. `Field`: std::string or std::optional<std::string>.
   template <class Field>
   void key(std::string_view name, Field& field, const Choice& choice, std::string_view meaning);
 

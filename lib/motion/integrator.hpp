@@ -27,7 +27,7 @@ struct State {
   Net x;                        ///< control net
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, latest first; the first is the slope at x
   std::vector<Place> places;    ///< earlier positions that a multistep scheme keeps, latest first
-  double slope_error = 0;       ///< bound of the error of the first slope, in the norm of `Time/tolerance` per unit of time
+  double slope_error = 0;       ///< bound of the error of history.front(), in the norm of `Time/tolerance` per unit of time
   Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if it was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations

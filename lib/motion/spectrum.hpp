@@ -40,7 +40,7 @@ enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
 /// Mode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points, or if there are surface fields, a change of positions and
-/// fields. It is scaled to a largest displacement of 1; if nothing moves, to a largest component of 1.
+/// fields. It is scaled to a largest displacement of 1. If no control point moves, it is scaled to a largest component of 1.
 struct Mode {
   std::complex<double> rate;
   Net real, imaginary;

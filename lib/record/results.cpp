@@ -182,7 +182,7 @@ std::optional<Resumed> Results::resumed() {
   return resumed;
 }
 
-/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if the rows differ from those at the time when the checkpoint was saved.
+/// Loads the rows of `run.h5` up to a checkpoint. Throws UserError if the rows differ from the rows that existed when the checkpoint was saved.
 void Results::load_record(const output::Checkpoint& checkpoint, const std::string& chosen) {
   if (!checkpoint.texts.contains("run") || !checkpoint.texts.contains("record")) throw another_version(directory_);
   run_ = checkpoint.texts.at("run");

@@ -115,7 +115,7 @@ class Results {
   /// the run reached its end, otherwise 0.
   int close(const Account& account, const Phases& phases);
 
-  /// Returns the step of the last checkpoint, -1 before the first one.
+  /// Returns the step of the last checkpoint, or -1 if no checkpoint has been saved yet.
   int last_saved() const { return last_saved_; }
   const std::filesystem::path& directory() const { return directory_; }
 

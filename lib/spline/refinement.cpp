@@ -55,7 +55,8 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
 }
 
 /// Compares the first parts (bays) of the face extensions of the T-junctions `candidates`, and returns the part whose insertion leaves the mesh with
-/// the fewest violations, as counted by harm(). Among equal parts, returns the shortest, then the part with the lowest vertex.
+/// the fewest violations, as counted by harm(). Among parts that leave equally few violations, returns the shortest, then the part with the lowest
+/// vertex.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;

@@ -90,7 +90,7 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   return best;
 }
 
-/// A point, in one element, of the curve in which the plane x2 = centre_2 cuts the surface, found by sampling.
+/// Point of the section curve (the intersection of the surface with the plane x2 = centre_2) in one element, found by sampling.
 struct Crossing {
   Vec2 at;
   double distance;

@@ -12,7 +12,7 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Returns the k for which the mesh is uniform with 3 * 2^k elements per side of the cube, or -1 if there is none.
+/// Returns k if the mesh is uniform with 3 * 2^k elements per side of the cube, otherwise -1.
 int subdivisions(const spline::TMesh& mesh, int n_points) {
   int level = 0, n = 3;
   while (6 * n * n + 2 < n_points) n *= 2, ++level;

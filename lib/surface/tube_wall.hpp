@@ -31,7 +31,7 @@ struct TubeWall {
   /// collocation points of densities on the wall; on a wall that is not periodic, they are the collocation points of `space`
   std::vector<std::vector<spline::Site>> sites;
   std::vector<spline::Site> middles;  ///< midpoints of the elements on which densities are defined
-  /// for each element of `space`, the index in `middles` of the density element that contains this element
+  /// for each element of `space`, the index in `middles` of the midpoint of the density element that contains this element
   std::vector<int> middle_of;
   double period = 0;  ///< period L along x1; 0 for an open wall with two ends
   /// matrix E, which maps control values of a periodic density to control values on `space`; empty if the wall is not periodic

@@ -213,7 +213,7 @@ class Capsule : public Dynamics {
   stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
   /// Returns the net whose area defines the loads (force per area): for each particle, its rows of x or of the unstressed net.
   Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }
-  void forget_recycled() const;  ///< discards the data of earlier solves that preconditioners `recycled` keep
+  void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   const Work& work() const { return work_; }
   Work& work() { return work_; }
 

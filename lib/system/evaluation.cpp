@@ -59,7 +59,7 @@ const RigidParticles& Evaluation::rigid() {
   return rigid_ ? *rigid_ : system_->rigid_;
 }
 
-/// Computes load and unknowns from the known velocity, or solves for them.
+/// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
 void Evaluation::find_unknowns() {
   if (known_.size() == 0 || !system_->unknowns_follow()) solve();
   if (solved_) return;

@@ -71,7 +71,7 @@ class Evaluation {
   Net x_, known_;  // known_: velocity passed to the constructor
   std::shared_ptr<Evaluation> near_;
   bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
-  Net velocity_, fluid_;  // fluid_: no rows if no control point slides
+  Net velocity_, fluid_;  // velocity_: velocity of the control points. fluid_: velocity of the fluid; no rows if no control point slides
   Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies
   Net work_, load_, viscous_work_;  // no rows until first used
   std::vector<Net> load_sums_;

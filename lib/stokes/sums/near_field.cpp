@@ -53,8 +53,7 @@ int connected(const Panels& panels, std::vector<int>& surface) {
   return n;
 }
 
-/// Returns an estimate of the distance from the panel beyond which `order` points per direction suffice for any target. It is rather too large than
-/// too small.
+/// Returns a conservative estimate of the distance from the panel beyond which `order` points per direction suffice for any target.
 double clearance(double area, double longest, const quadrature::Demand& demand, int order) {
   double d = longest;
   for (int k = 0; k < 2; ++k) {

@@ -41,7 +41,8 @@ class ChannelFlow : public stokes::DuctFlow {
   std::vector<Mat3> gradients(const Net& x) const override;
 
   double pressure_drop() const;        ///< pressure drop between the ends
-  double extra_pressure_drop() const;  ///< pressure drop minus that of a straight duct with the inlet's section and the length of the centre line
+  double extra_pressure_drop() const;  ///< pressure drop minus the pressure drop of a straight duct that has the inlet's section and the length of
+                                       ///< the centre line
   const Net& wall_traction() const;    ///< control values of f
 
   /// Returns the flow rates through the cross-sections at the arc lengths s of the centre line, from velocities that are evaluated together.

@@ -99,7 +99,7 @@ class FreeBody : public LoneRigidBody {
   Eigen::VectorXd amplitudes(const Net& place) const;
 
   RigidModes modes_;
-  Eigen::Matrix<double, 6, 6> mobility_;            ///< rigid motions due to unit forces and torques
+  Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
   Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion of a free body relative to the flow, for each strain and quadratic
                                                     ///< flow
 };

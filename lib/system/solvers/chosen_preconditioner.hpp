@@ -35,7 +35,7 @@ class RecycledProducts {
 
   static constexpr std::size_t most = 10;
   std::vector<Product> present_, kept_;
-  double scale_ = 1;  // s that minimises |z - s y| for the latest z, y = A z: an estimate of 1/|A|
+  double scale_ = 1;  // estimate of 1/|A|: the factor s that minimises |z - s y| for the latest product y = A z
 };
 
 /// Preconditioner `Solvers/<system>/preconditioner` of the deck, with its data from earlier solves.
