@@ -28,11 +28,11 @@ using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 
 // Largest number of rows for which the explicit inverse is stored. A solve is then a product with the inverse, which costs less than the overhead of
-// an Amesos2 solve (maps, import of several columns). Measured with the mass and collocation matrices of spheres.
+// an Amesos2 solve (maps, import of several columns). The limit was chosen from solve times of the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Number of rows above which an iterative solver is as fast as substitution with LU factors, and its setup takes a small part of the time.
-// Measured with the mass and collocation matrices of spheres.
+// Number of rows above which an iterative solver is as fast as substitution with LU factors, and its setup takes a small part of the time. The limit
+// was chosen from solve times of the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_iterating = 5000;
 
 /// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.

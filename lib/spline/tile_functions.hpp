@@ -27,7 +27,7 @@ struct Contribution {
 struct TileFunctions {
   Tiling tiling;                      ///< Bezier mesh
   std::vector<int> anchor;            ///< lattice vertex of each function
-  std::vector<int> irregular;         ///< for each element: index of its corner that is an extraordinary point, or -1
+  std::vector<int> irregular;         ///< for each element: corner (0 .. 3) that is an extraordinary point, or -1
   std::vector<Contribution> entries;  ///< coefficients by ascending anchor; none on elements at extraordinary points
   std::vector<Knots> knots;           ///< knots of each anchor
 };

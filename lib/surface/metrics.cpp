@@ -235,7 +235,7 @@ Resolution along_edge(const Lattice& lattice, Samples& samples, Ray edge, int le
     result.length = (samples.at(found.vertices[found.start + 1]).now - samples.at(edge.vertex).now).norm();
   const int last = static_cast<int>(found.vertices.size()) - 5;
   // A fourth difference needs five successive vertices (a window). Uses the two windows in which the edge touches the middle vertex. If the line is
-  // too short for both, uses the windows in which the edge is the first or the last one.
+  // too short for both, uses the windows in which the edge is the first or the last edge.
   std::vector<int> windows;
   for (const int first : {found.start - 2, found.start - 1})
     if (first >= 0 && first <= last) windows.push_back(first);

@@ -64,7 +64,8 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, deformed by the flow except in a duct; not set without periodicity
+  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, which the flow deforms, except in a duct; empty if the scene is not
+                                             ///< periodic
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points if there is no symmetry

@@ -49,7 +49,7 @@ class CoupledMotion : public Dynamics {
   /// Returns the change of the state y if control points slide by the small displacement `along` on surfaces that do not move.
   Net slid(const Net& y, const Net& along);
 
-  /// Sets the state of the fields only.
+  /// Sets the state of the fields. Unlike set_state(), does not set their load on the capsule.
   void set_fields(const Net& y);
   /// Sets the state of the fields and adds their load to the loads of the capsule. Does not set the capsule's shape, which is an argument of its
   /// functions.

@@ -26,8 +26,8 @@ namespace tanktread::coupling {
 ///     y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                   (4.15)
 ///
 ///   Here n_i is the unit normal of x at site i and R the collocation matrix. If y contains a translation of the drop, the tangential part is added
-///   to d, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the control values of the
-///   scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
+///   to d, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the control values of
+///   the scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
 /// - Rigid body: the coefficients of six orthonormal fields, which span its translations and rotations.
 ///
 /// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i, by which a relaxing mesh remains at

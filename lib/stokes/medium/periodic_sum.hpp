@@ -58,8 +58,8 @@ class PeriodicSum {
   std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): which of the distinct differences nodes a
                                                 // and b have, counted from 0
   std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
-  std::vector<double> table_;  // table of the smooth kernel sum: components_ values for the node difference (i, j, k), from index components_ ((n_1 i
-                               // + j) n_2 + k)
+  std::vector<double> table_;  // entries m ((n_1 i + j) n_2 + k) + c, with m = components_: component c of the smooth kernel sum for the node
+                               // difference (i, j, k)
   int components_ = 6;
   std::vector<Pack> scratch_;
 };

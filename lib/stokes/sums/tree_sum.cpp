@@ -6,12 +6,11 @@
 namespace tanktread::stokes {
 namespace {
 
-/// Maximum number of points of a leaf. Measured on deformed spheres; half or twice as many points per leaf take 10 % more time.
+/// Maximum number of points of a leaf. On deformed spheres, half or twice as many points per leaf take 10 % more time.
 constexpr int source_leaf = 256, target_leaf = 2 * far_block;
 
 /// Factor on the tolerance of clusters. Their error is proportional to the sum of |f| / r. Loads on a membrane are in equilibrium, so that velocities
-/// are an order of magnitude smaller than this sum. Measured on capsules in shear flow: with this factor the largest error is a third of the
-/// tolerance.
+/// are an order of magnitude smaller than this sum. With this factor, the largest error on capsules in shear flow is a third of the tolerance.
 constexpr double allowance = 0.3;
 
 int blocks_of(int n) { return (n + far_block - 1) / far_block; }

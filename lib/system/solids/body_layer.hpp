@@ -43,7 +43,7 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies; their blocks number the rows of bodies only
+  std::vector<Particle> bodies_;   // the rigid bodies, with blocks that number the rows of bodies without other particles
   std::vector<spline::Block> in_;  // block of each body among all particles
   spline::Space space_;            // common space of the bodies
   std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points in `own` of other
@@ -55,7 +55,7 @@ class BodyLayer {
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
                              // (2.10)
   Eigen::MatrixXd matrix_;                // kept only for `velocity`
-  stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty unless `keep_rows` is set
+  stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty if `keep_rows` is false
   std::optional<DenseFactors> factors_;
 };
 

@@ -163,8 +163,8 @@ void Wall::add_middles() {
 /// residual velocity is nearly a wave, whose mean is `mean_of_wave` times its value at the midpoints.
 double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
 
-/// Returns the indices (in `middles`) of the midpoints of the elements that touch a collocation point. In a periodic wall these are the elements of
-/// the traction density, not those of the geometry.
+/// Returns the indices (in `middles`) of the midpoints of the elements that touch a collocation point. In a periodic wall, elements are the elements
+/// of the traction density, not of the geometry.
 std::vector<int> Wall::middles_around(int point) const {
   std::vector<int> all;
   for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
@@ -235,8 +235,8 @@ template <class Real>
 void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
                      stokes::Rows<Real>& rows) const {
   if (!has_middles()) return assemble(sites, rows);
-  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // row: index of each midpoint among the targets,
-                                                                                           // or -1
+  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // entry e: index of midpoint e among the targets, or -1 if
+                                                                                           // it is not a target
   for (const int i : sites)
     for (const int e : middles_around(i))
       if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {
