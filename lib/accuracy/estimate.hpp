@@ -42,7 +42,7 @@ struct Curve {
 };
 
 /// Returns |a - b| at the abscissas that both curves have (up to 1e-9 of their range). If these are fewer than 5 and the curves have more points,
-/// returns |a - b| at all abscissas of `a` within the range of `b`, where b is interpolated by cubics. NaN where a or b is NaN.
+/// returns |a - b| at all abscissas of `a` within the range of `b`, where b is interpolated by cubics. The result is NaN where a or b is NaN.
 Curve difference(const Curve& a, const Curve& b);
 
 /// Returns the largest value that is not NaN; NaN if there is none.

@@ -58,7 +58,7 @@ class Membrane {
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 
   /// Returns the strong form of the load, t = -div_s tau (P-3), at a parametric point. It uses second derivatives of the current and the unstressed
-  /// net, and leaves out bending. Force per current area.
+  /// net, and leaves out bending. The result is a force per current area.
   Vec3 strong_load(const Net& x, const spline::Site& site) const;
 
   /// Evaluates the strong form of the load at the collocation points `targets`, as the average over the elements that meet there. Sets only the rows

@@ -74,7 +74,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   if (scene.tube.present) return of_loads.col(0).isZero(0) ? std::vector{coupling::unit_motion(0)} : std::vector<coupling::RigidMotion>();
   Net places(4, 3);
   places << size, 0, 0, 0, size, 0, 0, 0, size, size, size, size;
-  // A rotation changes all lattice vectors h except those along its axis.
+  // A rotation changes every lattice vector h that is not along its axis.
   const std::vector<Vec3> lattice = lattice_vectors(scene);
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);

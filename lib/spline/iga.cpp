@@ -158,7 +158,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
   for (int k = 0; k < int(space.elements.size()); ++k)
     for (int e = 0; e < 4; ++e) {
       const int a = places[9 * k + along_edge[e][0]], m = places[9 * k + along_edge[e][1]], b = places[9 * k + along_edge[e][2]];
-      if (a == m && m == b) continue;  // side that is collapsed to a pole, a single point
+      if (a == m && m == b) continue;  // skips sides that are collapsed to a single point (a pole)
       if (open.erase({b, m, a})) continue;
       const auto [side, is_new] = open.try_emplace({a, m, b}, k, e);
       if (!is_new && twice < 0) once = side->second.first, twice = k;

@@ -339,7 +339,8 @@ class Capsule : public Dynamics {
   Lattice lattice_;
   double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
   double latest_shift_ = 0;             // shift gamma dt of the implicit system solved last
-  Net flux_, flux_response_;            // b and c of the volume projection P (2.8) in the Jacobian; empty if the Jacobian has no P
+  Net flux_, flux_response_;            // velocity gradients of the ambient flow at the collocation sites, for the shape linearised last; set if
+                                        // there is a tube or a solid, or if the flow is not affine
   std::vector<Mat3> gradients_;         // velocity gradients of the ambient flow at the collocation sites, for the shape linearised last; only in a
                                         // tube or if the flow is not affine
   std::vector<double> volume0_;         // volume V0 of each particle

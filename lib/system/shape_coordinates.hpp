@@ -86,7 +86,7 @@ class ShapeCoordinates {
   std::vector<Coordinate> all_;
   std::vector<Net> rigid_;         // orthonormal rigid motions of bodies; their coordinates come last
   std::vector<Coordinate> along_;  // tangential coordinates t of drops
-  Eigen::MatrixXd following_;      // maps coordinates y to tangential coordinates t of meshes that relax by themselves (4.26); empty if none does
+  Eigen::MatrixXd following_;      // maps coordinates y to the tangential coordinates t of relaxing meshes (4.26); empty if no mesh relaxes
   std::vector<Translation> translations_;  // translations of drops
   const surface::Symmetry& symmetry_;
   Vec3 of_planes_;

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Returns the step in a snapshot's file name, or -1 if it is not such a name.
+/// Returns the step in a snapshot's file name, or -1 if `name` is not the file name of a snapshot.
 int step_of(const std::string& name) {
   constexpr std::string_view before = "snapshot_", after = ".hdf";
   if (!name.starts_with(before) || !name.ends_with(after)) return -1;

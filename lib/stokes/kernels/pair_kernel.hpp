@@ -1,5 +1,5 @@
 #pragma once
-// Kernels for one target and one panel with a panel-specific quadrature rule. Bezier points of a panel: component c of point b at n_b c + b.
+// Kernels for one target and one panel with a panel-specific quadrature rule. Component c of Bezier point b of a panel is stored at index n_b c + b.
 
 #include "stokes/kernels/point_table.hpp"
 

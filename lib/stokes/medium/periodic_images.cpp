@@ -202,8 +202,8 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
 }
 
 /// Adds all images along the one period h e except the near images, in pairs at +n h and -n h, and subtracts (I + e e)/|n h| from each Stokeslet
-/// (2.43). The first `direct` pairs are summed directly. The others are replaced by an integral over 1/n and the first term of the Euler-Maclaurin
-/// formula.
+/// (2.43). The first `direct` pairs are summed directly. The other pairs are replaced by an integral over 1/n and the first term of the
+/// Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
   const Vec3 h = cell_.vectors().col(0), e = h.normalized();

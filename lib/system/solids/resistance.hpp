@@ -58,7 +58,7 @@ class Resistance {
   /// Returns the velocity (1/mu) A f of a force density f, including the regularising term of (2.10).
   Net velocity(const Net& f) { return apply(f) / viscosity_; }
 
-  /// Returns whether the surface at its current position is inside the tube or in front of the wall, if there is one.
+  /// Returns true if the surface in its current position is inside the tube (if there is a tube) and in front of the plane wall (if there is a wall).
   bool inside() const { return (!tube_ || tube_->gap() > 0) && in_front_; }
 
   const std::optional<stokes::PlaneWall>& wall() const { return wall_; }

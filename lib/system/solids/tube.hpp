@@ -165,7 +165,8 @@ class Tube {
   const surface::TubeWall& wall() const;
   void forget_recycled() const { wall_->forget_recycled(); }  ///< discards data of earlier solves that the wall's iterative solver keeps
   const stokes::DuctFlow& flow() const { return *flow_; }
-  stokes::Evaluations kernel_evaluations() const;  ///< sum for the particle and the wall, including the assembly of the wall
+  stokes::Evaluations kernel_evaluations() const;  ///< returns the number of kernel evaluations for the particle and the wall, including the assembly
+                                                   ///< of the wall
 
  private:
   struct Particle;
