@@ -19,7 +19,7 @@ struct Expectation {
   std::string kind = "absolute";  ///< kind of the tolerance: absolute or relative
   std::optional<double> at;       ///< time of the expected value; if not set, the last time
   std::string source;             ///< source of the expected value, for example a publication
-  std::string not_binding;        ///< reason why a missed expectation is only reported; if empty, it fails the run
+  std::string not_binding;        ///< reason why a missed expectation is only reported; if empty, a missed expectation makes the run fail
 
   void declare(Section& section);
 };

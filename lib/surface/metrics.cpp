@@ -30,7 +30,7 @@ std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator&
   double at = end - length;
   while (at < end - 1e-9 * length) {
     spline::Place inside = start;
-    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // a point just past the border between two Bezier elements
+    (direction == 0 ? inside.x : inside.y) = at + 1e-7 * length;  // moves the point just past the border between two Bezier elements
     spline::Site site = locate(inside);
     const spline::Element& element = space.elements[site.element];
     const double from = element.origin[direction], size = element.size[direction], to = std::min(from + size, end);

@@ -222,7 +222,7 @@ class Capsule : public Dynamics {
   friend class Evaluation;
 
   /// Net of the particles for which the tube was set up last. `origin`: x1 of the origin of the frame of a straight periodic wall at the present
-  /// time. `origin_of_net`: this x1 when `net` was set.
+  /// time. `origin_of_net`: value of `origin` at the time when `net` was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;

@@ -34,7 +34,7 @@ struct IterativeOptions {
                                                     ///< set, the parameter list of SolverOptions is used
   std::string preconditioner = "own";             ///< own, none, neumann, recycled
   std::string path = "Solvers";                   ///< path of these options in the deck
-  int restart = 100;  ///< restart length of GMRES, if the list does not set it; this many vectors are allocated in each solve
+  int restart = 100;  ///< restart length of GMRES, if the solver's parameter list does not set it; each solve allocates this number of vectors
 
   void declare(deck::Section& section);
 };
