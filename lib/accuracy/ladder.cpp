@@ -242,7 +242,8 @@ class Ladder {
   int count_ = 0;                                   // number of finished levels
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
-  std::string failure_, failure_of_last_;           // message of the latest failed run; message of the latest run if it failed, otherwise empty
+  std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it
+                                                    // failed, otherwise empty
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ class AreaConstraint {
     int element;
     spline::Basis basis;
     AreaElasticity law;
-    double inverse_det, area;  // inverse determinant 1/|G| of the unstressed metric; Gauss weight times sqrt|G|
+    double inverse_det, area;  // inverse_det: inverse determinant 1/|G| of the unstressed metric. area: Gauss weight times sqrt|G|
   };
   struct Rows {
     Eigen::SparseMatrix<double, Eigen::RowMajor> d;

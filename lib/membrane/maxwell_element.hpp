@@ -75,7 +75,7 @@ class MaxwellElement : public Field {
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
-  Eigen::VectorXd q_, known_q_;  // coefficients set last, and coefficients stored by linearise()
+  Eigen::VectorXd q_, known_q_;  // q_: coefficients set last. known_q_: coefficients stored by linearise()
   Net known_x_;
   std::vector<Eigen::Matrix3d> known_rates_;  // d(rate)/dq at each Gauss point
 };

@@ -20,7 +20,8 @@ struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
   int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
-  std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin, [A * pack_lanes() + lane]
+  std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin; the id for function A in lane l is A *
+                                      ///< pack_lanes() + l entries further
   /// index in Group::extraction at which the batch's matrices begin, [A * (p + 1)^2 + b]; batches with equal matrices share them
   std::size_t extraction = 0;
 };

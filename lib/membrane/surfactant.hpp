@@ -102,7 +102,7 @@ class Surfactant : public Field {
   mutable MassSolver solver_;
   Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface; concentration_: control values of c
   Eigen::VectorXd q_;                                     // coefficients set last
-  Net x_, known_x_;                                       // shape set last, and shape stored by linearise()
+  Net x_, known_x_;                                       // x_: shape set last. known_x_: shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation
   std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
   mutable MassMatrix known_mass_;                         // mass matrix at the linearisation

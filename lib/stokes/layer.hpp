@@ -200,7 +200,8 @@ class Layer {
 
   /// The unstressed surface.
   struct Reference {
-    std::vector<double> bezier, weight;  // Bezier points of the unstressed surface; its quadrature weights at the far nodes, areas included
+    std::vector<double> bezier, weight;  // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
+                                         // nodes, areas included
     std::vector<bool> present;           // true for elements where Measure::by_element selects the current area
   };
 
@@ -262,14 +263,15 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
-  std::vector<double> density_[3], normal_[3];                     // values at the far nodes: density f (in a single layer times weight_); normal
-                                                                   // times quadrature weight, area and the factor k_p of (2.2)
+  std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f, in a single layer times weight_.
+                                                                   // normal_: normal times quadrature weight, area and the factor k_p of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // for each target, the double layer of the images in the wall for the constant
                                                                    // densities e_1, e_2 and e_3, as columns
-  std::vector<int> fundamental_sites_, everybody_;                 // targets in the tree; rows whose far sums are divided among callers by share()
+  std::vector<int> fundamental_sites_, everybody_;                 // fundamental_sites_: targets in the tree. everybody_: rows whose far sums are
+                                                                   // divided among callers by share()
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each

@@ -60,7 +60,7 @@ struct FarBasis {
   }
 };
 
-/// Adds Bernstein moments of panel e, moment[6 b + c], to the sums of one target: sums[6 block rows[A] + block c].
+/// Adds Bernstein moments of panel e, moment[6 b + c], to the sums of one target: sums[n (6 rows[A] + c)], with n = assembly_block.
 template <class Real>
 void add_moments(const Panels& panels, int e, const int* rows, const double* moments, Real* sums) {
   const int n_b = panels[e].table->n_bernstein;

@@ -39,7 +39,7 @@ class ElementBoxes {
 
   const Patches& surface_;
   std::vector<int> order_;
-  std::vector<Box> own_, boxes_;  // bounding box of each element; all bounding boxes of the tree
+  std::vector<Box> own_, boxes_;  // own_: bounding box of each element. boxes_: all bounding boxes of the tree
 };
 
 /// Returns a lower bound of the distance between the contents of two boxes.

@@ -128,7 +128,7 @@ class Geometry {
 
  private:
   BezierMap map_;
-  std::vector<int> all_, all_blocks_;  ///< indices 0 .. n_elements - 1 of all elements; indices 0 .. n_blocks - 1 of all blocks
+  std::vector<int> all_, all_blocks_;  ///< all_: indices 0 .. n_elements - 1 of all elements. all_blocks_: indices 0 .. n_blocks - 1 of all blocks
 };
 
 /// Computes measures of one control net.

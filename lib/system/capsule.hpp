@@ -311,7 +311,8 @@ class Capsule : public Dynamics {
   membrane::Membrane membrane_;
   membrane::Tangent tangent_;
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
-  Loads loads_;  // all loads other than elasticity and bending
+  Loads loads_;  // viscous operator C (3.10), of the latest evaluation (viscous_) and of the Jacobian (linearised_viscous_); set if a membrane is
+                 // viscous
   std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the
                                                                        // Jacobian; set if a membrane is viscous
   std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated

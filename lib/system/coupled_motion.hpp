@@ -95,7 +95,7 @@ class CoupledMotion : public Dynamics {
   Capsule& capsule_;
   std::vector<On> fields_;
   std::vector<Block> blocks_;
-  Eigen::Index n_, rows_;  // number of control points; number of rows of a state
+  Eigen::Index n_, rows_;  // n_: number of control points. rows_: number of rows of a state
 };
 
 }  // namespace tanktread::coupling

@@ -86,7 +86,7 @@ class AmbientFlow {
   std::shared_ptr<const DuctFlow> duct_;
   std::shared_ptr<const UserFlow> user_;  // registered flow, which is evaluated instead of field_; null for the other types
   std::optional<FlowHistory> history_;
-  Field steady_, field_;  // field at amplitude 1; field at the current time
+  Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;
   double rate_ = 0;
 };

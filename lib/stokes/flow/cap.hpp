@@ -46,7 +46,8 @@ class Cap {
   const Nodes& nodes_for(double distance) const;
 
   surface::Outline outline_;
-  double place_, reach_ = 0;                     ///< coordinate x1 of the cap; half the length of the longest curve segment of the outline
+  double place_, reach_ = 0;                     ///< place_: coordinate x1 of the cap. reach_: half the length of the longest curve segment of the
+                                                 ///< outline
   std::vector<std::pair<double, Nodes>> rules_;  ///< for each rule, the smallest distance from the plane at which it is used, and its nodes
 };
 

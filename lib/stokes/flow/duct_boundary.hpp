@@ -89,7 +89,8 @@ class BoundaryProfile : public DuctProfile {
   surface::Vec2 centroid_;
   double radius_, flow_rate_;
   int n_elements_;
-  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // at the nodes of (2.17): position relative to the centroid, line element, v_c and psi
+  std::vector<double> x_, y_, dx_, dy_, f_, g_;  // values at the nodes of (2.17). x_, y_: position relative to the centroid. dx_, dy_: line element.
+                                                 // f_, g_: v_c and psi
 };
 
 }  // namespace tanktread::stokes

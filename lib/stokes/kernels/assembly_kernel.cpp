@@ -6,7 +6,7 @@ namespace tanktread::stokes {
 namespace INSTRUCTIONS {
 namespace {
 
-// Computes g[block (6 k + c) + l] for each node k and target l: entry c = 11, 12, 13, 22, 23, 33 of G, or of T n if Double.
+// Computes g[n (6 k + c) + l], with n = assembly_block, for each node k and target l: entry c = 11, 12, 13, 22, 23, 33 of G, or of T n if Double.
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;

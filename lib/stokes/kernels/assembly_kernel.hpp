@@ -21,9 +21,9 @@ struct PanelNodes {
   const int* rows = nullptr;
 };
 
-/// Adds sum_k G_c(x_k, x0_l) N_A(x_k) w_k (2.1), for each basis function A and component c = 11, 12, 13, 22, 23, 33 of G, to
-/// sums[block (6 rows[A] + c) + l], unless bit l of `skip` is set. With normals, T_ijk n_k replaces G. Target l has the coordinates target[l],
-/// target[block + l] and target[2 block + l], block = 16. Differences x_k - x0_l are computed in double precision. `scratch`: 6 n_nodes blocks.
+/// Adds sum_k G_c(x_k, x0_l) N_A(x_k) w_k (2.1), for each basis function A and component c = 11, 12, 13, 22, 23, 33 of G, to sums[n (6 rows[A] + c) +
+/// l], with n = assembly_block = 16, unless bit l of `skip` is set. With normals, T_ijk n_k replaces G. Target l has the coordinates target[l],
+/// target[n + l] and target[2 n + l]. Differences x_k - x0_l are computed in double precision. `scratch`: 6 n n_nodes numbers.
 void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
 void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
 template <class Real>

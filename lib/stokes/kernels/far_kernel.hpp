@@ -45,8 +45,8 @@ void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* 
 /// subtracts this sum from the far sum.
 void node_sum(const PointForces& forces, const double* x0, double* u);
 
-/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[block c + l]: c = 0, 1, 2 for the position, 3, 4, 5 for the velocity v0
-/// there.
+/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5
+/// component c - 3 of the velocity v0 there.
 void far_sum(const Stresslets& nodes, const double* target, double* u);
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
 void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);

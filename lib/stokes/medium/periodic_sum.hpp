@@ -51,7 +51,8 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;    // displacement of the cell from the origin; lowest corner and side lengths of the box in lattice coordinates
+  Vec3 away_, low_, length_;    // away_: displacement of the cell from the origin. low_, length_: lowest corner and side lengths of the box in
+                                // lattice coordinates
   std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;

@@ -15,7 +15,8 @@ struct Cluster : ChebyshevBox {
   int child[2] = {-1, -1};       ///< indices of the children; -1 for a leaf
   int first_node = 0;            ///< index of its first Chebyshev node among the nodes of all clusters
   int first_block = 0;           ///< index of its first block of nodes among the blocks of all clusters; a block has far_block nodes
-  double radius = 0, reach = 0;  ///< half the box's diagonal; distance from the centre beyond which interpolation at the Chebyshev nodes is accurate
+  double radius = 0, reach = 0;  ///< radius: half the box's diagonal. reach: distance from the centre beyond which interpolation at the Chebyshev
+                                 ///< nodes is accurate
   bool bare = false;             ///< true: the box has no Chebyshev nodes, because they would cost no less than its points; its points are
                                  ///< used instead
 

@@ -47,7 +47,8 @@ class NearField {
     quadrature::Patch flat;
     Vec3 normal;  ///< normal of the planar approximation
     double area = 0, bulge = 0, radius = 0;
-    quadrature::Demand demand, across;  ///< accuracy required for targets on the closed surface of the panel; accuracy required for targets elsewhere
+    quadrature::Demand demand, across;  ///< demand: accuracy required for targets on the closed surface of the panel. across: accuracy required for
+                                        ///< all other targets
   };
   void view(int e);
   bool on_same_surface(int e, std::span<const SelfPair> own) const;
@@ -62,7 +63,8 @@ class NearField {
   int largest_order_;
   const std::vector<double>* bezier_ = nullptr;
   std::vector<View> views_;
-  std::vector<double> centre_[3], reach_;  ///< centre of each panel; squared distance from the centre beyond which the far rule suffices
+  std::vector<double> centre_[3], reach_;  ///< centre_: centre of each panel. reach_: squared distance from the centre beyond which the far rule
+                                           ///< suffices
   Vicinity vicinity_;
   std::vector<int> suspects_;
   std::map<std::pair<int, int>, PointTable> whole_;  ///< tensor Gauss rules on the whole panel, by (degree, order)

@@ -79,9 +79,9 @@ class TreeSum {
 
   Precision precision_;
   int part_ = 0, parts_ = 1;
-  int in_ = 3, out_ = 3;  // numbers of components: of the strength of a source, and of the sum at a target
+  int in_ = 3, out_ = 3;  // in_: number of components of a source strength. out_: number of components of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
-  Clusters sources_, target_tree_;              // tree of the sources; tree of the targets without their images
+  Clusters sources_, target_tree_;              // sources_: tree of the sources. target_tree_: tree of the targets without their images
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
   int n_trees_ = 1;                             // number of target trees: one for the targets, and one for each reflection of the targets
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other

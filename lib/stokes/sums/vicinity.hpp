@@ -19,8 +19,9 @@ class Vicinity {
 
  private:
   struct Box {
-    double low[3], high[3], square;  ///< bounds of the centres of the balls in this box; largest squared radius of these balls
-    int first, last, after;          ///< range of the balls in this box; index of the box to test next if no ball of this box can contain the point
+    double low[3], high[3], square;  ///< low, high: bounds of the centres of the balls in this box. square: largest squared radius of these balls
+    int first, last, after;          ///< first, last: range of the balls in this box. after: index of the box to test next if no ball of this box can
+                                     ///< contain the point
     bool leaf;
   };
   void split(int first, int last);

@@ -130,7 +130,8 @@ class Tube {
     double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle; divided
                               ///< by section area times radius times pressure gradient of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
-    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drop that would make `flux` zero; pressure drop that would make `force` zero
+    double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` zero (pressure_by_flux) or `force` zero
+                                                         ///< (pressure_by_force)
   };
   Checks checks(const Net& f, const Net& v, const Response& response);
 

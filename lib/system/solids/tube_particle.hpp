@@ -79,11 +79,14 @@ struct Tube::Particle {
   double centroid = 0;                         ///< position along x1 of the wall's origin; the particle's centroid in a straight open tube
   Net sites;                                   ///< collocation points, in the wall's frame
   Net inlet;                                   ///< (1/mu) c at the sites
-  Net ambient, interpolated_ambient;           ///< duct flow v_inf at the sites; its control values (in a channel only)
-  Net pressure_of_load, pressure_of_velocity;  ///< weights of load f and velocity v in the pressure drop (2.7); the second is empty if lambda = 1
+  Net ambient, interpolated_ambient;           ///< ambient: duct flow v_inf at the sites. interpolated_ambient: control values of v_inf (in a channel
+                                               ///< only)
+  Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in the pressure drop (2.7); pressure_of_velocity is
+                                               ///< empty if lambda = 1
   std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
-  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections of the double layer at the wall, and of the wall's
-                                                                   ///< layer at the sites; cached for the iterations if lambda != 1
+  std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections, cached for the iterations if lambda != 1.
+                                                                   ///< dual_on_wall: of the double layer at the wall. wall_on_sites: of the wall's
+                                                                   ///< layer at the sites
 
   struct Frozen {
     FrozenOperator single, dual, wall;

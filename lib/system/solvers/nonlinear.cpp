@@ -94,7 +94,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   mutable ChosenPreconditioner chosen_;
   Teuchos::RCP<FunctionOperator> preconditioner_;
   mutable LinearSystem newton_;
-  mutable Net x_, f_;  // argument and value of the latest evaluation
+  mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: its value
 };
 
 Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
