@@ -121,7 +121,8 @@ class RigidTractions {
   BodyLayer layer_;
   BetweenSites between_;                         // Gauss points on the bodies
   stokes::Layer between_layer_;                  // single layer of all particles at the Gauss points `between_`
-  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at the Gauss points; set if a viscosity contrast is not 0
+  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at the Gauss points; set if 1 - lambda is not 0 for any of
+                                                 // them
   stokes::Measure measure_;
   Eigen::SparseMatrix<double> sites_;
   membrane::MassMatrix mass_;

@@ -87,7 +87,7 @@ class SolidResponse {
   const stokes::AmbientFlow& flow_;
   Eigen::SparseMatrix<double> collocation_;
   stokes::Layer single_;
-  std::optional<stokes::Layer> double_;  // double layer of the particles; set if any contrast is not 0
+  std::optional<stokes::Layer> double_;  // double layer of the particles; set if 1 - lambda is not 0 for any particle
   stokes::Measure measure_ = stokes::Measure::reference;
   Eigen::VectorXd contrasts_;
   Net shape_, at_;
