@@ -283,8 +283,8 @@ class Run {
     totals_.wall_seconds = earlier_wall_seconds_ + seconds_here();
     totals_.seconds = with_earlier(phases_, earlier_seconds_);
     const Results::Sampled picture = pictured_ && pictured_->sampled ? *pictured_->sampled : sample();
-    if (pictured_) settle();  // The evaluation of the snapshot has increased the counts in totals_. The solution of its linear systems is also the
-                              // initial guess of the next solve.
+    if (pictured_) settle();  // sample() has evaluated the velocity at the time of the snapshot. The totals are collected again, so that the
+                              // checkpoint includes the operations of this evaluation.
     output::Checkpoint checkpoint;
     particle_->store(checkpoint);
     results_.save(std::move(checkpoint), state_, totals_, picture);

@@ -58,11 +58,12 @@ struct BranchPoint {
 /// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh of the first fold is kept.
 class Branch {
  public:
-  /// Returns the equations at a value of the parameter and of the second parameter. Without a second parameter, the second value is 0. Collective.
+  /// Returns the equations of steady shapes for given values of the parameter and of the second parameter. If there is no second parameter, its value
+  /// is 0. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Transfers shapes to a mesh that fits the last shape better, and makes Family return equations on that mesh. The last shape is steady at this
-  /// parameter. Returns false if there is no better mesh. Collective.
+  /// Adapts the mesh to the last of the given shapes, which is steady at `parameter`, and transfers all shapes to the new mesh. The Family of this
+  /// branch must return equations on the new mesh from then on. Returns false if the mesh does not change. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
   /// Starts the branch at `parameter`, with the steady shape that a search from `x` finds. `second`: value of the second parameter if the first fold

@@ -46,8 +46,8 @@ CrankNicolson::Iteration CrankNicolson::iterate(coupling::Dynamics& dynamics, co
 StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
   Attempts attempts(options_, state, limit);
-  const bool known = by_error_ && state.history.size() > 1;  // if true, State::memory has the size of the last step, and the error of
-                                                             // this step divided by the tolerance
+  const bool known = by_error_ && state.history.size() > 1;  // if true, State::memory contains two values of the last accepted step: its
+                                                             // size, and its error divided by the tolerance
 
   for (;;) {
     const double dt = attempts.next();

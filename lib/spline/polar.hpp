@@ -23,24 +23,27 @@ struct PolarMesh {
   int azimuthal = 32;   ///< m >= 4
   int meridional = 16;  ///< r >= 4
   PoleRule poles = PoleRule::bezier_transform;
-  int subdivisions = 2;  ///< elements at the poles are divided in azimuth into 2^subdivisions before the transform
+  int subdivisions = 2;  ///< with `bezier_transform`: degenerate elements are divided in azimuth into 2^subdivisions parts before they are replaced
 };
 
-/// Position of a control point at its generalised Greville point: u along the meridian in elements, from 0 (first pole, "behind") to r (last pole,
-/// "ahead"), and azimuth v in elements. Without `c1`, the control points are the poles and the rows of m points of the tensor-product net. With `c1`,
-/// three control points per pole replace the pole and the row next to it. `distance`: ratio of the distance of the point from the axis to the
-/// distance of the row at this u from the axis. It is 1 except for these three points.
+/// Position of a control point at its generalised Greville point. In general, the control points are the two poles and rows of m points between them.
+/// With PoleRule::c1, three control points per pole replace the pole and the row next to it.
 struct PolarAnchor {
-  double u = 0, v = 0, distance = 1;
+  double u = 0;         ///< coordinate along the meridian, in elements: 0 at the first pole ("behind"), r at the last pole ("ahead")
+  double v = 0;         ///< azimuth, in elements
+  double distance = 1;  ///< radius of the control point about the axis, divided by the radius of the row at u; not 1 only for the points of `c1`
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
-/// Returns the spline space of the mesh. Order of control points: the pole at the beginning of the meridian ("behind"), the rows along the meridian
-/// (azimuth fastest), the pole at its end ("ahead"). In an element, s runs along the azimuth and t along the meridian towards the pole ahead. The
-/// pieces that replace degenerate elements come last. With `plain`, a pole is a side of m elements, and its collocation point is at s = 1/2 on each
-/// of them. `face` is 0. `origin` and `size` are fractions of the whole domain; the pieces of an element divide its size in azimuth.
+/// Returns the spline space of the mesh.
 ///
-/// With `c1` (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1, next to
+/// Order of control points: the pole at the beginning of the meridian ("behind"), the rows along the meridian (azimuth fastest), the pole at its end
+/// ("ahead"). In an element, s runs along the azimuth and t along the meridian towards the pole ahead. Pieces that replace degenerate elements come
+/// last. Element::face is 0. Element::origin and Element::size are fractions of the whole domain. The pieces of an element divide its size in azimuth.
+///
+/// With PoleRule::plain, a pole is a collapsed side of m elements. Its collocation point is at s = 1/2 on each of them.
+///
+/// With PoleRule::c1 (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1, next to
 /// it. Let f_j = 2 pi j / m be the azimuths of the functions of a row, d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle
 /// around all d_j. Then
 ///
@@ -63,14 +66,16 @@ Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).
 
-/// Order of the Bezier points T_ijk, i + j + k = 3, of the cubic triangle in barycentric coordinates r = u (1 at the pole), s = (1 - u) v,
-/// t = (1 - u)(1 - v). The Bezier points of the degenerate element are Q_ij, in an order in which the index i along u varies fastest. The pole is the
-/// side u = 1.
+/// Indices (i, j, k), i + j + k = 3, of the Bezier points T_ijk of a cubic triangle, in the order in which the points are stored. The triangle
+/// approximates a degenerate element with local coordinates u and v, whose side u = 1 is the pole. The barycentric coordinates are r = u,
+/// s = (1 - u) v and t = (1 - u)(1 - v), with the exponents i, j and k in the Bernstein polynomial of T_ijk. The Bezier points of the degenerate
+/// element are Q_ij, with i along u and j along v; i varies fastest.
 constexpr std::array<std::array<int, 3>, 10> triangle_points{
     {{0, 0, 3}, {1, 0, 2}, {2, 0, 1}, {3, 0, 0}, {0, 1, 2}, {1, 1, 1}, {2, 1, 0}, {0, 2, 1}, {1, 2, 0}, {0, 3, 0}}};
 
-/// Returns the matrix of (P-A.1), shape (10, 16), which maps the degenerate element to the triangle that approximates it best. Row i of the element
-/// becomes a curve of degree 3 - i in v by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
+/// Returns the matrix of (P-A.1), shape (10, 16). The matrix maps the 16 Bezier points Q_ij of a degenerate element to the 10 Bezier points T_ijk of
+/// the triangle that approximates the element best. The points Q_i0 .. Q_i3 define a cubic curve in v. For each i, this curve is approximated by a
+/// curve of degree 3 - i by least squares with fixed ends (Hu 2001). The pole is the mean of Q_30 .. Q_33.
 Eigen::MatrixXd triangle_of_degenerate();
 
 /// Corners (U, V) = (0,0), (1,0), (1,1), (0,1) of a quadrilateral in a triangle, as barycentric coordinates with respect to the triangle.

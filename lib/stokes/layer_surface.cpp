@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// An element counts as small if its size divided by the distance between control points is below this ratio.
+/// An element counts as small if its parametric size, divided by the mean parametric distance of the control points around it, is below this ratio.
 constexpr double small = 0.6;
 
 /// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules at n = 3, 6 and
@@ -24,7 +24,8 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Returns for each element its parametric size divided by the distance between the control points around it. The ratio is 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the mean parametric distance of the control points around it. The distance is the square
+/// root of the parametric area per control point. The ratio is 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {

@@ -108,7 +108,7 @@ struct ChannelOptions {
   std::string profile = "constriction";  ///< straight, constriction, expansion, step, file
   /// d, largest deviation from 1 of the factor that scales the cross-section; not set for the profiles `straight` and `file`
   std::optional<double> depth;
-  /// w, distance along the centre line from the middle of the profile to where the cross-section is not scaled
+  /// w, half the length, along the centre line, of the part of the channel in which the cross-section is scaled by a factor other than 1
   std::optional<double> half_length;
   std::optional<double> corner_radius;   ///< radius of the rounded edges of the profile `step`
   std::string directions = "x2 x3";      ///< directions in which the cross-section is scaled

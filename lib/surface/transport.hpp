@@ -8,15 +8,15 @@
 
 namespace tanktread::surface {
 
-/// Tank-treading along the section curve, the intersection of the surface with the plane x2 = centre_2. Velocity and frequency are positive if the
-/// side of larger x3 moves in the direction of x1: clockwise with x1 to the right and x3 up.
+/// Tank-treading of a surface, as means over the section curve: the intersection of the surface with the plane x2 = centre_2. Velocity and frequency
+/// are positive if the side of larger x3 moves in the direction of x1: clockwise with x1 to the right and x3 up.
 struct Treading {
   double velocity = 0;   ///< mean tangential velocity V_T (6.5), along e2 x n
   double frequency = 0;  ///< mean angular velocity omega (6.6) of the material points on this curve, radians/time
 };
 
-/// Returns the tank-treading velocity and frequency of a surface whose centroid `centre` moves with velocity `of_centre`, along the section curve
-/// with the plane x2 = centre_2. Both are zero if the plane does not intersect the surface. The frequency is a mean over the section curve. For an
+/// Returns the mean tank-treading velocity and frequency over the section curve. The centroid of the surface is `centre` and moves with velocity
+/// `of_centre`. The section curve lies in the plane x2 = centre_2. Velocity and frequency are zero if the plane does not intersect the surface. The frequency is a mean over the section curve. For an
 /// elastic membrane, the mean is weighted by length on the net `unstressed`. If `unstressed` is null, the weight of a part of the section curve is
 /// the time that a material point needs to pass it, and the frequency is zero if some point is at rest. The section curve is computed on a grid of
 /// flat triangles with six intervals per element and direction; the error is 1e-4 on coarse meshes.

@@ -57,11 +57,11 @@ struct Damaged {
 struct Saved {
   Snapshot file;
   Checkpoint checkpoint;
-  std::vector<Damaged> damaged;  ///< damaged snapshots that are newer than `file`, the newest first
+  std::vector<Damaged> damaged;  ///< damaged snapshot files that are newer than `file`, the newest first
 };
 
-/// Returns the newest undamaged checkpoint of a directory; nothing if there is none. Throws RunFailure if the system cannot read a newer snapshot
-/// (permission, a failing disk), because the newer snapshot may be undamaged.
+/// Returns the checkpoint in the newest undamaged snapshot file of a directory; nothing if there is none. Throws RunFailure if the system cannot read
+/// a newer snapshot file (permission, a failing disk), because the newer file may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
 /// Adds all data of a time integration to the checkpoint.

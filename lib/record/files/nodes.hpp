@@ -55,8 +55,8 @@ class Nodes {
     }
   }
 
-  /// Returns exact outward unit normals, averaged over the elements that meet at a node. Shape (n_nodes, 3). If an element degenerates at a node (a
-  /// pole), its normal is evaluated slightly inside.
+  /// Returns the outward unit normals of the spline surface at the nodes, shape (n_nodes, 3). If several elements meet at a node, their normals are
+  /// averaged. If an element is degenerate at a node (a pole), its normal is evaluated at a point slightly inside the element.
   Net normals(const Net& net) const;
 
  private:

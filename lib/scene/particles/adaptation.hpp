@@ -24,8 +24,8 @@ struct Adapted {
   bool full = false;    ///< true if bisections were left out because of `Adaptation/largest number of points`
 };
 
-/// Refines the elements that the indicator marks. If no element is refined, merges elements that it allows to be longer. Transfers every field
-/// of the state: both surfaces, the slopes of the time scheme, and the geometry of the frozen operator. `block`: rows of this particle; the rows of
+/// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the
+/// current surface, the unstressed surface, the slopes of the time scheme and the geometry of the frozen operator to the new mesh. `block`: rows of this particle; the rows of
 /// other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed surface if
 /// `per_unstressed_area`. `films`: film width at each element of body.nested(), or empty. `fields`: values of the fields on the surface, scaled to
 /// order 1. Returns the same on every rank.

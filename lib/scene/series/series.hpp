@@ -19,7 +19,8 @@ namespace tanktread {
 struct ProgressRow {
   motion::StepReport step = {};  ///< report of the time step that ended at this row
   double wall_seconds = 0;
-  std::optional<long> evaluations = {};  ///< number of velocity evaluations of all systems of a branch; if not set, `work` has the number
+  std::optional<long> evaluations = {};  ///< number of velocity evaluations in a search for steady shapes, summed over the systems for all values of
+                                         ///< the continuation parameters; if not set, the number in `work` is used
   double time = 0;
   coupling::Work work = {};
   void add_columns(const Scene& scene, Columns& to) const;

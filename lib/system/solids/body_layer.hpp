@@ -43,7 +43,7 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies, with blocks that number the rows of bodies without other particles
+  std::vector<Particle> bodies_;   // the rigid bodies; their blocks count the control points of rigid bodies only
   std::vector<spline::Block> in_;  // block of each body among all particles
   spline::Space space_;            // common space of the bodies
   std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points in `own` of other

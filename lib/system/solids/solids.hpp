@@ -25,14 +25,14 @@ struct Rod {
   double radius;
 };
 
-/// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid, and U is a uniform
-/// velocity:
+/// Single layer of solids on a lattice, assembled and factored once. f is the force per area that the solids exert on the fluid. F is the given total
+/// force of the solids of one cell on the fluid. U is a uniform velocity:
 ///
 ///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 of every solid s      (2.46)
 ///
-/// The last condition fixes the multiple of n that produces no velocity. U is free if only a balance of forces determines it: with three periods,
-/// where the mean velocity follows from the pressure gradient, and along a single plate, on the other side of which the fluid is unbounded. Otherwise
-/// there is no free direction, and U = 0.
+/// The last condition fixes the multiple of n that produces no velocity. U is a combination of the free directions e. With three periods, directions
+/// are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side, directions along
+/// the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
 ///
 /// Control values of f are those of periodic splines, one per collocation point. If all solids are plates, the operator is inverted by Fourier series
 /// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
