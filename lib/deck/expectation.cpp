@@ -25,8 +25,9 @@ void Expectation::declare(Section& section) {
               "time at which the output series is compared with the expected value; the final time of the run if not given");
   section.key("source", source, Choice{}, "source of the expected value, for example a publication");
   section.key("not binding", not_binding, Choice{},
-              "reason why a missed expected value is reported but does not fail the run. The program sets it if a later deck or --set "
-              "changes a key that results depend on, without stating the expectation again");
+              "reason why a missed expected value does not fail the run. If the text is empty (the default), a missed value fails the "
+              "run. Otherwise it is only reported, with this text. The text may be set in the deck. If it is not, the program sets it when "
+              "a later deck or --set changes a key that results depend on, without stating the expectation again");
   if (kind == "relative" && value == 0.0)
     throw UserError(section.path("kind") +
                     " `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");

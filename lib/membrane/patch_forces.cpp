@@ -22,8 +22,9 @@ void PatchForce::declare(deck::Section& section) {
   section.key("radius", radius, deck::positive(), "length",
               "radius of the patch of the unstressed membrane that the force acts on, seen along `direction` (required)");
   section.key("force", force, deck::any(), "force",
-              "total force on the membrane patch, three numbers. Its density varies like (1 - d^2/radius^2)^2 with the distance d from the "
-              "middle of the patch (required)");
+              "components x1, x2, x3 of the total force on the membrane patch that the keys `direction` and `radius` of this force define "
+              "(required; there is no default). Its density per unstressed area varies like (1 - d^2/radius^2)^2 with the distance d from "
+              "the line through the centroid along `direction`");
 }
 
 void PatchForces::declare(deck::Section& section) {

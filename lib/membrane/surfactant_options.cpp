@@ -11,8 +11,8 @@ namespace tanktread::membrane {
 void SurfactantOptions::declare(deck::Section& section) {
   section.key("equation of state", equation_of_state, deck::Choice{"linear", "Langmuir"},
               "surface tension of a drop with surfactant, divided by that of the clean interface (Membrane/surface tension or capillary "
-              "number), as a function of the concentration c divided by the initial concentration. `linear`: 1 - E c. `Langmuir`: 1 + E "
-              "ln(1 - x c). E: `elasticity number`, x: `coverage`");
+              "number), as a function of the concentration. `linear`: 1 - E c. `Langmuir`: 1 + E ln(1 - x c). c: concentration divided "
+              "by the initial concentration, E: `elasticity number`, x: `coverage`");
   section.key("elasticity number", elasticity, deck::positive(), "1",
               "elasticity number E of the surfactant: gas constant x temperature x concentration / surface tension of the clean interface. "
               "The concentration is the initial one for the equation of state `linear`, and the largest possible one for `Langmuir`");

@@ -22,8 +22,8 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
               "path of the numerical key of the deck that varies along the branch of steady shapes, for example Membrane/capillary number");
   section.key("to", to, deck::any(), "that of the key",
-              "value of the continuation parameter at which the branch of steady shapes ends. The branch starts at the value in the deck, "
-              "and also ends if a fold leads it back there");
+              "value, in the unit of the key that Continuation/parameter names, at which the branch of steady shapes ends. The branch "
+              "starts at the value of that key in the deck, and also ends if a fold leads it back there");
   section.key("method", method, deck::Choice{"arclength", "natural"},
               "method of continuation along a branch of steady shapes. `arclength`: continues around folds, where the parameter turns "
               "back. `natural`: stops at the first fold");

@@ -26,8 +26,9 @@ void PeriodicOptions::declare(deck::Section& section) {
               "a period of the flow, because the history from time 0 to this time is repeated");
   period = expected.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("turn", turn, deck::between(-360, 360), "degrees",
-              "angle, in degrees, about x2 by which the shape is rotated after a period before it is compared with the initial shape. "
-              "With 180, the period is half a revolution of the membrane in shear flow, which halves the cost");
+              "angle, in degrees, about the x2 axis by which the shape at the end of Periodic/period is rotated relative to the initial "
+              "shape; positive from x3 towards x1. The shape is rotated back by this angle before it is compared with the initial shape. "
+              "With 180, Periodic/period is the time of half a revolution in shear flow, which halves the cost");
   section.key("tolerance", tolerance, deck::between(1e-10, 1e-2), "1",
               "largest allowed difference between the shape and its return after a period: root mean square displacement of the control "
               "points divided by R_C, the radius of the sphere with the particle's volume; about ten times Time/tolerance is suitable. If "

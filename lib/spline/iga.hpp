@@ -23,8 +23,8 @@ struct SplineSurface {
 /// the surface is not closed, or one or all of its elements are inside out. Files have few digits, so the functions are divided by their sum.
 ///
 /// Every element is a macro face of its own (positions in the element are positions in the face). Candidates for collocation points are the
-/// corners, mid-sides and centres of the elements. Pairs of a function and a candidate are visited in descending order of the value of the function at
-/// the candidate. If neither the function nor the candidate has been assigned yet, the candidate becomes the collocation point of the function.
+/// corners, mid-sides and centres of the elements. Pairs of a function and a candidate are visited in descending order of the value of the function
+/// at the candidate. If neither the function nor the candidate has been assigned yet, the candidate becomes the collocation point of the function.
 SplineSurface read_iga(const std::filesystem::path& file);
 
 /// Writes a surface with 17 digits, so that reading it returns the same numbers. Throws UserError if the file cannot be written.

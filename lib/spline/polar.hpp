@@ -28,10 +28,11 @@ struct PolarMesh {
 
 /// Position of a control point at its generalised Greville point. In general, the control points are the two poles and rows of m points between them.
 /// With PoleRule::c1, three control points per pole replace the pole and the row next to it.
+///
+/// u: coordinate along the meridian, in elements, from 0 (first pole, "behind") to r (last pole, "ahead"). v: azimuth, in elements. `distance`:
+/// distance of the control point from the axis, divided by the radius of the row at u. It is 1 except for the three points per pole of PoleRule::c1.
 struct PolarAnchor {
-  double u = 0;         ///< coordinate along the meridian, in elements: 0 at the first pole ("behind"), r at the last pole ("ahead")
-  double v = 0;         ///< azimuth, in elements
-  double distance = 1;  ///< radius of the control point about the axis, divided by the radius of the row at u; not 1 only for the points of `c1`
+  double u = 0, v = 0, distance = 1;
 };
 std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 
@@ -39,13 +40,14 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 ///
 /// Order of control points: the pole at the beginning of the meridian ("behind"), the rows along the meridian (azimuth fastest), the pole at its end
 /// ("ahead"). In an element, s runs along the azimuth and t along the meridian towards the pole ahead. Pieces that replace degenerate elements come
-/// last. Element::face is 0. Element::origin and Element::size are fractions of the whole domain. The pieces of an element divide its size in azimuth.
+/// last. Element::face is 0. Element::origin and Element::size are fractions of the whole domain. The pieces of an element divide its size in
+/// azimuth.
 ///
 /// With PoleRule::plain, a pole is a collapsed side of m elements. Its collocation point is at s = 1/2 on each of them.
 ///
-/// With PoleRule::c1 (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1, next to
-/// it. Let f_j = 2 pi j / m be the azimuths of the functions of a row, d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a triangle
-/// around all d_j. Then
+/// With PoleRule::c1 (after Speleers and Toshniwal 2021), three functions N_k replace the functions N_0j of row 0, at the pole, and N_1j of row 1,
+/// next to it. Let f_j = 2 pi j / m be the azimuths of the functions of a row, d_j = (cos f_j, sin f_j), and l_k the barycentric coordinates in a
+/// triangle around all d_j. Then
 ///
 ///   N_k = l_k(0) sum_j N_0j + sum_j l_k(d_j) N_1j,   k = 0, 1, 2
 ///

@@ -233,7 +233,7 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("outline", outline, deck::Choice{},
            "path of a file with the closed outline of the cross-section, for `section` `file`: one row x2,x3 per point, in the deck's "
            "unit of length, counter-clockwise. A cubic spline passes through the points; where two sides meet at a corner, the row of "
-           "the corner has the word `corner` in a third column. A relative path is looked up in the working directory, then in the "
+           "the corner has the word `corner` in a third column. The first point need not be repeated at the end. A relative path is looked up in the working directory, then in the "
            "directory of the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
            "number of elements around the wall of the tube or channel. It is increased slightly if sides of equal length would otherwise "
@@ -288,7 +288,7 @@ void ChannelOptions::declare(deck::Section& list) {
            "relative depth d by which `profile` narrows the cross-section of the channel in a constriction or step, or widens it in an "
            "expansion; a step with a negative depth widens it. For `constriction` 0.5 if not given");
   list.key("half length", half_length, deck::positive(), "length",
-           "half length w, along the centre line, of the constriction, expansion or step of the channel");
+           "half length w, along the centre line, of the constriction, expansion or step of the channel (required for these profiles)");
   list.key("corner radius", corner_radius, deck::positive(), "length",
            "radius of the rounded edges of the step of the channel (`profile` `step`)");
   list.key(
