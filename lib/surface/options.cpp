@@ -233,8 +233,8 @@ void TubeOptions::declare(deck::Section& list) {
   list.key("outline", outline, deck::Choice{},
            "path of a file with the closed outline of the cross-section, for `section` `file`: one row x2,x3 per point, in the deck's "
            "unit of length, counter-clockwise. A cubic spline passes through the points; where two sides meet at a corner, the row of "
-           "the corner has the word `corner` in a third column. The first point need not be repeated at the end. A relative path is looked up in the working directory, then in the "
-           "directory of the deck");
+           "the corner has the word `corner` in a third column. The first point need not be repeated at the end. A relative "
+           "path is looked up in the working directory, then in the directory of the deck");
   list.key("azimuthal elements", azimuthal_elements, deck::between(8, 400), "1",
            "number of elements around the wall of the tube or channel. It is increased slightly if sides of equal length would otherwise "
            "have different numbers of elements");
