@@ -23,7 +23,7 @@ void PatchForce::declare(deck::Section& section) {
               "radius of the patch of the unstressed membrane that the force acts on, seen along `direction` (required)");
   section.key("force", force, deck::any(), "force",
               "components x1, x2, x3 of the total force on the membrane patch that the keys `direction` and `radius` of this force define "
-              "(required; there is no default). Its density per unstressed area varies like (1 - d^2/radius^2)^2 with the distance d from "
+              "(required; the default is not used). Its density per unstressed area varies like (1 - d^2/radius^2)^2 with the distance d from "
               "the line through the centroid along `direction`");
 }
 

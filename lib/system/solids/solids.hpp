@@ -30,9 +30,9 @@ struct Rod {
 ///
 ///   (1/mu) G_S f + U = u on the solids,   e.int f dG = e.F for every free direction e of U,   int_s f.n dG = 0 of every solid s      (2.46)
 ///
-/// The last condition fixes the multiple of n that produces no velocity. U is a combination of the free directions e. With three periods, all directions
-/// are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side, directions along
-/// the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
+/// The last condition fixes the multiple of n that produces no velocity. U is a combination of the free directions e. With three periods, all
+/// directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side,
+/// directions along the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
 ///
 /// Control values of f are those of periodic splines, one per collocation point. If all solids are plates, the operator is inverted by Fourier series
 /// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
