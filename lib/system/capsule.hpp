@@ -85,10 +85,11 @@ struct CapsuleParameters {
 /// the right-hand side of the equation above. This system results from the block system of v and the Lagrange multipliers of b.v = 0 if the
 /// multipliers are eliminated. P removes the mode for which B becomes singular as lambda -> 0.
 ///
-/// Viscous membranes and interfaces: B contains the load M0^{-1} C v (3.10) for the fluid velocity v. If loads are measured per current area, the
-/// mass matrix M of the current surface replaces M0:
+/// Viscous membranes and interfaces: B contains the load M0^{-1} C v (3.10), where v is the fluid velocity:
 ///
 ///   B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                                                 (3.11)
+///
+/// If loads are measured per current area, the mass matrix M of the current surface replaces M0.
 ///
 /// Rigid bodies: the unknown in their rows is the double-layer density w of (2.23), see RigidParticles. Alternatively the unknown is the traction on
 /// them (RigidTractions). Their motion is not stiff, so that their rows of the Jacobian are set to zero.
