@@ -7,7 +7,7 @@
 
 namespace tanktread::accuracy {
 
-/// Values of all keys of a deck in effect, as text, by path (deck::Document::values).
+/// Values of the keys of a deck, including defaults, as texts by the path of the key (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
 /// Level of refinement of each part of the discretisation: mesh, time integration, quadrature. Usually the three are equal. Two levels that differ in

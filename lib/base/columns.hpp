@@ -15,7 +15,9 @@ struct Column {
   std::string name, unit;
   std::string description;
   std::string undefined_if = {};  ///< condition under which the value is NaN, as a clause; empty if the value is always defined
-  std::string where = {};         ///< condition on the run under which the column exists, for the manual: `; in a tube`
+  /// Runs that have this column, as text for the manual. A text that begins with a semicolon, for example `; in a tube`, is appended to the list of
+  /// the kinds of runs and particles that have the column. Any other text replaces this list, unless it is empty.
+  std::string where = {};
 };
 
 /// The columns of one row and their values.

@@ -24,8 +24,8 @@ struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< the materials of the surface; then, for each area elasticity with its own Gauss rule, a material with only
                                     ///< this elasticity
-  std::vector<Law> whole;           ///< per material: law with all terms, from which tensions are computed, even if the area elasticity has a
-                                    ///< separate group
+  std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It also has the terms that split_material()
+                                    ///< moves to another material
   std::vector<bool> sampled;        ///< per material: false for the shear part of a split law, whose tensions are evaluated at the Gauss points of
                                     ///< the area part
   std::vector<Group> groups;
@@ -35,13 +35,13 @@ struct Part {
   Part(const spline::Space& space, const Net& unstressed, std::span<const int> list, int order, const Materials& of_surface);
   void split_material(const spline::Space& space, const Materials& of_surface, std::size_t m);
 
-  /// A batch (elements in the lanes of one register) with the data of its n Gauss points. The data of its first Gauss point have the index `first` in
-  /// the arrays of group g. `c0`: curvature c0 of `Bending`; null without bending.
+  /// A batch (elements in the lanes of one register) with the data of its n Gauss points. `g`: index of its group in `groups`. `first`: index of the
+  /// first of these Gauss points in the arrays of this group, for example reference[g]. `c0`: curvature c0 of `Bending`; null without bending.
   struct Points {
     const Group& group;
     const Batch& batch;
     const Material& material;
-    const Law& whole;  ///< complete law, including an area elasticity that has a separate group
+    const Law& whole;  ///< complete law of the material, see Part::whole
     const ReferencePoint* reference;
     const Pack* c0;
     std::size_t g, first;

@@ -30,7 +30,8 @@ class WallRepulsion : public Load {
   void add_tangent(const Net& dx, Net& change) const override;
   // Returns true for images that do not reverse the axis x1. The caller checks the symmetry of the wall.
   bool admits(const surface::Image& image) const override { return image.signs[0] > 0; }
-  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }  // no conditions: in a tube, only axial motions are free
+  // Returns an empty set of conditions. In a tube only the axial translation can be a free motion, and it does not change this repulsion.
+  RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }
   bool depends_on_labels() const override { return false; }
 
  private:

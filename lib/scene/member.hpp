@@ -25,7 +25,7 @@ struct Member {
   spline::Block block;
   std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
   std::shared_ptr<const membrane::Membrane> membrane;
-  spline::Place place;    ///< material point whose phase angle is recorded; a parametric point of Body::nested()
+  spline::Place place;    ///< parametric point of the material point whose phase angle is recorded; it does not change if the mesh adapts
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
 

@@ -288,8 +288,7 @@ std::vector<Scene> Scene::alone() const {
 
 /// Returns true if rigid bodies are solved for by tractions (`first kind`). `auto` selects `first kind` for two or more bodies with up to 4500
 /// unknowns. To resolve a film of a tenth of the radius, `first kind` needs a third of the control points of `second kind`; factorising up to 4500
-/// unknowns is faster than iterating on the finer mesh. For one body beside a drop of viscosity ratio 5, both have nearly the same error, and `first
-/// kind` takes twice the time.
+/// unknowns is faster than iterating on the finer mesh. One body beside a drop of viscosity ratio 5 takes twice the time by tractions.
 bool Scene::by_tractions() const {
   constexpr double most_unknowns = 4500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";

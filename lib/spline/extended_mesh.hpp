@@ -15,12 +15,14 @@ namespace tanktread::spline {
 ///    reaches an extraordinary point also counts as a crossing. A mesh without crossings is analysis-suitable (Scott et al. 2012).
 ///  - missing: edges of the lattice that an earlier extended mesh (T-mesh plus extensions) contains and the current one does not contain. If no edge
 ///    is missing, the extended meshes are nested.
-///  - overlaps: vertices that are not vertices of the T-mesh and at which the face extensions of two T-junctions overlap, which are on one line and
-///    point at each other. The extended mesh then contains a complete line, and so one smooth function more than the mesh has anchors.
+///  - overlaps: lattice vertices at which the face extensions of two T-junctions overlap. The two T-junctions are on one line and point at each
+///    other. The vertex is on an edge perpendicular to this line, but it is not a vertex of the T-mesh. Together the two extensions connect the two
+///    T-junctions by an unbroken line. The space of smooth splines on the extended mesh then has one dimension more than there are anchors (vertices
+///    with a control point).
 /// If all three counts are 0, the spline spaces are nested.
 ///
-/// Adding or removing a path of edges changes only the T-junctions whose extensions meet the path. So both operations are cheap
-/// and exact inverses of each other.
+/// Adding or removing a path of edges changes only the T-junctions whose extensions meet the path. So both operations are cheap and exact inverses of
+/// each other.
 class ExtendedMesh {
  public:
   explicit ExtendedMesh(TMesh mesh);

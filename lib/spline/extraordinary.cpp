@@ -223,8 +223,9 @@ Row fine(int j, int a, int b) {
   return (Q + 2 * R + P) / 4;
 }
 
-/// Returns the Bezier points, shape (16, 19), of the element [a, a + 1] x [b, b + 1] of sector 0, in units of half the original spacing. The
-/// subdivided control net is regular around this element.
+/// Returns the Bezier extraction matrix, shape (16, 19), of the element [a, a + 1] x [b, b + 1] of sector 0. Row 4 j + i contains the coefficients of
+/// Bezier point (i, j) with respect to the 19 control points of OneRing. The integers a and b count half spacings of the original control net, as in
+/// fine(). The subdivided control net is regular around this element.
 Eigen::MatrixXd quarter(int a, int b) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(16, Ring::size);
   const std::array<double, 5> uniform{-2, -1, 0, 1, 2};

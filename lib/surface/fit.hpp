@@ -21,8 +21,8 @@ class LeastSquaresFit {
  public:
   explicit LeastSquaresFit(const spline::Space& space);
 
-  /// Fits f(x) for the points x of a given surface: for example one step of an iteration that fits a surface to its image under f. The functions of
-  /// the space must be linearly independent.
+  /// Returns the control net fitted to f(x), where x are the points of the surface with the control net `net`. Example: f(x) = x/|x| turns a surface
+  /// close to the unit sphere into a better approximation of it. The spline functions of the space must be linearly independent.
   Net fit_image(const Net& net, const std::function<Vec3(const Vec3& x)>& f) const;
 
  private:

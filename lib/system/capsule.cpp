@@ -61,8 +61,9 @@ Net Capsule::work_of_loads(const Net& x, std::vector<Net>& sums) {
   return work;
 }
 
-/// Adds the virtual work of the loads at x other than elasticity and bending to `work` (one row per control point). Then sums `work`, to which each
-/// rank has added its elements, over all ranks. Returns the surface integrals of the loads, also summed over all ranks.
+/// Adds to `work` the terms of dE/dx that all loads except elasticity and bending contribute at the shape x. `work` has one row per control point. On
+/// entry it contains the contributions of the elements of this rank. On return it contains the sum over all ranks. Returns the nets that the loads
+/// need in their global phase (membrane::Load), also summed over all ranks.
 std::vector<Net> Capsule::complete_work(const Net& x, Net& work) {
   std::vector<Net> sums = loads_.add_work(x, work);
   replicate_sums(work);

@@ -71,34 +71,42 @@ struct CapsuleParameters {
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points if there is no symmetry
 };
 
-/// Computes dx/dt = v(x) of the stacked nets of all particles. Without a wall (2.4), (4.2):
+/// Computes dx/dt = v(x) for the stacked control nets x of all particles.
+///
+/// Basic equation, without a wall (2.4), (4.2):
 ///
 ///   B v = v_inf - (1/mu) R^{-1} A M0^{-1} dE/dx,   B = I - R^{-1} D,   b.v = 0 by P = 1 - c b^T/(b.c),  b = dV/dx, c = M0^{-1} b  (2.8)
 ///
 /// R is the collocation matrix, M0 the mass matrix, E the energy of the membranes and V the volume of a particle. A and D are the single and the
 /// double layer of all surfaces at all collocation sites. D includes the factor 1 - lambda of each surface. Each particle has its own condition
-/// b.v = 0, and P is the product of the projections of all particles. If lambda = 1, the velocity takes no assembly and no linear solve. Otherwise
-/// P B P v = P rhs is solved by Belos, with rhs the right-hand side of the equation above. This is the block system of v and the Lagrange multipliers
-/// of b.v = 0 after elimination of the multipliers. P removes the mode for which B becomes singular as lambda -> 0.
+/// b.v = 0, and P is the product of the projections of all particles.
 ///
-/// The load M0^{-1} C v (3.10) of a viscous membrane or interface, with the fluid velocity v, is part of B. If loads are measured per current area,
-/// the mass matrix M of the current surface replaces M0: B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                 (3.11)
+/// Solution: if lambda = 1, then D = 0, and the velocity needs no assembly and no linear solve. Otherwise Belos solves P B P v = P rhs, where rhs is
+/// the right-hand side of the equation above. This system results from the block system of v and the Lagrange multipliers of b.v = 0 if the
+/// multipliers are eliminated. P removes the mode for which B becomes singular as lambda -> 0.
 ///
-/// Rigid bodies are treated by RigidParticles: the unknown in their rows is the double-layer density w of (2.23). Their motion is not stiff, so that
-/// their rows of the Jacobian are set to zero. Alternatively the tractions on them are unknown instead (RigidTractions).
+/// Viscous membranes and interfaces: B contains the load M0^{-1} C v (3.10), where v is the fluid velocity:
 ///
-/// If the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. The rows of all other control points are
-/// mirror images of these rows.
+///   B = I - R^{-1} D + (1/mu) R^{-1} A M0^{-1} C                                                                                 (3.11)
 ///
-/// On a lattice the layers include all images (Layer::repeat). Each particle is replaced by its image in the cell around the origin. The velocity of
-/// the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions. Frozen operators omit the images.
+/// If loads are measured per current area, the mass matrix M of the current surface replaces M0.
 ///
-/// In front of a plane wall the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
+/// Rigid bodies: the unknown in their rows is the double-layer density w of (2.23), see RigidParticles. Alternatively the unknown is the traction on
+/// them (RigidTractions). Their motion is not stiff, so that their rows of the Jacobian are set to zero.
 ///
-/// Between plates or posts the velocity (2.47) of these solids is added in the same way as the response of a tube. The Jacobian omits it.
+/// Symmetry: if the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. All other rows are mirror images of
+/// these rows.
 ///
-/// In a tube the response of wall and pressure drop (2.5)-(2.7) is added. This response is linear in the load and, for lambda != 1, in v. Its parts
-/// are added to the right-hand side and to B, both here and in the Jacobian. Alternatively all blocks are solved for at once (BlockSystem).
+/// Lattice: the layers include all images (Layer::repeat), and the frozen operators omit them. Each particle is replaced by its image in the cell
+/// around the origin. The velocity of the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions.
+///
+/// Plane wall: the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
+///
+/// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. It is linear in the load and, for lambda != 1, in v. Its
+/// parts are added to the right-hand side and to B, both here and in the Jacobian. Alternatively v, the wall traction and the pressure drop are
+/// solved for in one linear system (BlockSystem).
+///
+/// Plates and posts: the velocity (2.47) caused by them is added to the right-hand side and to B in the same way. The Jacobian omits it.
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is kept, unless the particle sets

@@ -17,8 +17,9 @@ namespace tanktread::coupling {
 ///   dx/dt = u(x, q),   dq/dt = rate(x, q, v - u),   with the load of each field added to the load of its particle                (4.33)
 ///
 /// Here u is the velocity of the control points, v is the velocity of the fluids at them, and `rate` is Field::rate. The Jacobian of the fields is
-/// exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field and, if the field follows the
-/// shape, also the lower triangular block. Calls are collective; every rank stores all fields.
+/// exact. The Krylov solver solves for x and q together. The preconditioner contains the diagonal block of each field. If the field relaxes to the
+/// shape in a short time (Field::follows_shape), it also contains the block with the change of `rate` due to a change of x. Calls are collective;
+/// every rank stores all fields.
 class CoupledMotion : public Dynamics {
  public:
   struct On {

@@ -44,7 +44,7 @@ class Evaluation {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();
   };
-  SolidFlow solid_flow();  ///< returns the flow of the solids, after setting the particles' shape in SolidResponse to x
+  SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 

@@ -73,7 +73,8 @@ Net turned(const Net& normals, const Net& change, Net field) {
   return field;
 }
 
-/// Returns the mean velocity U (6.4) of a drop from v at its control points and b = dV/dx. Exact if the velocity is uniform.
+/// Returns the mean velocity U (6.4) of a drop from the fluid velocity v at its control points and b = dV/dx. `from_mean`: control points minus their
+/// mean. Exact if the velocity is uniform.
 Eigen::RowVector3d mean_motion(const Net& from_mean, const Net& b, const Net& v) {
   const Eigen::VectorXd outward = b.cwiseProduct(v).rowwise().sum();
   return 3 * outward.transpose() * from_mean / b.cwiseProduct(from_mean).sum();

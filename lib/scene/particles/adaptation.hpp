@@ -14,7 +14,8 @@
 
 namespace tanktread {
 
-/// Body of a particle on its adapted mesh, and the state of all particles with this mesh.
+/// Result of the adaptation of one particle's mesh: the body of this particle on the new mesh, and the state of all particles after the change of
+/// this mesh.
 struct Adapted {
   std::unique_ptr<Body> body;  ///< null if the mesh does not change
   motion::State state;

@@ -24,7 +24,7 @@ struct RigidSolution {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Data of a body with prescribed motion for its row of the results, except the data of walls.
+/// Results of a body with prescribed motion that are written as columns of a row. The columns of walls are added by WallRow and TubeRow.
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};

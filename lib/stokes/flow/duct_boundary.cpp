@@ -295,7 +295,8 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
 /// integral is the sum over the nodes j; its term at j = i is the increment dF_i = dv_c + i q dl of F along the node's length. Only psi is changed,
 /// not v_c:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
-/// The coefficients of psi in this sum are smooth, so that the error of the spline averages out: it alternates in sign from knot to knot.
+/// Before the first sweep, psi is the integral of the cubic spline for q. The error of this spline alternates in sign from knot to knot. The
+/// coefficients of psi in the sum vary smoothly from node to node, so that the error averages out.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {
   using Complex = std::complex<double>;
   const std::size_t n = x_.size();

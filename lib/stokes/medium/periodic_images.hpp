@@ -44,23 +44,27 @@ class PeriodicCell {
   double volume_ = 0, reference_;
 };
 
-/// Sum of the Stokeslet G or the stresslet T over the images of a lattice without the images in `near`, at positions r = x - x0 in a box. With three
-/// periods the mean over the cell is zero, and a uniform pressure gradient balances the force (Hasimoto 1959). The sum has Ewald's form with
-/// Hasimoto's splitting (Lindbo & Tornberg 2010); G - A is Beenakker's:
+/// Sum of the Stokeslet G or the stresslet T over all images of a lattice except the near ones, at positions r = x - x0 in a box. An image is near if
+/// it is at most `near[d]` steps along each lattice vector d from the cell at the origin. The formulas below are for the sum over all images.
+///
+/// With three periods, the sum is an Ewald sum with Hasimoto's splitting of G into a short-range part A and a smooth part G - A (Lindbo & Tornberg
+/// 2010). The mean over the cell is zero, and a uniform pressure gradient balances the force (Hasimoto 1959):
 ///
 ///   G^P(r) = sum_n A(xi, r + Hn) + (8 pi/V) sum_{k != 0} (1 + k^2/4 xi^2) e^{-k^2/4 xi^2} (k^2 I - k k)/k^4 cos k.r             (2.25)
 ///   A = I (erfc(xi r)/r - g) + r r (erfc(xi r)/r^3 + g/r^2),   g = (2 xi/sqrt(pi)) e^{-xi^2 r^2}
 ///   T_ijk = -delta_jk p_i + dG_ij/dx_k + dG_ik/dx_j,   p the pressure of G                                                      (2.26)
 ///
 /// The columns of H are the lattice vectors, and n has integer components. xi is just large enough that A is negligible for all images that are not
-/// near. Two periods are computed as three with a third period so long that only the mode k = 0 reaches across it. This mode is subtracted. With the
-/// coordinate z along the unit vector e across the two periods, the area S of the cell and the third period L3,
+/// near. A near image contributes A to the sum (2.25). If its G is subtracted, only A - G remains, which is smooth.
+///
+/// With two periods, the sum is computed with a third period. It is so long that only the mode k = 0 reaches across it, and this mode is subtracted.
+/// With the coordinate z along the unit vector e normal to the two periods, the area S of the cell and the third period L3,
 ///
 ///   G = G^P - (4 pi/(S L3)) z^2 (I - e e),   p_i = p^P_i + (8 pi/(S L3)) z e_i                                                  (2.27)
 ///
-/// The sum for one period of length h along the unit vector e is completed by the Euler-Maclaurin formula. For one and two periods G is defined up to
-/// a constant. For one period the reference distance l of the cell fixes it, so that far from the row the axial velocity depends on the distance rho
-/// from the row like -ln(rho/l):
+/// With one period of length h along the unit vector e, the tail of the sum is computed by the Euler-Maclaurin formula. With one or two periods, G is
+/// defined up to a constant. With one period, the reference distance l of the cell fixes the constant: far from the row of images, the axial velocity
+/// depends on the distance rho from the row like -ln(rho/l):
 ///
 ///   G^P = sum_n G(r + n h e) - sum_{n != 0} (I + e e)/|n h| + (2/h) (ln(l/2h) + gamma + 1/2) (I + e e),
 ///   e.G^P e -> -(4/h) ln(rho/l)                                                                                           (2.43)

@@ -28,8 +28,8 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
   holds_.resize(leaf);
 }
 
-/// Appends to the tree the box of the balls first .. last - 1 and its descendants. While place() builds the tree, the centres are in the caller's
-/// order.
+/// Appends to the tree a box for the balls number_[first] .. number_[last - 1], and its descendants. Reorders these entries of number_. During this
+/// call, centre_ and square_ are in the order in which the caller of place() passed the balls.
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {

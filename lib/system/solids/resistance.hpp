@@ -87,7 +87,7 @@ class Resistance {
   stokes::Evaluations kernel_evaluations() const;  ///< total since construction
   int last_iterations() const { return last_iterations_; }
   long solver_iterations() const { return iterations_; }
-  void forget_recycled() const;  ///< discards the data that the preconditioners `recycled` of the body and the wall keep from earlier solves
+  void forget_recycled() const;  ///< discards the data of earlier solves that the solvers for the body and for the tube's wall keep
   const Net& surface() const { return surface_; }
 
  private:

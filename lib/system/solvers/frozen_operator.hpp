@@ -20,7 +20,8 @@ class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
 
-  /// Function that computes three float rows per target. assemble() calls it for a few of the rank-owned `targets` at a time, for a net of n points.
+  /// Function that computes the rows of the operator for these targets: three rows per target and three columns per control point, in float.
+  /// assemble() calls it several times, each time for a few of the rank-owned `targets`. `n`: number of control points.
   using Assemble = std::function<void(std::span<const int> targets, stokes::Rows<float>& rows)>;
   void assemble(const std::vector<int>& targets, int n, const Assemble& assemble);
 

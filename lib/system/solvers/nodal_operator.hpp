@@ -21,10 +21,12 @@ namespace tanktread::coupling {
 ///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
-/// The node at the target itself is omitted. The sum is evaluated in every product, in double precision, because single-precision noise would grow
-/// from step to step until it dominates the difference between runs with and without symmetry (1e-8 in the deformation D). Only the near blocks are
-/// stored, about thirty per target, and on a large surface the sum is taken by clusters. The error of the operator is the error of the trapezoidal
-/// rule for nodes a few elements away. It slows the quasi-Newton iteration slightly and does not affect accuracy.
+/// The node at the target itself is omitted. Only the near blocks are stored, about thirty per target. The sum is evaluated in every product, on a
+/// large surface by clusters. It is evaluated in double precision because rounding errors of single precision would grow from step to step. Runs with
+/// and without symmetry, which agree to 1e-8 in the deformation D, would then differ by more.
+///
+/// The error of this operator is the error of the trapezoidal rule for nodes a few elements away. This error slows the quasi-Newton iteration
+/// slightly and does not affect accuracy.
 class NodalOperator {
  public:
   struct Surface {
