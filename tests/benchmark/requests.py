@@ -65,7 +65,7 @@ OWN = {  # name: deck, series
                   f"Membrane: {{{DROP} 0.1}}, Time: {{final time: 1.0}}, Output: {{interval: 0.1}}",
                   [D, V1, "disturbed_pressure_drop"]),
     "lattice": (f"{SHEARED} Domain: {{side lengths: [3.0, 3.0, 3.0]}}, " + CAPSULE.replace("time: 2", "time: 1"),
-                ["relative_viscosity", "particle/taylor_inertia", "normal_stress_difference_1"]),
+                ["relative_viscosity", D, "normal_stress_difference_1"]),
     "surfactant": (f"{SHEARED} Membrane: {{{DROP} 0.1}}, Interface: {{surfactant: {{elasticity number: 0.3, "
                    f"Peclet number: 5.0}}}}, {END['1']}", [D, "largest_concentration", AREA]),
     "refined": ("Flow: {type: planar hyperbolic}, Membrane: {law: Skalak, capillary number: 0.5}, "
