@@ -45,7 +45,7 @@ Net measured_net(std::span<const Particle> particles, const Net& unstressed, con
 double viscosity_contrast(const Particle& particle) {
   if (particle.rigid) return particle.by_traction ? 0 : -1;
   return 1 - particle.viscosity_ratio;
- }
+}
 
 Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particles) {
   const spline::Block& last = particles.back().block;

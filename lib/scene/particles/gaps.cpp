@@ -118,7 +118,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   return own;
 }
 
-/// For each element that is closer to the plane wall than its film width, sets the film width to its distance from the wall.
+/// Reduces the film width of each element that is closer to the plane wall than this width to its distance from the wall.
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {

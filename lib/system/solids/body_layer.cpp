@@ -1,6 +1,7 @@
 #include "system/solids/body_layer.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "surface/geometry.hpp"
@@ -13,11 +14,10 @@ using Flat = Eigen::Map<const Eigen::VectorXd>;
 
 Flat flat(const Net& net) { return {net.data(), net.size()}; }
 
-std::vector<Particle> rigid_ones(std::span<const Particle> particles) {
-  std::vector<Particle> bodies;
-  std::ranges::copy_if(particles, std::back_inserter(bodies), [](const Particle& one) { return one.rigid.has_value(); });
-  place(bodies);
-  return bodies;
+std::vector<Particle> without_others(std::span<const Particle> bodies) {
+  std::vector<Particle> placed(bodies.begin(), bodies.end());
+  place(placed);
+  return placed;
 }
 
 spline::Space common_space(std::span<const Particle> bodies) {
@@ -28,24 +28,24 @@ spline::Space common_space(std::span<const Particle> bodies) {
 
 }  // namespace
 
-BodyLayer::BodyLayer(std::span<const Particle> particles, double viscosity, const quadrature::Options& quadrature,
+BodyLayer::BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
                      const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks)
-    : bodies_(rigid_ones(particles)),
+    : bodies_(without_others(bodies)),
       space_(common_space(bodies_)),
       viscosity_(viscosity),
       ranks_(ranks),
-      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, quadrature),
-      beyond_(stokes::Layer::Kernel::single_layer, space_, {}, quadrature) {
-  if (wall) layer_.set_wall(*wall), beyond_.set_wall(*wall);
-  for (const Particle& particle : particles) {
-    const spline::Block& block = particle.block;
-    if (particle.rigid) in_.push_back(block);
-    for (int a = block.first_point; particle.rigid && a < block.first_point + block.n_points; ++a) {
+      layer_(stokes::Layer::Kernel::single_layer, space_, space_.collocation, quadrature) {
+  for (const Particle& body : bodies) {
+    in_.push_back(body.block);
+    for (int a = body.block.first_point; a < body.block.first_point + body.block.n_points; ++a) {
       points_.push_back(a);
       rows_.insert(rows_.end(), {3 * a, 3 * a + 1, 3 * a + 2});
     }
   }
   std::ranges::set_difference(own, points_, std::back_inserter(others_));
+  if (!others_.empty()) beyond_.emplace(stokes::Layer::Kernel::single_layer, space_, stokes::Sites(), quadrature);
+  if (wall) layer_.set_wall(*wall);
+  if (wall && beyond_) beyond_->set_wall(*wall);
 }
 
 /// Sets, for each body, the two vectors of the regularising term of (2.10): the flux vector b = dV/dx, and s (R c)/(b.c), with R c the values of a
@@ -65,7 +65,7 @@ void BodyLayer::place(const Net& x, const Net& at, bool keep_rows) {
   at_ = at;
   make_regular(x);
   layer_.place(x(points_, Eigen::all));
-  if (!others_.empty()) beyond_.place(x(points_, Eigen::all));
+  if (beyond_) beyond_->place(x(points_, Eigen::all));
   const std::vector<int> own = ranks_.share(static_cast<int>(points_.size()));
   const auto n = static_cast<Eigen::Index>(rows_.size());
   matrix_ = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
@@ -78,7 +78,7 @@ void BodyLayer::place(const Net& x, const Net& at, bool keep_rows) {
     matrix_.block(first, first, length, length) += flat(outward_).segment(in, length) * flat(flux_).segment(in, length).transpose();
   }
   rows_of_others_.resize(0, 0);
-  if (keep_rows && !others_.empty()) beyond_.assemble(at_, others_, rows_of_others_);
+  if (keep_rows && beyond_) beyond_->assemble(at_, others_, rows_of_others_);
   if (keep_rows) factors_.emplace(matrix_);
   else factors_.emplace(std::exchange(matrix_, {}));
 }
@@ -88,8 +88,8 @@ Net BodyLayer::velocity(const Net& f) {
   Net u = Net::Zero(f.rows(), 3);
   if (own.rows() < f.rows())
     u = ranks_.assembled<Net>(f.rows(), 3, [&](Net& all) {
-      if (others_.empty()) return;
-      if (rows_of_others_.size() == 0) return beyond_.apply(own, at_, others_, all);
+      if (!beyond_) return;
+      if (rows_of_others_.size() == 0) return beyond_->apply(own, at_, others_, all);
       const Eigen::VectorXd there = rows_of_others_ * flat(own);
       for (std::size_t k = 0; k < others_.size(); ++k) all.row(others_[k]) = there.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
     });

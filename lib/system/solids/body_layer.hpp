@@ -20,8 +20,9 @@ namespace tanktread::coupling {
 /// control point of all particles; only the rows of bodies contain force densities f. Calls are collective.
 class BodyLayer {
  public:
-  /// `own`: collocation points of all particles whose rows this rank computes. References must outlive this object.
-  BodyLayer(std::span<const Particle> particles, double viscosity, const quadrature::Options& quadrature,
+  /// `bodies`: the rigid bodies, with their blocks among all particles. `own`: collocation points of all particles whose rows this rank computes.
+  /// References must outlive this object.
+  BodyLayer(std::span<const Particle> bodies, double viscosity, const quadrature::Options& quadrature,
             const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
@@ -38,7 +39,7 @@ class BodyLayer {
   /// replaced by these densities. Not collective.
   Eigen::MatrixXd solved(Eigen::MatrixXd columns) const;
 
-  stokes::Evaluations evaluations() const { return layer_.evaluations() + beyond_.evaluations(); }
+  stokes::Evaluations evaluations() const { return beyond_ ? layer_.evaluations() + beyond_->evaluations() : layer_.evaluations(); }
 
  private:
   void make_regular(const Net& x);
@@ -50,8 +51,8 @@ class BodyLayer {
                                              // particles
   double viscosity_;
   Ranks& ranks_;
-  stokes::Layer layer_, beyond_;  // layer_: single layer evaluated at the sites of the bodies. beyond_: the same single layer evaluated at the points
-                                  // `others_`
+  stokes::Layer layer_;                  // single layer at the sites of the bodies
+  std::optional<stokes::Layer> beyond_;  // single layer at the points `others_`; empty if there are none
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
                              // (2.10)
   Eigen::MatrixXd matrix_;                // kept only for `velocity`

@@ -63,7 +63,7 @@ RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed
       viscosity_(viscosity),
       walls_{tube},
       ranks_(ranks),
-      layer_(particles, viscosity, quadrature, wall, own, ranks),
+      layer_(particles_, viscosity, quadrature, wall, own, ranks),
       between_(between_sites(space, rest, blocks_of(particles_))),
       between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
       measure_(coupling::measure(particles)),
@@ -117,13 +117,18 @@ Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   return all;
 }
 
+/// Returns the force densities in the unknowns y, with zero in the rows of deformable particles.
+Net RigidTractions::force_densities(const Net& y) const {
+  Net f = Net::Zero(y.rows(), 3);
+  for (const Particle& body : particles_) body.block.rows(f) = body.block.rows(y);
+  return f;
+}
+
 /// Returns the unknowns y. If the surroundings do not respond, adds the velocity that the force densities cause on deformable particles.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
   if (around_.responds || alone()) return y;
-  Net forces = Net::Zero(y.rows(), 3);
-  for (const Particle& body : particles_) body.block.rows(forces) = body.block.rows(y);
-  Net lacking = product(forces);
+  Net lacking = product(force_densities(y));
   for (const Particle& body : particles_) body.block.rows(lacking).setZero();
   return y - lacking;
 }
@@ -200,8 +205,7 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   y += z * change;
   unknowns_ = completed(y);
   const Eigen::VectorXd integrals = work.transpose() * y + lacking;
-  Net f = Net::Zero(x.rows(), 3);
-  for (const Particle& body : particles_) body.block.rows(f) = body.block.rows(unknowns_);
+  const Net f = force_densities(unknowns_);
   if (walls_.tube && flow.duct() && alone())
     lacking_pressure_ = walls_.tube->lacking_pressure(between_, between, flow.amplitude(), f, lacks[m]);
   const Net weighted = mass * f;

@@ -109,6 +109,7 @@ class RigidTractions {
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
   Net product(const Net& y);
+  Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
   Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
   Net left_over(const Net& x, const Net& y, const Net& v, Net flow);
