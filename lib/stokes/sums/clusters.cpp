@@ -22,6 +22,13 @@ int chebyshev_order(double tolerance, double z) {
   return static_cast<int>(std::ceil(-std::log(tolerance) / std::log(z + std::sqrt(z * z - 1)) - 1e-9));
 }
 
+/// Positions are compared as multiples of 2^-32 to 2^-33 of the extent of all points. Without this, rounding errors would decide which of two
+/// mirrored positions comes first, and thereby the clusters, and sums would differ by a part of the tolerance between numbers of ranks.
+constexpr int compared_bits = 33;
+
+/// Extents that differ by less than this ratio count as equal, for the same reason.
+constexpr double equal_extents = 1 - 1e-6;
+
 /// Returns the axes rotated as little as possible so that one of them is the normal.
 Mat3 turned(const Mat3& axes, const Vec3& normal) {
   int across;
@@ -60,6 +67,13 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
       groups_[g].centre[c] = sum / (starts[g + 1] - starts[g]);
     }
   }
+  double extent = 0;
+  for (int c = 0; c < 3; ++c) {
+    const auto [low, high] = std::ranges::minmax(groups_, {}, [c](const Group& group) { return group.centre[c]; });
+    extent = std::max(extent, high.centre[c] - low.centre[c]);
+  }
+  step_ = extent > 0 ? std::exp2(std::ceil(std::log2(extent)) - compared_bits) : 1;
+  for (Group& group : groups_) group.centre = group.centre.unaryExpr([this](double x) { return rounded(x); });
   clusters_.clear(), order_.clear();
   const auto lower = [](const Group& one, const Group& other) { return std::ranges::lexicographical_compare(one.centre, other.centre); };
   std::ranges::sort(groups_, lower);  // sorted so that clusters do not depend on the order of the groups of points in the input
@@ -103,11 +117,13 @@ int Clusters::split(int first, int last, Mat3 axes, std::span<const int> starts)
       const Vec3 at = axes * groups_[g].centre;
       low = low.cwiseMin(at), high = high.cwiseMax(at);
     }
-    int longest;
-    (high - low).maxCoeff(&longest);
-    for (int g = first; g < last; ++g) groups_[g].along = axes.row(longest).dot(groups_[g].centre);
-    std::nth_element(groups_.begin() + first, groups_.begin() + middle, groups_.begin() + last,
-                     [](const Group& a, const Group& b) { return a.along < b.along; });
+    const Vec3 length = high - low;
+    int longest = 0;
+    while (length[longest] < equal_extents * length.maxCoeff()) ++longest;
+    for (int g = first; g < last; ++g) groups_[g].along = rounded(axes.row(longest).dot(groups_[g].centre));
+    std::nth_element(groups_.begin() + first, groups_.begin() + middle, groups_.begin() + last, [](const Group& a, const Group& b) {
+      return a.along < b.along || (a.along == b.along && std::ranges::lexicographical_compare(a.centre, b.centre));
+    });
     const int left = split(first, middle, axes, starts), right = split(middle, last, axes, starts);
     clusters_[number].child[0] = left, clusters_[number].child[1] = right;
   }

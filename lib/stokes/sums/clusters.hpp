@@ -1,6 +1,7 @@
 #pragma once
 // Points in nested boxes. Each box has Chebyshev nodes that replace its points for distant targets or sources.
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -41,7 +42,8 @@ class Clusters {
   /// a multiple of `quantum` groups, and the cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
-  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only.
+  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only,
+  /// and errors of rounding do not change it.
   void place(const double* x, const double* y, const double* z, std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children
@@ -58,10 +60,12 @@ class Clusters {
     double along;  // coordinate of `centre` along the axis by which the cluster that contains the group is split
     int number;
   };
+  double rounded(double x) const { return step_ * std::round(x / step_); }
   int split(int first, int last, Mat3 axes, std::span<const int> starts);
   void enclose(Cluster& cluster);
 
   double tolerance_;
+  double step_ = 1;  // resolution at which positions are compared [length]
   int leaf_, quantum_;
   std::vector<Group> groups_;
   std::vector<Cluster> clusters_;
