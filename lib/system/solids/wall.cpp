@@ -8,6 +8,7 @@
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 #include "surface/geometry.hpp"
+#include "system/solids/congruence.hpp"
 
 namespace tanktread::coupling {
 
@@ -184,7 +185,8 @@ void Wall::find_pressure() {
 
 /// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
 /// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
-/// and neighbouring collocation points share these midpoints.
+/// and neighbouring collocation points share these midpoints. Of collocation points that rotations and reflections of the wall map to each other,
+/// the rows of only one are assembled, and mapped to the others.
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();
@@ -201,20 +203,36 @@ Eigen::MatrixXd Wall::assembled() {
     for (Eigen::Index r = 0; r < rows.rows(); ++r)
       Eigen::Map<Net>(rows.row(r).data(), sites_.rows(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
   };
+  const int m = surface_.n_around;
+  const std::vector<Congruence> maps = congruences(surface_, sites_);
+  const std::vector<Original> original = originals(maps, m);
+  const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
+  std::vector<int> own = own_;  // in ascending order of the sites whose rows are assembled for them
+  std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
   Eigen::MatrixXd complete = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
-    stokes::Rows<double> part;
-    for (std::size_t first = 0; first < own_.size(); first += at_a_time) {
-      const auto some = std::span(own_).subspan(first, std::min(at_a_time, own_.size() - first));
+    for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
+      std::vector<int> some, row;  // sites whose rows are assembled; for each own site, its index among them
+      for (; last < own.size() && some.size() < at_a_time; ++last) {
+        const int site = own[last] - own[last] % m + original_of(own[last]).point;
+        if (some.empty() || some.back() != site) some.push_back(site);
+        row.push_back(static_cast<int>(some.size()) - 1);
+      }
+      stokes::Rows<double> part;
       collocate<double>(some, rows_of, part);
-      for (Eigen::Index p = 0; p < signs.rows(); ++p)
-        for (int d = 0; d < 3; ++d) {
-          if (signs(p, d) == 0) continue;
-          const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
-          for (std::size_t k = 0; k < some.size(); ++k)
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        const int site = own[first + k];
+        const Congruence& map = *original_of(site).from;
+        for (int p = 0; p < static_cast<int>(signs.rows()); ++p) {
+          const int from = p - p % m + map.source[static_cast<std::size_t>(p % m)];
+          const Mat3 block = map.q * part.block<3, 3>(3 * row[k], 3 * from) * map.q.transpose();
+          for (int d = 0; d < 3; ++d) {
+            if (signs(p, d) == 0) continue;
+            const int column = of_component[3 * symmetry_.source()[static_cast<std::size_t>(p)] + d];
             for (int c = 0; c < 3; ++c)
-              if (const int row = of_component[3 * some[k] + c]; row >= 0)
-                all(row, column) += signs(p, d) * part(3 * static_cast<Eigen::Index>(k) + c, 3 * p + d);
+              if (const int to = of_component[3 * site + c]; to >= 0) all(to, column) += signs(p, d) * block(c, d);
+          }
         }
+      }
     }
   });
   if (cell_) complete += Eigen::Map<const Eigen::VectorXd>(pressure_.data(), n) * Eigen::Map<const Eigen::RowVectorXd>(flux_.data(), n);

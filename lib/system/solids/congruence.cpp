@@ -1,0 +1,55 @@
+#include "system/solids/congruence.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace tanktread::coupling {
+namespace {
+
+/// Returns the row of `ring` within `close` of `at`, or -1.
+int row_at(const Eigen::Ref<const Net>& ring, const Vec3& at, double close) {
+  Eigen::Index row;
+  return (ring.rowwise() - at.transpose()).rowwise().norm().minCoeff(&row) < close ? static_cast<int>(row) : -1;
+}
+
+/// Whether Q maps point k of each ring of `points` to point image[k] of the same ring.
+bool maps(const Congruence& map, const Net& points, double close) {
+  const auto m = static_cast<Eigen::Index>(map.image.size());
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (!((points.row(i - i % m + map.image[static_cast<std::size_t>(i % m)]) - points.row(i) * map.q.transpose()).norm() < close)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites) {
+  const int m = wall.n_around;
+  const double close = 1e-10 * wall.radius();
+  std::vector<Congruence> all;
+  for (const double sign : {1., -1.})
+    for (int j = 0; j < m; ++j) {
+      const double angle = 2 * std::numbers::pi * j / m, c = std::cos(angle), s = std::sin(angle);
+      Congruence map{(Mat3() << 1, 0, 0, 0, c, -sign * s, 0, s, sign * c).finished(), {}, std::vector<int>(static_cast<std::size_t>(m))};
+      for (int k = 0; k < m; ++k) {
+        const int to = row_at(sites.topRows(m), map.q * sites.row(k).transpose(), close);
+        if (to < 0) break;
+        map.image.push_back(to);
+        map.source[static_cast<std::size_t>(to)] = k;
+      }
+      if (static_cast<int>(map.image.size()) == m && maps(map, sites, close) && maps(map, wall.net, close)) all.push_back(std::move(map));
+    }
+  return all;
+}
+
+std::vector<Original> originals(const std::vector<Congruence>& maps, int n_around) {
+  std::vector<Original> all;
+  for (int k = 0; k < n_around; ++k) {
+    Original of{k, &maps.front()};
+    for (const Congruence& map : maps)
+      if (const int point = map.source[static_cast<std::size_t>(k)]; point < of.point) of = {point, &map};
+    all.push_back(of);
+  }
+  return all;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,31 @@
+#pragma once
+// Rotations and reflections of the cross-section that map the wall of a tube to itself.
+
+#include <vector>
+
+#include "base/types.hpp"
+#include "surface/tube_wall.hpp"
+
+namespace tanktread::coupling {
+
+/// One orthogonal map Q of the cross-section, extended by Q e1 = e1, that maps the wall to itself: rotation about x1, reflection, or both.
+struct Congruence {
+  Mat3 q;
+  std::vector<int> image, source;  ///< image[k]: Q maps control point k of every ring to control point image[k] of the same ring; source: inverse
+};
+
+/// Returns the maps found, with the identity first. For a circle with n points around, these are 2 n maps, for a rectangle 4, and for the section of
+/// a bent channel 2. A map is accepted if it moves all control points and collocation points of the wall to others within 1e-10 of the tube radius.
+///
+/// The kernels do not change if source, target and force are rotated or reflected together, so that the blocks of an operator A on the wall satisfy
+/// A(Q i, Q p) = Q A(i, p) Q^T.
+std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites);
+
+/// For each collocation point of a ring, another one from which a map leads to it.
+struct Original {
+  int point;               ///< smallest index in the ring from which a map leads to the point
+  const Congruence* from;  ///< this map
+};
+std::vector<Original> originals(const std::vector<Congruence>& maps, int n_around);
+
+}  // namespace tanktread::coupling

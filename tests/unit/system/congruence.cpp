@@ -1,0 +1,76 @@
+// Rotations and reflections that map the wall of a duct to itself, and the operator of a wall of which they map rows to rows.
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "system/solids/congruence.hpp"
+#include "system/solids/wall.hpp"
+
+namespace tanktread::coupling {
+namespace {
+
+surface::TubeOptions circle() {
+  surface::TubeOptions o;
+  o.radius = 1, o.azimuthal_elements = 8, o.axial_elements = 6;
+  return o;
+}
+
+surface::TubeOptions rectangle(double side) {
+  surface::TubeOptions o = circle();
+  o.section = "rectangle", o.radius.reset(), o.sides = Eigen::Vector2d(2, side);
+  return o;
+}
+
+surface::TubeWall open(const surface::TubeOptions& o) { return surface::tube_wall(surface::outline(o), o, 2 * std::numbers::pi); }
+
+surface::TubeWall bent() {
+  surface::TubeOptions o = circle();
+  o.channel.emplace();
+  o.channel->depth = 0.5, o.channel->half_length = 2;
+  o.channel->bend_radius = 3, o.channel->bend_start = 1, o.channel->bend_angle = 90;
+  return surface::channel_wall(std::make_shared<const surface::Channel>(o), 8);
+}
+
+/// The number of maps of a wall, and how many of its points around have rows of their own.
+std::pair<std::size_t, int> found(const surface::TubeWall& wall) {
+  quadrature::Options rule;
+  const std::vector<Congruence> maps = congruences(wall, Wall(wall, rule).sites());
+  int own = 0;
+  const std::vector<Original> all = originals(maps, wall.n_around);
+  for (int k = 0; k < wall.n_around; ++k) {
+    const auto& [point, from] = all[static_cast<std::size_t>(k)];
+    EXPECT_EQ(from->image[static_cast<std::size_t>(point)], k);
+    own += point == k;
+  }
+  return {maps.size(), own};
+}
+
+TEST(Congruence, FindsAllMapsOfASection) {
+  EXPECT_EQ(found(open(circle())), std::pair(std::size_t{16}, 1));
+  EXPECT_EQ(found(open(rectangle(2))).first, 8u);
+  EXPECT_EQ(found(open(rectangle(1))).first, 4u);
+  EXPECT_EQ(found(bent()).first, 2u);
+}
+
+// `apply` sums over all targets and does not know of the maps.
+TEST(Congruence, MapsRowsOfTheWallToRows) {
+  quadrature::Options rule;
+  rule.tolerance = 1e-6;
+  const surface::TubeWall periodic = surface::periodic_tube_wall(surface::outline(circle()), circle(), 3, 6);
+  for (const surface::TubeWall& surface : {open(circle()), open(rectangle(1)), bent(), periodic}) {
+    const Wall wall(surface, rule);
+    Net f(wall.sites().rows(), 3);
+    for (Eigen::Index i = 0; i < f.rows(); ++i) {
+      const Vec3 x = wall.sites().row(i).transpose();
+      const double phase = 2 * std::numbers::pi * x[0] / 3;
+      f.row(i) << std::sin(phase) + x[1], x[2] * std::cos(phase), 0.3 - x[1] * x[2];
+    }
+    EXPECT_LT((wall.solve(wall.apply(f)) - f).norm() / f.norm(), 1e-5);  // tolerance of integrals times the condition number
+  }
+}
+
+}  // namespace
+}  // namespace tanktread::coupling
