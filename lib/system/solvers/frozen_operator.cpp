@@ -38,12 +38,12 @@ void FrozenOperator::assemble(const std::vector<int>& targets, int n, const Asse
 void FrozenOperator::apply(const Net& f, Net& u) const {
   for (auto* component : {&f1_, &f2_, &f3_}) component->resize(static_cast<size_t>(n_));
   for (int b = 0; b < n_; ++b) {
-    f1_[b] = static_cast<float>(f(b, 0));
-    f2_[b] = static_cast<float>(f(b, 1));
-    f3_[b] = static_cast<float>(f(b, 2));
+    f1_[b] = f(b, 0);
+    f2_[b] = f(b, 1);
+    f3_[b] = f(b, 2);
   }
   for (size_t k = 0; k < targets_.size(); ++k) {
-    float sum[3] = {0, 0, 0};
+    double sum[3] = {0, 0, 0};
     symmetric_block_row(n_, entries_.data() + 6 * static_cast<size_t>(n_) * k, f1_.data(), f2_.data(), f3_.data(), sum);
     u.row(targets_[k]) << sum[0], sum[1], sum[2];
   }

@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet. Each block has six entries, each rounded to 16
 /// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
-/// therefore reduces its error by a factor of only about ten per iteration in any case. A product is memory-bound and takes a third of the time that
-/// it takes with floats.
+/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision: rounded to floats, they would turn
+/// differences of 1e-16 between numbers of ranks into differences of 1e-10, because each iteration of GMRES enlarges them.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
@@ -35,11 +35,11 @@ class FrozenOperator {
   int n_ = 0;
   std::vector<std::uint16_t> entries_;       // six entries (11, 12, 13, 22, 23, 33) of each symmetric 3 x 3 block. Entry e = 0 .. 5 of the block for
                                              // row `target` and control point p of n is at (6 target + e) n + p
-  mutable std::vector<float> f1_, f2_, f3_;
+  mutable std::vector<double> f1_, f2_, f3_;
 };
 
 /// Adds to u the sum over n points of the symmetric block (six consecutive arrays of n entries) times (f1, f2, f3).
-void symmetric_block_row(int n, const std::uint16_t* entries, const float* f1, const float* f2, const float* f3, float* u);
+void symmetric_block_row(int n, const std::uint16_t* entries, const double* f1, const double* f2, const double* f3, double* u);
 
 /// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p of
 /// each particle p that fits its control points best (least squares; Kabsch 1976),
