@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet. Each block has six entries, each rounded to 16
 /// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
-/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision: rounded to floats, they would turn
-/// differences of 1e-16 between numbers of ranks into differences of 1e-10, because each iteration of GMRES enlarges them.
+/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision: rounded to floats, they
+/// would turn differences of 1e-16 between numbers of ranks into differences of 1e-10, because each iteration of GMRES enlarges them.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
