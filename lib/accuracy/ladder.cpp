@@ -24,8 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// State of the directory of a level: finished, to be resumed, or to be run anew.
-enum class Start { finished, resume, anew };
+/// State of the directory of a level: finished, failed with the same deck, to be resumed, or to be run anew.
+enum class Start { finished, failed, resume, anew };
+
+/// File in the directory of a failed level: the level's deck and the reason. A resumed ladder does not run the level again.
+constexpr const char* failure_file = "failure.txt";
 
 class Ladder {
  public:
@@ -34,7 +37,7 @@ class Ladder {
   int climb() {
     serially([this] { prepare(); });
     for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
-      if (const std::string why = reason_to_stop(k); !why.empty()) return conclude(stopped, why);
+      if (const std::string why = is_over(k) ? "" : reason_to_stop(k); !why.empty()) return conclude(stopped, why);
       if (k >= balanced_from && count_ == k && !balanced_ && !within_reach(k) && balance() == stopped)
         return conclude(stopped, "the runs that balance the parts were stopped");
       const int code = run(k);
@@ -68,6 +71,14 @@ class Ladder {
       output::start_directory(task_.directory);
     }
     output::write_whole(task_.directory / ladder_file, task_.deck);
+  }
+
+  /// Returns whether an earlier part of a resumed ladder finished level k or saw it fail.
+  bool is_over(int k) const {
+    return coupling::decided([&] {
+      const Start start = start_of(directory(std::to_string(k)), level_at(k), program_.deck(settings(task_.values, level_at(k))));
+      return std::vector<double>{double(start == Start::finished || start == Start::failed)};
+    })[0] != 0;
   }
 
   /// Returns a sentence if level k is not run, because it is predicted to exceed the wall-clock limit of all levels; empty if it is run.
@@ -143,14 +154,21 @@ class Ladder {
     const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck))}; });
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
     const auto began = Clock::now();
+    if (start == Start::failed) {
+      fail(name, ranks_.rank() == 0 ? kept_failure(directory(name), deck) : "see the first rank");
+      return 0;
+    }
     if (start != Start::finished) {
       const auto limit = task_.options.wall_clock_limit;
       const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
       try {
         if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
       } catch (const RunFailure& failure) {
-        failure_ = failure_of_last_ = failure.what();
-        say("  level " + name + " failed: " + failure_);
+        fail(name, failure.what());
+        serially([&] {
+          fs::create_directories(directory(name));
+          output::write_whole(directory(name) / failure_file, deck + failure_);
+        });
         return 0;
       }
     }
@@ -165,9 +183,23 @@ class Ladder {
     return 0;
   }
 
+  void fail(const std::string& name, const std::string& why) {
+    failure_ = failure_of_last_ = why;
+    say("  level " + name + " failed: " + why);
+  }
+
+  /// Returns why a run of this deck in this directory failed; empty if it did not fail or was not made.
+  static std::string kept_failure(const fs::path& place, const std::string& deck) {
+    std::error_code absent;
+    if (!fs::is_regular_file(place / failure_file, absent)) return {};
+    const std::string text = text_of_file(place / failure_file, (place / failure_file).string(), 10'000'000);
+    return text.starts_with(deck) ? text.substr(deck.size()) : "";
+  }
+
   Start start_of(const fs::path& place, const Level& level, const std::string& deck) const {
     if (!task_.resume) return Start::anew;
     if (finished(place, level, deck)) return Start::finished;
+    if (!kept_failure(place, deck).empty()) return Start::failed;
     std::error_code absent;
     if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
     try {

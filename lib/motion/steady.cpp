@@ -97,6 +97,10 @@ void approach(SteadyEquations& equations, Net& x) {
   }
 }
 
+/// A shape that moves by more than this part of R_C in one step is not steady, however small its correction: on a crumpled surface the Jacobian is
+/// so large that corrections are small although velocities are not.
+constexpr double largest_motion = 0.1;
+
 }  // namespace
 
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x) {
@@ -105,7 +109,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   approach(equations, x);
   dynamics.freeze(x);
   Net best = x;
-  double rest = std::numeric_limits<double>::infinity(), latest = rest;
+  double rest = std::numeric_limits<double>::infinity(), latest = rest, motion = rest;
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
   const int depth = coupling::FixedPoint::deep(x.size());
   FixedPointError error(depth);
@@ -113,7 +117,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     const Net r = equations.residual(y), delta = equations.precondition(y, r);
     latest = dynamics.norm(delta);
     if (delta.allFinite()) latest = std::max(latest, dynamics.norm(error(y, delta)));
-    if (latest < rest) rest = latest, best = y;
+    if (latest < rest) rest = latest, motion = dynamics.norm(r), best = y;
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
@@ -125,7 +129,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, left);
   x = std::move(best);
   dynamics.restore_volume(x);
-  return {found.iterations, found.converged, rest};
+  return {found.iterations, found.converged && motion < largest_motion, rest, motion};
 }
 
 }  // namespace tanktread::motion

@@ -128,6 +128,19 @@ def a_ladder_that_was_killed_gives_the_same_result():
     check(summary("killed")["accuracy"]["requests"][0]["request"] == "taylor_inertia=0.05%", summary("killed")["accuracy"])
 
 
+def a_level_that_failed_is_not_run_again():
+    deck(DROP.replace("0.05", "0.3").replace("  Time: {final time: 1.0}\n", "  Steady: {}\n").replace("  Output: {interval: 0.1}\n", ""))
+    words = ("--accuracy", "taylor_inertia=1%", "--set", "Accuracy/levels=3")
+    first = run("deck.yaml", *words, "--output", "burst", code=3)
+    check("no accuracy level was completed" in first.stderr, first.stderr)
+    kept = pathlib.Path("burst/level_0/failure.txt")
+    reason = kept.read_text(encoding="utf-8").splitlines()[-1]
+    check(reason and reason in first.stdout, first.stdout)
+    kept.write_text(kept.read_text(encoding="utf-8") + ", as was found before", encoding="utf-8")
+    again = run("--resume", "burst", code=3)
+    check(f"{reason}, as was found before" in again.stdout, again.stdout)
+
+
 def two_ranks_agree():
     deck(DROP)
     for ranks in (1, 2):

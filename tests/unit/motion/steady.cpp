@@ -96,6 +96,26 @@ TEST_P(Steady, DoesNotTrustTheFirstCorrection) {
   EXPECT_LE(motion.norm(x), 2e-5);
 }
 
+/// A model of a crumpled surface: it has no steady shape, and all velocities are large, but so is the Jacobian, so that corrections are small.
+class Crumpled : public ExplicitMotion {
+ public:
+  Net velocity(const Net& x) override { return 1e6 * (1 + (-1e9 * x).array().exp()).matrix(); }
+  Net solve(double, const Net& r, double, const coupling::Secants&) override { return 1e-15 * r; }
+  double norm(const Net& d) const override { return d.norm() / std::sqrt(static_cast<double>(d.rows())); }
+};
+
+TEST_P(Steady, DoesNotTakeAShapeThatMovesForASteadyOne) {
+  Crumpled motion;
+  Net x = Net::Zero(40, 3);
+  SteadyEquations equations(motion, {}, 0.5, x);
+  SteadyOptions options;
+  options.method = GetParam(), options.tolerance = 1e-5;
+  const SteadyReport report = find_steady(equations, options, {}, x);
+  EXPECT_LT(report.rest, options.tolerance);
+  EXPECT_FALSE(report.converged);
+  EXPECT_GT(report.motion, 1e5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"),
                          [](const auto& info) { return info.param[0] == 'a' ? "Anderson" : "Newton"; });
 
