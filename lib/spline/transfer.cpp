@@ -4,11 +4,11 @@
 #include <deque>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include <Eigen/SparseCholesky>
 
+#include "base/indices.hpp"
 #include "spline/basis.hpp"
 #include "spline/locate.hpp"
 #include "spline/sparse_systems.hpp"
@@ -20,12 +20,6 @@ namespace {
 /// Largest residual of the least-squares fit for which spaces count as nested, for a field of order 1. It is far above round-off and far below the
 /// residual of spaces that are not nested.
 constexpr double nested = 1e-10;
-
-std::vector<int> first_integers(std::size_t n) {
-  std::vector<int> out(n);
-  std::iota(out.begin(), out.end(), 0);
-  return out;
-}
 
 /// Values of the functions of both spaces at one point.
 struct Sample {
@@ -179,7 +173,7 @@ Transfer::Result Transfer::operator()(const Net& field) const {
   if (s.rest) out.residual = largest(s.rest->solve(field, out.net));
   if (out.residual <= nested * field.cwiseAbs().maxCoeff()) return out;
   if (!s.all)
-    s.all.emplace(s.from, s.to, s.sampling.at(first_integers(s.to.elements.size()), false, false), first_integers(s.to.n_points));
+    s.all.emplace(s.from, s.to, s.sampling.at(indices(s.to.elements.size()), false, false), indices(s.to.n_points));
   out.residual = largest(s.all->solve(field, out.net));
   return out;
 }
@@ -192,9 +186,9 @@ struct Projection::State {
 
 Projection::Projection(const Space& from, const Space& to) : state_(new State{from, to, {}}) {
   const Sampling sampling(from, to);
-  std::vector<Sample> samples = sampling.at(first_integers(from.elements.size()), true, true);
-  std::ranges::move(sampling.at(first_integers(to.elements.size()), false, true), std::back_inserter(samples));
-  state_->fit.emplace(from, to, std::move(samples), first_integers(to.n_points));
+  std::vector<Sample> samples = sampling.at(indices(from.elements.size()), true, true);
+  std::ranges::move(sampling.at(indices(to.elements.size()), false, true), std::back_inserter(samples));
+  state_->fit.emplace(from, to, std::move(samples), indices(to.n_points));
 }
 
 Projection::~Projection() = default;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/assembly_kernel.hpp"
 #include "stokes/layer.hpp"
 
@@ -201,8 +201,7 @@ void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real
   constexpr std::size_t block = assembly_block;
   const Panels& panels = surface_.panels;
   RowSums<Real> rows(*this, at);
-  std::vector<int> row_of_point(static_cast<std::size_t>(surface_.n_points));
-  std::iota(row_of_point.begin(), row_of_point.end(), 0);
+  const std::vector<int> row_of_point = indices(surface_.n_points);
   rows.basis.clear(panels);
   for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, surface_.n_points);
   a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * surface_.n_points);

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "surface/element_groups.hpp"
 
 namespace tanktread::surface {
@@ -51,10 +51,7 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
   return mean_curvature(jet(ElementPoints(space, net, site.element).patch(), site.s, site.t));
 }
 
-Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.elements.size()), all_blocks_(n_blocks()) {
-  std::iota(all_.begin(), all_.end(), 0);
-  std::iota(all_blocks_.begin(), all_blocks_.end(), 0);
-}
+Geometry::Geometry(const spline::Space& space) : map_(space), all_(indices(space.elements.size())), all_blocks_(indices(n_blocks())) {}
 
 double Geometry::volume(const Net& net) const {
   Vec3 mean;

@@ -1,11 +1,11 @@
 #include "surface/quality.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/patch.hpp"
@@ -63,9 +63,7 @@ Worst worst(const Tangents& a1, const Tangents& a2) {
 }  // namespace
 
 Quality quality(const BezierMap& map, const Net& net) {
-  std::vector<int> all(map.n_elements());
-  std::iota(all.begin(), all.end(), 0);
-  return quality(map, net, all);
+  return quality(map, net, indices(map.n_elements()));
 }
 
 Quality worse(const Quality& a, const Quality& b) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/basis.hpp"
 
@@ -72,8 +72,7 @@ VelocityProjection::VelocityProjection(const spline::Space& space, const Net& un
                                        const membrane::DirectSolverOptions& direct, const Ranks& ranks)
     : symmetry_(symmetry.fundamental().empty() ? surface::Symmetry(space.n_points) : symmetry), mass_(direct, symmetry_), scalar_mass_(direct) {
   const int n_elements = static_cast<int>(space.elements.size());
-  std::vector<int> elements(static_cast<std::size_t>(n_elements));
-  std::iota(elements.begin(), elements.end(), 0);
+  const std::vector<int> elements = indices(n_elements);
   const Functions everywhere = functions(space, places(elements));
   mass_.factor(weighted(everywhere, unstressed) * everywhere.value);
 

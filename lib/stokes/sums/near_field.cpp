@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 
 namespace tanktread::stokes {
@@ -29,8 +29,7 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
 /// the number of surfaces.
 int connected(const Panels& panels, std::vector<int>& surface) {
   std::vector<int> first;  // for each control point, the first panel that depends on it; -1 if not found yet
-  std::vector<int> root(static_cast<std::size_t>(panels.size()));
-  std::iota(root.begin(), root.end(), 0);
+  std::vector<int> root = indices(panels.size());
   const auto find = [&](int e) {
     while (root[e] != e) e = root[e] = root[root[e]];
     return e;

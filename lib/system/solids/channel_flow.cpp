@@ -1,8 +1,8 @@
 #include "system/solids/channel_flow.hpp"
 
 #include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 
@@ -115,10 +115,8 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
     v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
   };
   if (x.rows() >= few) return wall->ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
-  std::vector<int> all(static_cast<std::size_t>(x.rows()));
-  std::iota(all.begin(), all.end(), 0);
   Net v(x.rows(), 3);
-  evaluate(all, v);
+  evaluate(indices(x.rows()), v);
   return v;
 }
 

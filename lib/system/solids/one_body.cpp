@@ -1,10 +1,10 @@
 #include "system/solids/one_body.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "base/dense_factors.hpp"
+#include "base/indices.hpp"
 #include "stokes/layer.hpp"
 #include "system/collocation.hpp"
 
@@ -30,8 +30,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   auto factors = std::make_shared<Factors>();
   factors->prescribed = particle.rigid->prescribed;
   factors->sites = collocation_matrix(*particle.space);
-  std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = indices(particle.space->n_points);
   stokes::Rows<double> matrix;
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);

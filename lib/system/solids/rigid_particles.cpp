@@ -1,13 +1,13 @@
 #include "system/solids/rigid_particles.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 
+#include "base/indices.hpp"
 #include "base/small_matrices.hpp"
 #include "membrane/direct_solver.hpp"
 #include "membrane/mass.hpp"
@@ -20,18 +20,12 @@ namespace tanktread::coupling {
 
 namespace {
 
-std::vector<int> numbers(int first, int last) {
-  std::vector<int> all(static_cast<std::size_t>(last - first));
-  std::iota(all.begin(), all.end(), first);
-  return all;
-}
-
 /// Returns the single layer A f at sites for each of six densities f.
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
   layer.place(surface);
-  const std::vector<int> all = numbers(0, static_cast<int>(sites.size()));
+  const std::vector<int> all = indices(sites.size());
   std::array<Net, 6> u;
   u.fill(Net(sites.size(), 3));
   for (std::size_t k = 0; k < f.size(); ++k) layer.apply(f[k], all, u[k]);
@@ -51,7 +45,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
   stokes::Rows<double> rows;
   for (int first = 0; first < n_sites; first += at_a_time) {
     const int last = std::min(first + at_a_time, n_sites);
-    layer.assemble(numbers(first, last), rows);
+    layer.assemble(indices(last - first, first), rows);
     for (int c = 0; c < 3; ++c)
       sum(Eigen::seq(c, Eigen::last, 3), Eigen::all) +=
           weights.middleCols(first, last - first) * Strided(rows.row(c).data(), last - first, rows.cols(), Eigen::OuterStride<>(3 * rows.cols()));

@@ -1,9 +1,9 @@
 #include "system/solids/tube_particle.hpp"
 
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "base/indices.hpp"
 #include "system/collocation.hpp"
 #include "system/solids/nearest_sites.hpp"
 
@@ -69,9 +69,7 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   }
   if (dual) {
     dual->place(shape);
-    std::vector<int> everybody(static_cast<std::size_t>(wall.targets().rows()));
-    std::iota(everybody.begin(), everybody.end(), 0);
-    nearest = nearest_sites(sites, wall.targets(), everybody, period ? &period->cell : nullptr);
+    nearest = nearest_sites(sites, wall.targets(), indices(wall.targets().rows()), period ? &period->cell : nullptr);
     if (period) {
       dual->see_images_only(static_cast<int>(wall.targets().rows()));
       dual_on_wall = dual->near(period->targets, period->own);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/sums/vicinity.hpp"
@@ -61,11 +61,9 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   tree_.reset();
   if (far_sum == "dense" || (far_sum == "auto" && n < nodes_worth_a_tree)) return;
   tree_.emplace(cluster_tolerance);
-  std::vector<int> starts(static_cast<std::size_t>(n) + 1);
-  std::iota(starts.begin(), starts.end(), 0);
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());
-  tree_->place(node_[0].data(), node_[1].data(), node_[2].data(), starts, at);
+  tree_->place(node_, indices(n + 1), at);
   tree_->share(part_, parts_);
   tree_->want(parts_ > 1 ? everybody_ : targets_);
 }
@@ -119,10 +117,8 @@ void NodalOperator::sum(Net& u) {
     for (const int i : shared() ? everybody_ : targets_) u.row(i) = Vec3(&rows[3 * static_cast<std::size_t>(i)]).transpose();
     return;
   }
-  const stokes::PointForces all{static_cast<int>(node_[0].size()), node_[0].data(), node_[1].data(), node_[2].data(), force_[0].data(),
-                                force_[1].data(), force_[2].data()};
   std::vector<double> sums(3 * targets_.size());
-  stokes::far_sums(all, at_, sums.data());
+  stokes::far_sums(stokes::charges(node_, force_), at_, sums.data());
   for (std::size_t k = 0; k < targets_.size(); ++k) u.row(targets_[k]) = Vec3(&sums[3 * k]).transpose();
 }
 
