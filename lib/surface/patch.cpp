@@ -1,6 +1,5 @@
 #include "surface/patch.hpp"
 
-
 #include <Eigen/Geometry>
 
 #include "base/indices.hpp"
