@@ -6,8 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Geometry>
-
 #include "base/indices.hpp"
 #include "stokes/kernels/pair_kernel.hpp"
 
@@ -88,12 +86,6 @@ void Layer::set_density(const Net& f) {
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight_[k];
 }
 
-Stresslets Layer::stresslets(const std::vector<double> (&x)[3]) const {
-  const auto &f = density_, &n = normal_;
-  return {n_nodes(),   x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(),
-          f[2].data(), n[0].data(), n[1].data(), n[2].data()};
-}
-
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   assert(surface_.n_sites > 0 && "a layer is for sites or for points off its surfaces");
   set_density(f);
@@ -161,7 +153,7 @@ Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const
     node_sum(charges(surface_.node, density_).part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
   } else {
     double_sum(table, x, f, at.data(), f0.data(), better.data());
-    node_sum(stresslets(surface_.node).part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
+    node_sum(stresslets(surface_.node, density_, normal_).part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
   }
   count += table.points + panel.table->n_nodes;
   return factor(e) * better - far;
@@ -176,7 +168,8 @@ void Layer::add_far(const Targets& targets, Net& u) {
   for (const Vec3& image : images) {
     std::vector<Vec3> at = places;
     for (Vec3& x : at) x -= image;
-    single() ? far_sums(charges(far_places(), density_), at, sums.data(), precision()) : far_sums(stresslets(far_places()), at, f0, sums.data(), precision());
+    single() ? far_sums(charges(far_places(), density_), at, sums.data(), precision())
+             : far_sums(stresslets(far_places(), density_, normal_), at, f0, sums.data(), precision());
     all += sums;
   }
   for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));

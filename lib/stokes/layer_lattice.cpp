@@ -65,7 +65,8 @@ void Layer::subtract_itself(const Targets& targets, Net& u) {
   if (rows.empty()) return;
   const std::vector<Vec3> at = rows_of(targets.at, rows), f0 = rows_of(targets.f0, rows);
   Net sums(rows.size(), 3);
-  single() ? far_sums(charges(surface_.node, density_), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
+  single() ? far_sums(charges(surface_.node, density_), at, sums.data(), precision())
+           : far_sums(stresslets(surface_.node, density_, normal_), at, f0, sums.data(), precision());
   for (std::size_t k = 0; k < at.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
   evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
 }

@@ -23,13 +23,6 @@ Mat3 axes(const surface::Channel::Section& place) {
   return axes;
 }
 
-using Components = std::vector<double>[3];
-
-Stresslets stresslets(const Components& x, const Components& v, const Components& n) {
-  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), v[0].data(), v[1].data(), v[2].data(), n[0].data(), n[1].data(),
-          n[2].data()};
-}
-
 }  // namespace
 
 DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward) : flow_(std::move(flow)), place_(place), inward_(inward) {

@@ -171,11 +171,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const
   const int order = std::max(needed, t.order + 1);
   if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
     const auto [at, is_new] = whole_.try_emplace({t.degree, order});
-    if (is_new) {
-      const auto& gauss = quadrature::tensor_gauss(order);
-      tabulate({{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}}, t.degree,
-               at->second);
-    }
+    if (is_new) tabulate(quadrature::Rule(quadrature::tensor_gauss(order)), t.degree, at->second);
     return at->second;
   }
   points_.clear();
