@@ -121,7 +121,6 @@ struct Transfer::State {
   const Space& from;
   const Space& to;
   Sampling sampling;
-  int straddling = 0;
   std::vector<int> copied;         // for each new control point, the old control point from which it is copied, or -1
   std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
   mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
@@ -136,12 +135,6 @@ Transfer::State::State(const Space& old_space, const Space& new_space)
   for (const Element& e : to.elements) {
     const Element& c = from.elements[sampling.in_from_({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element];
     around.push_back(&c);
-    bool inside = true;
-    for (int d = 0; d < 2; ++d) {
-      const double low = (e.origin[d] - c.origin[d]) / c.size[d], margin = 1e-9;
-      inside = inside && low >= -margin && low + e.size[d] / c.size[d] <= 1 + margin;
-    }
-    straddling += !inside;
     alike.push_back(e.degree == c.degree && e.origin == c.origin && e.size == c.size && e.extraction->rows() == c.extraction->rows() &&
                     *e.extraction == *c.extraction);
     if (alike.back())
@@ -162,8 +155,6 @@ Transfer::State::State(const Space& old_space, const Space& new_space)
 Transfer::Transfer(const Space& from, const Space& to) : state_(new State(from, to)) {}
 Transfer::~Transfer() = default;
 Transfer::Transfer(Transfer&&) noexcept = default;
-
-int Transfer::straddling() const { return state_->straddling; }
 
 Transfer::Result Transfer::operator()(const Net& field) const {
   const State& s = *state_;

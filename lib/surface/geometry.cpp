@@ -56,17 +56,7 @@ Geometry::Geometry(const spline::Space& space) : map_(space), all_(indices(space
 double Geometry::volume(const Net& net) const {
   Vec3 mean;
   const Net here = about_mean(net, mean);
-  double sum = 0;
-  for (const int b : all_blocks_) {
-    double of_block = 0;
-    each_group(map_, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group) {
-      double part[most_lanes];
-      kernel::volume(degree, points_of(map_, here, group), part);
-      for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
-    });
-    sum += of_block;
-  }
-  return sum;
+  return here.cwiseProduct(volume_gradient(here)).sum() / 3;
 }
 
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
@@ -127,9 +117,8 @@ Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
   return result;
 }
 
-Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
-
-Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
+Deformation Geometry::deformation(const Net& net) const {
+  const Measures measures = this->measures(net);
   return deformation(measures, extremes(net, measures.centroid, all_));
 }
 
