@@ -54,7 +54,7 @@ void MaxwellElement::each_point(const Net& x, const Use& use) const {
 MaxwellElement::MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time)
     : space_(space), spring_{viscosity.shear / time, viscosity.dilatational / time}, time_(time) {
   groups_ = pack(space, indices(space.elements.size()), order);
-  first_.resize(all.size());
+  first_.resize(space.elements.size());
   Eigen::Index points = 0;
   for (const Group& group : groups_) {
     relaxed_.resize(relaxed_.size() + group.batches.size() * static_cast<std::size_t>(group.n_gauss()));

@@ -68,10 +68,8 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   const std::shared_ptr<Wall> wall = this->wall();
   Solved solved;
   const std::vector<int>& own = wall->own_targets();
-  Net at(static_cast<Eigen::Index>(own.size()), 3), of_ends(wall->targets().rows(), 3);
-  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = wall->targets().row(own[k]);
-  const Net found = ends(at);
-  for (std::size_t k = 0; k < own.size(); ++k) of_ends.row(own[k]) = found.row(static_cast<Eigen::Index>(k));
+  Net of_ends(wall->targets().rows(), 3);
+  of_ends(own, Eigen::all) = ends(wall->targets()(own, Eigen::all));
   const Net without = viscosity() * wall->solve(wall->collocated(of_ends)), &with = wall->pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();

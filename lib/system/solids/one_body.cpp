@@ -146,10 +146,9 @@ FilmInverses::FilmInverses(std::span<const Particle> particles, const OneBodyInv
 void FilmInverses::add(Net& y) const {
   const Net before = y;
   for (const Film& film : films_) {
-    Eigen::VectorXd right(3 * static_cast<Eigen::Index>(film.sites.size()));
-    for (std::size_t k = 0; k < film.sites.size(); ++k) right.segment<3>(3 * static_cast<Eigen::Index>(k)) = before.row(film.sites[k]).transpose();
-    const Eigen::VectorXd change = film.one_and_coupling.solve(right) - right;
-    for (std::size_t k = 0; k < film.sites.size(); ++k) y.row(film.sites[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    const Net own = before(film.sites, Eigen::all);
+    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(own.data(), own.size()), change = film.one_and_coupling.solve(right) - right;
+    y(film.sites, Eigen::all) += Eigen::Map<const Net>(change.data(), own.rows(), 3);
   }
 }
 

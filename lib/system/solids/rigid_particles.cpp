@@ -149,8 +149,6 @@ RigidMotion RigidParticles::Body::mean(const Net& w) const {
 
 Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
 
-RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
-
 void RigidParticles::push(const Net& work) {
   for (Body& body : bodies_) body.pushed = work.size() > 0 ? Net(body.block.rows(work)) : Net();
 }
@@ -261,7 +259,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
 /// Computes int df r dG in closed form for the load df = -(a + b x r).
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
-  const RigidMotion load = of.load();
+  const RigidMotion load = of.carrying(of.force, of.torque);
   const Mat3 second = of.turn * of.second * of.turn.transpose();
   return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
 }

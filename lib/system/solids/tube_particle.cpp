@@ -156,10 +156,8 @@ Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   const surface::Symmetry& symmetry = parameters.symmetry;
   if (symmetry.order() == 1) return flow.velocities(sites);
   const std::vector<int>& rows = symmetry.fundamental();
-  Net at(static_cast<Eigen::Index>(rows.size()), 3), all = Net::Zero(sites.rows(), 3);
-  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = sites.row(rows[k]);
-  const Net v = flow.velocities(at);
-  for (std::size_t k = 0; k < rows.size(); ++k) all.row(rows[k]) = v.row(static_cast<Eigen::Index>(k));
+  Net all = Net::Zero(sites.rows(), 3);
+  all(rows, Eigen::all) = flow.velocities(sites(rows, Eigen::all));
   symmetry.complete(all);
   return all;
 }

@@ -1,7 +1,6 @@
 #include "system/solvers/nodal_operator.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/indices.hpp"
 #include "stokes/kernels/far_kernel.hpp"
@@ -18,11 +17,6 @@ constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 /// sum by clusters is faster than the direct sum. Both were chosen from measurements on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
 constexpr Eigen::Index nodes_worth_a_tree = 4000;
-
-Mat3 stokeslet(const Vec3& r) {
-  const double square = r.squaredNorm(), inverse = square > 0 ? 1 / std::sqrt(square) : 0;
-  return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
-}
 
 using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
@@ -92,7 +86,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
       Mat3 rule = Mat3::Zero();
       for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, near_.point[j]); entry; ++entry)
-        rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
+        rule += weights_[entry.row()] * entry.value() * stokes::stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
       for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(upper[c][0], upper[c][1]);
     }
   }
