@@ -45,6 +45,7 @@ class Evolution {
 
   const Body& body() const { return *members_.front().body; }
   surface::Deformation deformation() const { return capsule->geometry().deformation(state.x); }
+  double volume_error() const { return capsule->volume_error(capsule->geometry().volume(state.x)); }
   double energy() const { return capsule->membrane().energy(state.x); }
 
   Scene scene;

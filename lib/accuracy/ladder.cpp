@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <limits>
 #include <memory>
-#include <numeric>
 
 #include "accuracy/outcome.hpp"
 #include "accuracy/publication.hpp"

@@ -2,7 +2,6 @@
 // Results of one deck on several levels of refinement, and the errors estimated from them.
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

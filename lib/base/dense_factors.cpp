@@ -3,7 +3,6 @@
 #include <cassert>
 #include <utility>
 
-
 namespace tanktread {
 
 DenseFactors::DenseFactors(Eigen::MatrixXd a) : factors_(std::move(a)), row_of_(static_cast<std::size_t>(factors_.rows())) {

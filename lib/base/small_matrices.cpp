@@ -1,6 +1,5 @@
 #include "base/small_matrices.hpp"
 
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <unsupported/Eigen/MatrixFunctions>

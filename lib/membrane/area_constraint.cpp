@@ -11,13 +11,8 @@ namespace {
 
 /// Returns x_,s and x_,t.
 std::array<Vec3, 2> tangents(const spline::Element& element, const spline::Basis& basis, const Net& x) {
-  std::array<Vec3, 2> a{Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t k = 0; k < element.points.size(); ++k) {
-    const auto function = static_cast<Eigen::Index>(k);
-    a[0] += basis.s[function] * x.row(element.points[k]).transpose();
-    a[1] += basis.t[function] * x.row(element.points[k]).transpose();
-  }
-  return a;
+  const Net own = x(element.points, Eigen::all);
+  return {own.transpose() * basis.s, own.transpose() * basis.t};
 }
 
 }  // namespace

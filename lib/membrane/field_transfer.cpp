@@ -22,11 +22,8 @@ Eigen::VectorXd Surfactant::transferred(const Field& field, const Net& x, const 
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(static_cast<int>(std::lround(std::sqrt(elements_[e].n))));
     for (Eigen::Index q = 0; q < rule.size(); ++q) {
       const spline::Basis here = spline::basis(element, rule.s[q], rule.t[q]);
-      Vec3 s = Vec3::Zero(), t = Vec3::Zero();
-      for (std::size_t a = 0; a < element.points.size(); ++a) {
-        s += here.s[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
-        t += here.t[static_cast<Eigen::Index>(a)] * x.row(element.points[a]).transpose();
-      }
+      const Net own = x(element.points, Eigen::all);
+      const Vec3 s = own.transpose() * here.s, t = own.transpose() * here.t;
       const double c = from.concentration_at(site({static_cast<int>(e), rule.s[q], rule.t[q]})), content = rule.weights[q] * s.cross(t).norm() * c;
       for (std::size_t a = 0; a < element.points.size(); ++a) contents[element.points[a]] += content * here.value[static_cast<Eigen::Index>(a)];
     }

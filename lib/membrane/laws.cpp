@@ -1,6 +1,5 @@
 #include "membrane/laws.hpp"
 
-
 namespace tanktread::membrane {
 namespace {
 

@@ -1,19 +1,13 @@
 #include "membrane/mass.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "membrane/points_kernel.hpp"
 #include "spline/sparse_systems.hpp"
 
 namespace tanktread::membrane {
 namespace {
-
-std::vector<int> everything(const spline::Space& space) {
-  std::vector<int> all(space.elements.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
@@ -73,7 +67,7 @@ std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& mat
 
 }  // namespace
 
-MassMatrix::MassMatrix(const spline::Space& space, int order) : space_(&space), groups_(pack(space, everything(space), order)) {
+MassMatrix::MassMatrix(const spline::Space& space, int order) : space_(&space), groups_(pack(space, indices(space.elements.size()), order)) {
   for (const Group& g : groups_) values_.push_back(values_at_gauss_points(g));
 }
 

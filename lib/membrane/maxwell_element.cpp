@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include "base/indices.hpp"
 
 namespace tanktread::membrane {
 
@@ -52,10 +53,8 @@ void MaxwellElement::each_point(const Net& x, const Use& use) const {
 
 MaxwellElement::MaxwellElement(const spline::Space& space, const Net& initial, int order, const SurfaceViscosity& viscosity, double time)
     : space_(space), spring_{viscosity.shear / time, viscosity.dilatational / time}, time_(time) {
-  std::vector<int> all(space.elements.size());
-  std::iota(all.begin(), all.end(), 0);
-  groups_ = pack(space, all, order);
-  first_.resize(all.size());
+  groups_ = pack(space, indices(space.elements.size()), order);
+  first_.resize(space.elements.size());
   Eigen::Index points = 0;
   for (const Group& group : groups_) {
     relaxed_.resize(relaxed_.size() + group.batches.size() * static_cast<std::size_t>(group.n_gauss()));

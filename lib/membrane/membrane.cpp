@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "base/indices.hpp"
 #include "membrane/packed.hpp"
 #include "membrane/points_kernel.hpp"
 
@@ -110,9 +111,8 @@ void Part::split_material(const spline::Space& space, const Materials& of_surfac
 }
 
 Membrane::Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order)
-    : space_(&space), unstressed_(unstressed), materials_(materials), order_(order), all_(space.elements.size()) {
+    : space_(&space), unstressed_(unstressed), materials_(materials), order_(order), all_(indices(space.elements.size())) {
   assert(unstressed.rows() == space.n_points && order >= 2 && order <= 10);
-  std::iota(all_.begin(), all_.end(), 0);
 }
 
 std::shared_ptr<const Part> Membrane::part(std::span<const int> elements) const {

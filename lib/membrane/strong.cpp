@@ -1,6 +1,5 @@
 // The strong form of the load, t = -div_s tau (P-3), by dual numbers.
 
-
 #include <Eigen/Geometry>
 
 #include "membrane/dual.hpp"

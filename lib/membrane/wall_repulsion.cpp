@@ -31,10 +31,7 @@ std::vector<WallRepulsion::Place> WallRepulsion::places(const Net& x, std::span<
   constexpr double far = 40, step = 1e-4;
   std::vector<Place> found;
   for (const int e : elements) {
-    const std::vector<int>& points = space_.elements[static_cast<std::size_t>(e)].points;
-    Net control(static_cast<Eigen::Index>(points.size()), 3);
-    for (std::size_t a = 0; a < points.size(); ++a) control.row(static_cast<Eigen::Index>(a)) = x.row(points[a]);
-    const Net at = value_[static_cast<std::size_t>(e)] * control;
+    const Net at = value_[static_cast<std::size_t>(e)] * Net(x(space_.elements[static_cast<std::size_t>(e)].points, Eigen::all));
     for (int q = 0; q < at.rows(); ++q) {
       const double radius = repulsion_.radius(at(q, 0)), from_axis = std::hypot(at(q, 1), at(q, 2)), gap = radius - from_axis;
       if (gap > far * repulsion_.range) continue;

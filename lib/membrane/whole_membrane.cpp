@@ -2,15 +2,15 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
+
+#include "base/indices.hpp"
 
 namespace tanktread::membrane {
 
 WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, double radius, const WholeStiffness& stiffness) {
   Measure area{2, {}}, difference{1, {}};
   area.parts.emplace_back(1.0, Membrane(space, unstressed, SurfaceTension{1}, 4, {}));
-  std::vector<int> all(space.elements.size());
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = indices(space.elements.size());
   // of_sphere: int 2 chi dGamma over a sphere of area area0 and radius R, which is 8 pi R (chi: mean curvature).
   const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);
   area.stiffness = stiffness.area / area0, area.relaxed = area0;

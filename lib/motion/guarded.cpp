@@ -1,6 +1,5 @@
 #include "motion/guarded.hpp"
 
-#include <limits>
 #include <new>
 
 #include "base/errors.hpp"
@@ -11,8 +10,6 @@ namespace tanktread::motion {
 namespace {
 
 enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of one rank; the largest of all ranks is the common outcome
-
-Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
 
 }  // namespace
 
@@ -34,16 +31,14 @@ bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
   return worst == fine;
 }
 
-Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate) {
+Net GuardedDynamics::tried(const Net& like, const std::function<Net()>& evaluate, bool told) {
   Net result;
-  const bool had = coupling::finite(like) && done(false, [&] { return (result = evaluate()).allFinite(); });
-  return had ? result : not_a_number(like);
+  const bool had = coupling::finite(like) && done(told, [&] { return (result = evaluate()).allFinite(); });
+  return had ? result : coupling::not_a_number(like);
 }
 
 Net GuardedDynamics::velocity(const Net& x) {
-  if (!coupling::finite(x)) return not_a_number(x);
-  Net v;
-  return done(told_(), [&] { return (v = motion_.velocity(x)).allFinite(); }) ? v : not_a_number(x);
+  return tried(x, [&] { return motion_.velocity(x); }, told_());
 }
 
 void GuardedDynamics::freeze(const Net& x) {
@@ -62,27 +57,21 @@ void GuardedDynamics::linearise(const Net& x) {
 }
 
 Net GuardedDynamics::solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) {
-  if (!linearised_) return not_a_number(r);
+  if (!linearised_) return coupling::not_a_number(r);
   return tried(r, [&] { return motion_.solve(shift, r, tolerance, secants); });
 }
 
-Net GuardedDynamics::missed(const Net& dv, const Net& delta) {
-  return tried(dv, [&] { return motion_.missed(dv, delta); });
-}
-
 Net GuardedDynamics::defect(const Net& x, const Net& u) {
-  if (!coupling::finite(x)) return not_a_number(x);
-  Net d;
-  return done(told_(), [&] { return (d = motion_.defect(x, u)).allFinite(); }) ? d : not_a_number(x);
+  return tried(x, [&] { return motion_.defect(x, u); }, told_());
 }
 
 Net GuardedDynamics::correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) {
-  if (!linearised_) return not_a_number(defect);
+  if (!linearised_) return coupling::not_a_number(defect);
   return tried(defect, [&] { return motion_.correction(shift, defect, tolerance, secants); });
 }
 
-Net GuardedDynamics::missed_of(const Net& change, const Net& delta, double shift) {
-  return tried(change, [&] { return motion_.missed_of(change, delta, shift); });
+Net GuardedDynamics::missed(const Net& change, const Net& delta, double shift) {
+  return tried(change, [&] { return motion_.missed(change, delta, shift); });
 }
 
 Net GuardedDynamics::derivative(const Net& x, const Net& v, const Net& delta) {

@@ -26,10 +26,9 @@ class GuardedDynamics : public coupling::Dynamics {
   double frozen_bytes() const override { return motion_.frozen_bytes(); }
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override;
-  Net missed(const Net& dv, const Net& delta) override;
   Net defect(const Net& x, const Net& u) override;
   Net correction(double shift, const Net& defect, double tolerance, const coupling::Secants& secants) override;
-  Net missed_of(const Net& change, const Net& delta, double shift) override;
+  Net missed(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   bool defect_spares_system() const override { return motion_.defect_spares_system(); }
   Net mesh_motion(const Net& delta) override { return motion_.mesh_motion(delta); }
@@ -47,7 +46,7 @@ class GuardedDynamics : public coupling::Dynamics {
 
  private:
   bool done(bool told, const std::function<bool()>& act);
-  Net tried(const Net& like, const std::function<Net()>& evaluate);
+  Net tried(const Net& like, const std::function<Net()>& evaluate, bool told = false);
 
   coupling::Dynamics& motion_;
   std::function<bool()> told_;

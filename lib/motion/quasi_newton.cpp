@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/errors.hpp"
 
@@ -21,7 +20,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
     if (!defect.allFinite()) return;
     if (k == 1 && options.secants > 0) {  // only the first correction gives a secant, because later corrections are so small that quadrature errors
                                           // dominate them
-      const Net missed = dynamics.missed_of(defect - before, delta, shift);
+      const Net missed = dynamics.missed(defect - before, delta, shift);
       if (!missed.allFinite()) return;
       secants.add(delta, missed, options.secants);
     }

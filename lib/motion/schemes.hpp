@@ -1,7 +1,6 @@
 #pragma once
 // The schemes of `Time/scheme`, and the step control that they share.
 
-#include <array>
 #include <cstring>
 #include <vector>
 

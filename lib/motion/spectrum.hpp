@@ -2,7 +2,6 @@
 // The linearised motion about a shape: growth rates and modes of small changes of shape.
 
 #include <complex>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>

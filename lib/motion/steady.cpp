@@ -1,7 +1,6 @@
 #include "motion/steady.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #pragma once
 // Steady shapes.
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

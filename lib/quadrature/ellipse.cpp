@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Geometry>
-
 namespace tanktread::quadrature {
 namespace {
 

@@ -34,6 +34,10 @@ const TensorRule& tensor_gauss(int n);
 struct Rule {
   std::vector<double> s, t, weights;
 
+  Rule() = default;
+  explicit Rule(const TensorRule& from)
+      : s(from.s.begin(), from.s.end()), t(from.t.begin(), from.t.end()), weights(from.weights.begin(), from.weights.end()) {}
+
   int size() const { return static_cast<int>(weights.size()); }
   void clear() { s.clear(), t.clear(), weights.clear(); }
   void add(double at_s, double at_t, double weight) { s.push_back(at_s), t.push_back(at_t), weights.push_back(weight); }

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "quadrature/gauss.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/geometry.hpp"

@@ -1,6 +1,5 @@
 #include "scene/plane_wall.hpp"
 
-
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "scene/series/diagnostics.hpp"

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "base/types.hpp"
 #include "stokes/medium/periodic_images.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 // Plates and posts of a scene: their surfaces, and their data in the results.
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>

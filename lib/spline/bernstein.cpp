@@ -44,6 +44,22 @@ void bernstein(int p, double x, double* value, double* first, double* second) {
   difference(p, lower_slope, second);
 }
 
+TensorBernstein tensor_bernstein(int p, const Eigen::VectorXd& s, const Eigen::VectorXd& t) {
+  const Eigen::Index n = p + 1;
+  TensorBernstein all;
+  for (Eigen::MatrixXd* const table : {&all.value, &all.s, &all.t}) table->resize(s.size(), n * n);
+  double bs[max_degree + 1], bt[max_degree + 1], ds[max_degree + 1], dt[max_degree + 1];
+  for (Eigen::Index q = 0; q < s.size(); ++q) {
+    bernstein(p, s[q], bs, ds, nullptr);
+    bernstein(p, t[q], bt, dt, nullptr);
+    for (Eigen::Index b = 0; b < n * n; ++b) {
+      const Eigen::Index i = b % n, j = b / n;
+      all.value(q, b) = bs[i] * bt[j], all.s(q, b) = ds[i] * bt[j], all.t(q, b) = bs[i] * dt[j];
+    }
+  }
+  return all;
+}
+
 Eigen::MatrixXd elevation(int p, int q) {
   Eigen::MatrixXd all = Eigen::MatrixXd::Identity(p + 1, p + 1);
   for (int r = p + 1; r <= q; ++r) {

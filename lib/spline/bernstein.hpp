@@ -15,6 +15,12 @@ void bernstein(int p, double x, double* value);
 /// Computes B_i(x) and the first and second derivatives. `second` may be null.
 void bernstein(int p, double x, double* value, double* first, double* second);
 
+/// Values and first derivatives of all products B_i(s) B_j(t) of degree p at points (s, t). Shape (points, (p + 1)^2), column (p + 1) j + i.
+struct TensorBernstein {
+  Eigen::MatrixXd value, s, t;
+};
+TensorBernstein tensor_bernstein(int p, const Eigen::VectorXd& s, const Eigen::VectorXd& t);
+
 /// Returns the matrix E of degree elevation from p to q >= p: (coefficients of degree q) = E (coefficients of degree p). Shape (q + 1, p + 1).
 Eigen::MatrixXd elevation(int p, int q);
 

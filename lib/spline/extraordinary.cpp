@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <Eigen/Dense>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "spline/bernstein.hpp"
 
@@ -87,16 +88,8 @@ int unknown(int kind, int j) { return kinds * ((j + N) % N) + kind; }
 
 /// Returns the Bezier points of the same surface after degree elevation from 3 to 4, row 5 v + u.
 Eigen::MatrixXd raised(const Eigen::MatrixXd& bicubic) {
-  Eigen::MatrixXd biquartic(25, Ring::size);
   const Eigen::MatrixXd up = elevation(3, 4);
-  for (int v = 0; v < 5; ++v)
-    for (int u = 0; u < 5; ++u) {
-      Row sum = Row::Zero();
-      for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 4; ++i) sum += up(v, j) * up(u, i) * bicubic.row(4 * j + i);
-      biquartic.row(5 * v + u) = sum;
-    }
-  return biquartic;
+  return Eigen::MatrixXd(Eigen::kroneckerProduct(up, up)) * bicubic;
 }
 
 /// Conditions G x = g for continuous tangent planes (G1) across the three mesh lines from the extraordinary point (spokes), with x the

@@ -106,14 +106,8 @@ struct Frame {
 Frame frame(const Space& space, const Net& net, const Site& site) {
   const Element& e = space.elements[site.element];
   const Basis b = basis(e, site.s, site.t, 1);
-  Frame f{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t i = 0; i < e.points.size(); ++i) {
-    const Vec3 p = net.row(e.points[i]);
-    f.x += b.value[Eigen::Index(i)] * p;
-    f.s += b.s[Eigen::Index(i)] * p;
-    f.t += b.t[Eigen::Index(i)] * p;
-  }
-  return f;
+  const Net own = net(e.points, Eigen::all);
+  return {own.transpose() * b.value, own.transpose() * b.s, own.transpose() * b.t};
 }
 
 /// Returns the point at the fraction x of edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the element on its left.

@@ -1,6 +1,5 @@
 #include "spline/refinement.hpp"
 
-
 #include "spline/locate.hpp"
 
 namespace tanktread::spline {

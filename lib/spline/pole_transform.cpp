@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "spline/bernstein.hpp"
 
@@ -53,19 +53,17 @@ Eigen::MatrixXd triangle_of_degenerate() {
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
   // Evaluates the cubic Bernstein polynomials of the triangle at 4 x 4 points and interpolates the values by bicubic Bernstein polynomials.
   constexpr double factorial[4] = {1, 1, 2, 6};
-  Eigen::MatrixXd values(16, 10), bernstein_values(16, 16);
-  double U[4], V[4];
+  Eigen::MatrixXd values(16, 10);
+  Eigen::VectorXd U(16), V(16);
   for (int q = 0; q < 16; ++q) {
-    bernstein(3, (q % 4) / 3.0, U);
-    bernstein(3, (q / 4) / 3.0, V);
-    for (int b = 0; b < 16; ++b) bernstein_values(q, b) = U[b % 4] * V[b / 4];
-    const Eigen::Vector3d r = place(corners, (q % 4) / 3.0, (q / 4) / 3.0);
+    U[q] = (q % 4) / 3.0, V[q] = (q / 4) / 3.0;
+    const Eigen::Vector3d r = place(corners, U[q], V[q]);
     for (int b = 0; b < 10; ++b) {
       const auto [i, j, k] = triangle_points[b];
       values(q, b) = 6 / (factorial[i] * factorial[j] * factorial[k]) * power(r[0], i) * power(r[1], j) * power(r[2], k);
     }
   }
-  Eigen::MatrixXd result = bernstein_values.fullPivLu().solve(values);
+  Eigen::MatrixXd result = tensor_bernstein(3, U, V).value.fullPivLu().solve(values);
   return result.unaryExpr([](double x) { return std::abs(x) < 1e-14 ? 0.0 : x; });
 }
 
@@ -107,10 +105,7 @@ std::vector<PolePiece> pole_pieces(int subdivisions) {
   for (int k = 0; k < cuts; ++k) {
     const double from = double(k) / cuts, to = double(k + 1) / cuts;
     const Eigen::MatrixXd in_v = restriction(3, from, to);
-    Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(16, 16);
-    for (int j = 0; j < 4; ++j)
-      for (int l = 0; l < 4; ++l)
-        for (int i = 0; i < 4; ++i) cut(4 * j + i, 4 * l + i) = in_v(j, l);
+    const Eigen::MatrixXd cut = Eigen::kroneckerProduct(in_v, Eigen::Matrix4d::Identity());
     for (const Corners& corners : thirds_of_triangle())
       pieces.push_back({from, to, corners, quadrilateral_of_triangle(corners) * triangle * cut});
   }

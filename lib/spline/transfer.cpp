@@ -4,11 +4,11 @@
 #include <deque>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 
 #include <Eigen/SparseCholesky>
 
+#include "base/indices.hpp"
 #include "spline/basis.hpp"
 #include "spline/locate.hpp"
 #include "spline/sparse_systems.hpp"
@@ -20,12 +20,6 @@ namespace {
 /// Largest residual of the least-squares fit for which spaces count as nested, for a field of order 1. It is far above round-off and far below the
 /// residual of spaces that are not nested.
 constexpr double nested = 1e-10;
-
-std::vector<int> first_integers(std::size_t n) {
-  std::vector<int> out(n);
-  std::iota(out.begin(), out.end(), 0);
-  return out;
-}
 
 /// Values of the functions of both spaces at one point.
 struct Sample {
@@ -127,7 +121,6 @@ struct Transfer::State {
   const Space& from;
   const Space& to;
   Sampling sampling;
-  int straddling = 0;
   std::vector<int> copied;         // for each new control point, the old control point from which it is copied, or -1
   std::optional<Fit> rest;         // least-squares fit of the control points that are not copied
   mutable std::optional<Fit> all;  // least-squares fit of all control points, created if it is needed
@@ -142,12 +135,6 @@ Transfer::State::State(const Space& old_space, const Space& new_space)
   for (const Element& e : to.elements) {
     const Element& c = from.elements[sampling.in_from_({e.face, e.origin[0] + e.size[0] / 2, e.origin[1] + e.size[1] / 2}).element];
     around.push_back(&c);
-    bool inside = true;
-    for (int d = 0; d < 2; ++d) {
-      const double low = (e.origin[d] - c.origin[d]) / c.size[d], margin = 1e-9;
-      inside = inside && low >= -margin && low + e.size[d] / c.size[d] <= 1 + margin;
-    }
-    straddling += !inside;
     alike.push_back(e.degree == c.degree && e.origin == c.origin && e.size == c.size && e.extraction->rows() == c.extraction->rows() &&
                     *e.extraction == *c.extraction);
     if (alike.back())
@@ -169,8 +156,6 @@ Transfer::Transfer(const Space& from, const Space& to) : state_(new State(from, 
 Transfer::~Transfer() = default;
 Transfer::Transfer(Transfer&&) noexcept = default;
 
-int Transfer::straddling() const { return state_->straddling; }
-
 Transfer::Result Transfer::operator()(const Net& field) const {
   const State& s = *state_;
   Result out{Net::Zero(s.to.n_points, 3), 0};
@@ -179,7 +164,7 @@ Transfer::Result Transfer::operator()(const Net& field) const {
   if (s.rest) out.residual = largest(s.rest->solve(field, out.net));
   if (out.residual <= nested * field.cwiseAbs().maxCoeff()) return out;
   if (!s.all)
-    s.all.emplace(s.from, s.to, s.sampling.at(first_integers(s.to.elements.size()), false, false), first_integers(s.to.n_points));
+    s.all.emplace(s.from, s.to, s.sampling.at(indices(s.to.elements.size()), false, false), indices(s.to.n_points));
   out.residual = largest(s.all->solve(field, out.net));
   return out;
 }
@@ -192,9 +177,9 @@ struct Projection::State {
 
 Projection::Projection(const Space& from, const Space& to) : state_(new State{from, to, {}}) {
   const Sampling sampling(from, to);
-  std::vector<Sample> samples = sampling.at(first_integers(from.elements.size()), true, true);
-  std::ranges::move(sampling.at(first_integers(to.elements.size()), false, true), std::back_inserter(samples));
-  state_->fit.emplace(from, to, std::move(samples), first_integers(to.n_points));
+  std::vector<Sample> samples = sampling.at(indices(from.elements.size()), true, true);
+  std::ranges::move(sampling.at(indices(to.elements.size()), false, true), std::back_inserter(samples));
+  state_->fit.emplace(from, to, std::move(samples), indices(to.n_points));
 }
 
 Projection::~Projection() = default;

@@ -9,8 +9,7 @@
 
 namespace tanktread::spline {
 
-/// Represents a field in a space that contains the old space. Every element of `to` must be inside one element of `from`, as after refinement;
-/// `straddling` counts the elements that are not.
+/// Represents a field in a space that contains the old space. Every element of `to` must be inside one element of `from`, as after refinement.
 ///
 /// On elements that both spaces have in common, with the same functions, control values are copied bitwise. The other values are computed by least
 /// squares at the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. Otherwise all values are
@@ -27,8 +26,6 @@ class Transfer {
     double residual;
   };
   Result operator()(const Net& field) const;
-
-  int straddling() const;
 
  private:
   struct State;

@@ -6,8 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Geometry>
-
+#include "base/indices.hpp"
 #include "stokes/kernels/pair_kernel.hpp"
 
 namespace tanktread::stokes {
@@ -27,8 +26,7 @@ Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, cons
   // The tolerance of the clusters is halved for the double layer. The measured error of the double layer is then half of the halved tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
-  fundamental_sites_.resize(sites.size());
-  std::iota(fundamental_sites_.begin(), fundamental_sites_.end(), 0);
+  fundamental_sites_ = indices(sites.size());
 }
 
 void Layer::set_symmetry(const surface::Symmetry& symmetry) {
@@ -88,17 +86,6 @@ void Layer::set_density(const Net& f) {
     for (int k = 0; k < n_nodes(); ++k) component[k] *= weight_[k];
 }
 
-PointForces Layer::forces(const std::vector<double> (&x)[3]) const {
-  const auto& f = density_;
-  return {n_nodes(), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
-}
-
-Stresslets Layer::stresslets(const std::vector<double> (&x)[3]) const {
-  const auto &f = density_, &n = normal_;
-  return {n_nodes(),   x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(),
-          f[2].data(), n[0].data(), n[1].data(), n[2].data()};
-}
-
 void Layer::apply(const Net& f, std::span<const int> sites, Net& u) {
   assert(surface_.n_sites > 0 && "a layer is for sites or for points off its surfaces");
   set_density(f);
@@ -118,8 +105,7 @@ void Layer::apply(const Net& f, const Net& f0, const Net& at, std::span<const in
   assert(surface_.n_sites == 0 && !shared() && "a layer is for sites or for points off its surfaces");
   assert(!kept || kept->first.size() == targets.size() + 1);
   set_density(f);
-  std::vector<int> all(static_cast<std::size_t>(at.rows()));
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = indices(at.rows());
   integrate({targets, targets, at, f0, all, false, kept}, u);
 }
 
@@ -164,10 +150,10 @@ Vec3 Layer::beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const
   Vec3 better, far;
   if (single()) {
     single_sum(table, x, f, area_weights_of(e, table, pair), at.data(), better.data());
-    node_sum(forces(surface_.node).part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
+    node_sum(charges(surface_.node, density_).part(panel.first_node, panel.table->n_nodes), at.data(), far.data());
   } else {
     double_sum(table, x, f, at.data(), f0.data(), better.data());
-    node_sum(stresslets(surface_.node).part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
+    node_sum(stresslets(surface_.node, density_, normal_).part(panel.first_node, panel.table->n_nodes), at.data(), f0.data(), far.data());
   }
   count += table.points + panel.table->n_nodes;
   return factor(e) * better - far;
@@ -182,7 +168,8 @@ void Layer::add_far(const Targets& targets, Net& u) {
   for (const Vec3& image : images) {
     std::vector<Vec3> at = places;
     for (Vec3& x : at) x -= image;
-    single() ? far_sums(forces(far_places()), at, sums.data(), precision()) : far_sums(stresslets(far_places()), at, f0, sums.data(), precision());
+    single() ? far_sums(charges(far_places(), density_), at, sums.data(), precision())
+             : far_sums(stresslets(far_places(), density_, normal_), at, f0, sums.data(), precision());
     all += sums;
   }
   for (std::size_t k = 0; k < places.size(); ++k) u.row(targets.far_rows[k]) = all.row(static_cast<Eigen::Index>(k));
@@ -197,13 +184,7 @@ void Layer::place_tree(const Targets& targets) {
   if (std::ranges::equal(targets.far_rows, tree_rows_) && at == tree_at_) return;
   tree_at_ = std::move(at);
   tree_rows_.assign(targets.far_rows.begin(), targets.far_rows.end());
-  if (lattice_.cell) {
-    std::vector<int> singles(static_cast<std::size_t>(n_nodes()) + 1);
-    std::iota(singles.begin(), singles.end(), 0);
-    tree_->place(lattice_.node[0].data(), lattice_.node[1].data(), lattice_.node[2].data(), singles, tree_at_);
-  } else {
-    surface_.place(*tree_, tree_at_);
-  }
+  lattice_.cell ? tree_->place(lattice_.node, indices(n_nodes() + 1), tree_at_) : surface_.place(*tree_, tree_at_);
   std::vector<int> wanted;
   const std::size_t reflections = lattice_.cell ? 0 : surface_.reflections().size();
   for (std::size_t g = 0; g <= reflections; ++g)

@@ -211,8 +211,6 @@ class Layer {
   }
   Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
-  PointForces forces(const std::vector<double> (&x)[3]) const;
-  Stresslets stresslets(const std::vector<double> (&x)[3]) const;
   void set_density(const Net& f);
   void scale(std::span<std::vector<double>> at_nodes) const;
   void integrate(const Targets& targets, Net& u);
@@ -221,7 +219,6 @@ class Layer {
   std::vector<Vec3> far_targets(const Targets& targets, std::span<const int> rows) const;
   const std::vector<double> (&far_places() const)[3] { return lattice_.cell ? lattice_.node : surface_.node; }
   void add_rest(const Targets& targets, Net& u);
-  void add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums);
   void place_rest(const std::vector<Vec3>& at);
   Vec3 pressure_along() const;
   Vec3 mean_density() const;

@@ -65,7 +65,8 @@ void Layer::subtract_itself(const Targets& targets, Net& u) {
   if (rows.empty()) return;
   const std::vector<Vec3> at = rows_of(targets.at, rows), f0 = rows_of(targets.f0, rows);
   Net sums(rows.size(), 3);
-  single() ? far_sums(forces(surface_.node), at, sums.data(), precision()) : far_sums(stresslets(surface_.node), at, f0, sums.data(), precision());
+  single() ? far_sums(charges(surface_.node, density_), at, sums.data(), precision())
+           : far_sums(stresslets(surface_.node, density_, normal_), at, f0, sums.data(), precision());
   for (std::size_t k = 0; k < at.size(); ++k) u.row(rows[k]) -= sums.row(static_cast<Eigen::Index>(k));
   evaluations_.far += static_cast<long long>(at.size()) * n_nodes();
 }
@@ -76,12 +77,12 @@ void Layer::add_rest(const Targets& targets, Net& u) {
   const std::vector<Vec3> at = far_targets(targets, targets.rows);
   Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
   if (single()) {
-    add_rest(density_, 3, at, sums);
+    lattice_.sum->add_rest(charges(lattice_.node, density_), at, sums.data());
   } else {
     const Vec3 mean = mean_density();
     if (at != lattice_.rest_at) place_rest(at);
     take_moments(mean);
-    add_rest(moment_, 6, at, sums);
+    lattice_.sum->add_rest(charges(lattice_.node, moment_), at, sums.data());
     if (lattice_.cell->n() == 3) sums.rowwise() += pressure_along().transpose();
     for (std::size_t k = 0; k < at.size(); ++k) {
       const Vec3 value = targets.f0.row(targets.rows[k]).transpose();
@@ -89,12 +90,6 @@ void Layer::add_rest(const Targets& targets, Net& u) {
     }
   }
   for (std::size_t k = 0; k < at.size(); ++k) u.row(targets.rows[k]) += sums.row(static_cast<Eigen::Index>(k));
-}
-
-void Layer::add_rest(std::span<const std::vector<double>> carried, std::size_t n, const std::vector<Vec3>& at, Net& sums) {
-  Charges charges{n_nodes(), lattice_.node[0].data(), lattice_.node[1].data(), lattice_.node[2].data(), {}};
-  for (std::size_t c = 0; c < n; ++c) charges.q[c] = carried[c].data();
-  lattice_.sum->add_rest(charges, at, sums.data());
 }
 
 /// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
@@ -105,7 +100,7 @@ void Layer::place_rest(const std::vector<Vec3>& at) {
   for (int c = 0; c < 3; ++c) {
     take_constant_moments(c);
     Net sums = Net::Zero(static_cast<Eigen::Index>(at.size()), 3);
-    add_rest(moment_, 6, at, sums);
+    lattice_.sum->add_rest(charges(lattice_.node, moment_), at, sums.data());
     if (lattice_.cell->n() == 3) sums.rowwise() += pressure_along().transpose();
     for (std::size_t k = 0; k < at.size(); ++k) lattice_.rest_stress[k].col(c) = sums.row(static_cast<Eigen::Index>(k)).transpose();
   }

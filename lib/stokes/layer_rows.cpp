@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/assembly_kernel.hpp"
 #include "stokes/layer.hpp"
 
@@ -109,8 +109,9 @@ class Layer::RowSums {
     sums.assign(static_cast<std::size_t>(6) * assembly_block * (rows + 1), Real(0));
     skip_.assign(basis.panels.size(), 0u);
     const bool repeats = layer_.lattice_.how.assembled;
-    for (int l = 0; l < static_cast<int>(targets.size()); ++l) repeats ? add_close_images(targets[l], l) : add_close_panels(targets[l], l);
-    for (const Vec3& image : repeats ? layer_.lattice_.sum->images() : std::vector<Vec3>{Vec3::Zero()}) {
+    const std::vector<Vec3> itself{Vec3::Zero()}, &close = repeats ? layer_.lattice_.near : itself;
+    for (int l = 0; l < static_cast<int>(targets.size()); ++l) add_close_panels(targets[l], close, l);
+    for (const Vec3& image : repeats ? layer_.lattice_.sum->images() : itself) {
       double place[3 * assembly_block];
       for (int l = 0; l < assembly_block; ++l) {
         const Vec3 x0 = place_of(targets[std::min<std::size_t>(l, targets.size() - 1)]);
@@ -124,22 +125,11 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Adds the corrections by near-singular or singular quadrature for one target. l: index of the target in its block of sixteen.
-  void add_close_panels(int target, int l) {
+  /// Adds the corrections by near-singular and singular quadrature for one target, on the given images of the panels that are close to it. On a
+  /// lattice they correct the far sum, which includes the nodes of these images. l: index of the target in its block of sixteen.
+  void add_close_panels(int target, const std::vector<Vec3>& images, int l) {
     LayerSurface& surface = layer_.surface_;
-    const Vec3 x0 = place_of(target);
-    const std::span<SelfPair> own = at_ ? std::span<SelfPair>() : surface.own(target);
-    for (const int e : surface.near(x0, own))
-      if (basis.index[e] >= 0) add_panel(e, surface.near_field.rule(e, x0, own), nullptr, x0, l);
-    for (SelfPair& pair : own)
-      if (basis.index[pair.panel] >= 0) add_panel(pair.panel, surface.self_field.rule(pair, surface.panels, surface.bezier), &pair, x0, l);
-  }
-
-  /// On a lattice, adds the corrections by near-singular and singular quadrature on the images of panels close to the target. They correct the far
-  /// sum, which includes the nodes of these images.
-  void add_close_images(int target, int l) {
-    LayerSurface& surface = layer_.surface_;
-    for (const Vec3& image : layer_.lattice_.near) {
+    for (const Vec3& image : images) {
       const Vec3 x0 = place_of(target) - image;
       const std::span<SelfPair> own = !at_ && image.isZero(0) ? surface.own(target) : std::span<SelfPair>();
       for (const int e : surface.near(x0, own))
@@ -171,7 +161,7 @@ class Layer::RowSums {
     else
       for (int c = 0; c < 3; ++c) nodes.normal[c] = &layer_.normal_[c][first];
     kernel_.resize(static_cast<std::size_t>(6) * assembly_block * nodes.n_nodes);
-    add_far_moments<Real>(nodes, place, skip_[k], kernel_.data(), sums.data());
+    far_moments(nodes, place, skip_[k], kernel_.data(), sums.data());
     layer_.evaluations_.far += static_cast<long long>(n_targets) * nodes.n_nodes;
   }
 
@@ -201,8 +191,7 @@ void Layer::assemble_rows(std::span<const int> targets, const Net* at, Rows<Real
   constexpr std::size_t block = assembly_block;
   const Panels& panels = surface_.panels;
   RowSums<Real> rows(*this, at);
-  std::vector<int> row_of_point(static_cast<std::size_t>(surface_.n_points));
-  std::iota(row_of_point.begin(), row_of_point.end(), 0);
+  const std::vector<int> row_of_point = indices(surface_.n_points);
   rows.basis.clear(panels);
   for (int e = 0; e < panels.size(); ++e) rows.basis.add(panels, e, row_of_point, surface_.n_points);
   a.resize(3 * static_cast<Eigen::Index>(targets.size()), 3 * surface_.n_points);

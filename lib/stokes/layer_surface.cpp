@@ -139,7 +139,7 @@ void LayerSurface::place(TreeSum& tree, std::span<const Vec3> targets) const {
     for (int c = 0; c < 3; ++c) place[c].insert(place[c].end(), node[c].begin() + first, node[c].begin() + last);
     starts.push_back(starts.back() + last - first);
   }
-  tree.place(place[0].data(), place[1].data(), place[2].data(), starts, targets, images_.reflections);
+  tree.place(place, starts, targets, images_.reflections);
 }
 
 }  // namespace tanktread::stokes

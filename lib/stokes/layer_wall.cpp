@@ -3,8 +3,6 @@
 
 #include <cassert>
 
-#include <Eigen/Geometry>
-
 #include "quadrature/gauss.hpp"
 #include "stokes/kernels/image_kernel.hpp"
 #include "stokes/layer.hpp"

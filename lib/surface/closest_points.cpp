@@ -6,12 +6,13 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <queue>
 #include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+
+#include "base/indices.hpp"
 
 namespace tanktread::surface {
 
@@ -177,8 +178,7 @@ class PairSearch {
 
 }  // namespace
 
-ElementBoxes::ElementBoxes(const Patches& surface) : surface_(surface), order_(static_cast<std::size_t>(surface.size())) {
-  std::iota(order_.begin(), order_.end(), 0);
+ElementBoxes::ElementBoxes(const Patches& surface) : surface_(surface), order_(indices(surface.size())) {
   for (int e = 0; e < surface.size(); ++e) {
     const Points points = bezier_points(surface[e]);
     own_.push_back({points.rowwise().minCoeff(), points.rowwise().maxCoeff(), 0, 0});

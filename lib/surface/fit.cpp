@@ -7,27 +7,11 @@
 #include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
-namespace {
-
-/// Returns the Bernstein values at the nodes of a tensor rule, shape (n_q, (p+1)^2).
-Eigen::MatrixXd bernstein_values(int p, const quadrature::TensorRule& rule) {
-  Eigen::MatrixXd result(rule.size(), (p + 1) * (p + 1));
-  double in_s[spline::max_degree + 1], in_t[spline::max_degree + 1];
-  for (int q = 0; q < rule.size(); ++q) {
-    spline::bernstein(p, rule.s[q], in_s);
-    spline::bernstein(p, rule.t[q], in_t);
-    for (int j = 0, b = 0; j <= p; ++j)
-      for (int i = 0; i <= p; ++i, ++b) result(q, b) = in_s[i] * in_t[j];
-  }
-  return result;
-}
-
-}  // namespace
 
 LeastSquaresFit::LeastSquaresFit(const spline::Space& space) : map_(space) {
   for (const Block& block : map_.blocks()) {
     const quadrature::TensorRule& rule = quadrature::tensor_gauss(block.degree + 2);
-    const Eigen::MatrixXd value = bernstein_values(block.degree, rule);
+    const Eigen::MatrixXd value = spline::tensor_bernstein(block.degree, rule.s, rule.t).value;
     tables_[block.degree] = {value, value.transpose() * rule.weights.asDiagonal()};
   }
   std::deque<Eigen::MatrixXd> values;  // neighbouring elements share one matrix

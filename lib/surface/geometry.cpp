@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "surface/element_groups.hpp"
 
 namespace tanktread::surface {
@@ -51,25 +51,12 @@ double mean_curvature(const spline::Space& space, const Net& net, const spline::
   return mean_curvature(jet(ElementPoints(space, net, site.element).patch(), site.s, site.t));
 }
 
-Geometry::Geometry(const spline::Space& space) : map_(space), all_(space.elements.size()), all_blocks_(n_blocks()) {
-  std::iota(all_.begin(), all_.end(), 0);
-  std::iota(all_blocks_.begin(), all_blocks_.end(), 0);
-}
+Geometry::Geometry(const spline::Space& space) : map_(space), all_(indices(space.elements.size())), all_blocks_(indices(n_blocks())) {}
 
 double Geometry::volume(const Net& net) const {
   Vec3 mean;
   const Net here = about_mean(net, mean);
-  double sum = 0;
-  for (const int b : all_blocks_) {
-    double of_block = 0;
-    each_group(map_, elements_of({&b, 1}, map_.n_elements()), [&](int degree, std::span<const int> group) {
-      double part[most_lanes];
-      kernel::volume(degree, points_of(map_, here, group), part);
-      for (std::size_t l = 0; l < group.size(); ++l) of_block += part[l];
-    });
-    sum += of_block;
-  }
-  return sum;
+  return here.cwiseProduct(volume_gradient(here)).sum() / 3;
 }
 
 void Geometry::volume_gradient(const Net& net, std::span<const int> elements, Net& b) const {
@@ -130,9 +117,8 @@ Measures Geometry::measures(const Net& net, std::span<const double> of_blocks) {
   return result;
 }
 
-Deformation Geometry::deformation(const Net& net) const { return deformation(net, measures(net)); }
-
-Deformation Geometry::deformation(const Net& net, const Measures& measures) const {
+Deformation Geometry::deformation(const Net& net) const {
+  const Measures measures = this->measures(net);
   return deformation(measures, extremes(net, measures.centroid, all_));
 }
 

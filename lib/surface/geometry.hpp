@@ -93,7 +93,7 @@ class Geometry {
 
   const BezierMap& bezier() const { return map_; }
 
-  /// Returns V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements.
+  /// Returns V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements, as x.(dV/dx)/3, because V is a cubic form in x.
   double volume(const Net& net) const;
 
   /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, summed over the given elements in ascending order. The row of a control
@@ -118,7 +118,6 @@ class Geometry {
   /// (inertia) uses the second moments M_11, M_13, M_33. The second definition (surface) uses the longest and shortest distance of the centroid to
   /// the curve in which the plane x2 = centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
-  Deformation deformation(const Net& net, const Measures& measures) const;
 
   /// Number of ranges that extremes() returns for deformation(): distances of section points from the centroid (0), coordinates x1, x2, x3 (1, 2, 3).
   /// The ranges of a whole surface are the unions of the ranges of its parts. deformation() throws RunFailure if the plane misses the surface.

@@ -96,17 +96,6 @@ struct Of {
   static constexpr int n_transport = quadrature::gauss_points_for_degree(4 * p - 1);
   static constexpr int n_shape = 3;
 
-  static void volume(const Lanes& points, double (&result)[most_lanes]) {
-    static const Table<p, n> table;
-    Register sum{};
-    each_node<p, n, true>(table, points, [&](int qs, int qt, const Register(&x)[3], const Register(&a1)[3], const Register(&a2)[3]) {
-      Register normal[3];
-      cross(a1, a2, normal);
-      sum += (table.weight[qs] * table.weight[qt] / 3) * (x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2]);
-    });
-    store(sum, result);
-  }
-
   static void volume_gradient(const Lanes& points, Lanes& gradient) { normal_integrals<n, false>(points, nullptr, gradient); }
   static void moment_gradient(const Lanes& points, const double* g, Lanes& gradient) { normal_integrals<n_transport, true>(points, g, gradient); }
 
@@ -241,10 +230,6 @@ void with_degree(int degree, Use use) {
 
 }  // namespace
 
-void volume(int degree, const Lanes& x, double (&volume)[most_lanes]) {
-  with_degree(degree, [&](auto p) { Of<p>::volume(x, volume); });
-}
-
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient) {
   with_degree(degree, [&](auto p) { Of<p>::volume_gradient(x, gradient); });
 }
@@ -267,7 +252,6 @@ void shape_motion(int degree, const Lanes& x, const Lanes& v, ShapeMotion& resul
 
 }  // namespace INSTRUCTIONS
 
-KERNEL(void, volume, (int degree, const Lanes& x, double (&volume)[most_lanes]), (degree, x, volume))
 KERNEL(void, volume_gradient, (int degree, const Lanes& x, Lanes& gradient), (degree, x, gradient))
 KERNEL(void, moment_gradient, (int degree, const Lanes& x, const double* g, Lanes& gradient), (degree, x, g, gradient))
 KERNEL(void, moments, (int degree, const Lanes& x, Moments& result), (degree, x, result))

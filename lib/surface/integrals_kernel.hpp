@@ -14,10 +14,7 @@ struct alignas(sizeof(double) * most_lanes) Lanes {
   double value[3 * most_bezier * most_lanes];
 };
 
-/// Computes 1/3 int x.n dG of each element; the sum over a closed surface is its volume. Exact, with (3p - 1)/2 + 1 Gauss points per direction.
-void volume(int degree, const Lanes& x, double (&volume)[most_lanes]);
-
-/// Computes int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, with the same Gauss points as volume().
+/// Computes int B_b n dG, the derivative of the volume with respect to the Bezier points. Exact, with (3p - 1)/2 + 1 Gauss points per direction.
 void volume_gradient(int degree, const Lanes& x, Lanes& gradient);
 
 /// Computes int B_b (g.x) n dG, the derivative of the integral of g.x over the interior with respect to the Bezier points. Exact, with (4p - 1)/2 +

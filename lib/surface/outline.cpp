@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 
 namespace tanktread::surface {
@@ -99,8 +100,7 @@ void Outline::measure() {
 std::optional<Vec2> Outline::first_crossing() const {
   const auto low = [](const Chord& c) { return std::min(c.a[0], c.b[0]); };
   const int n = static_cast<int>(chords_.size());
-  std::vector<int> order(chords_.size());
-  std::iota(order.begin(), order.end(), 0);
+  std::vector<int> order = indices(chords_.size());
   std::sort(order.begin(), order.end(), [&](int i, int j) { return low(chord(i)) < low(chord(j)); });
   for (int i = 0; i < n; ++i) {
     const int one = order[static_cast<std::size_t>(i)];

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -107,9 +107,7 @@ Partition shared(const spline::Space& space, int parts, std::span<const double> 
 }  // namespace
 
 Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
-  std::vector<int> all(space.n_points);
-  std::iota(all.begin(), all.end(), 0);
-  return shared(space, parts, cost, all);
+  return shared(space, parts, cost, indices(space.n_points));
 }
 
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {

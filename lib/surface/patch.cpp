@@ -1,9 +1,8 @@
 #include "surface/patch.hpp"
 
-#include <numeric>
-
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "spline/bernstein.hpp"
 
 namespace tanktread::surface {
@@ -80,11 +79,7 @@ Grid sample(const Patch& patch) {
   return x;
 }
 
-Patches::Patches(const BezierMap& map, const Net& net) {
-  std::vector<int> all(map.n_elements());
-  std::iota(all.begin(), all.end(), 0);
-  *this = Patches(map, net, all);
-}
+Patches::Patches(const BezierMap& map, const Net& net) : Patches(map, net, indices(map.n_elements())) {}
 
 Patches::Patches(const BezierMap& map, const Net& net, std::span<const int> elements) {
   std::size_t size = 0;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "quadrature/gauss.hpp"

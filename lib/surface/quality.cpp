@@ -1,11 +1,10 @@
 #include "surface/quality.hpp"
 
 #include <algorithm>
-#include <numeric>
-#include <vector>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/patch.hpp"
@@ -16,29 +15,6 @@ namespace {
 
 constexpr int points = 16;  ///< 4 x 4
 constexpr int most = (spline::max_degree + 1) * (spline::max_degree + 1);
-
-/// Derivatives in s and t of the Bernstein polynomials at the Gauss points, one column per polynomial.
-struct Table {
-  Eigen::Matrix<double, points, Eigen::Dynamic> in_s, in_t;
-};
-
-Table table(int p) {
-  const quadrature::TensorRule& rule = quadrature::tensor_gauss(4);
-  Table result;
-  result.in_s.resize(points, (p + 1) * (p + 1));
-  result.in_t.resize(points, (p + 1) * (p + 1));
-  double b[spline::max_degree + 1], b1[spline::max_degree + 1], c[spline::max_degree + 1], c1[spline::max_degree + 1];
-  for (int q = 0; q < points; ++q) {
-    spline::bernstein(p, rule.s[q], b, b1, nullptr);
-    spline::bernstein(p, rule.t[q], c, c1, nullptr);
-    for (int j = 0, k = 0; j <= p; ++j)
-      for (int i = 0; i <= p; ++i, ++k) {
-        result.in_s(q, k) = b1[i] * c[j];
-        result.in_t(q, k) = b[i] * c1[j];
-      }
-  }
-  return result;
-}
 
 using Tangents = Eigen::Array<double, points, 3>;
 
@@ -63,9 +39,7 @@ Worst worst(const Tangents& a1, const Tangents& a2) {
 }  // namespace
 
 Quality quality(const BezierMap& map, const Net& net) {
-  std::vector<int> all(map.n_elements());
-  std::iota(all.begin(), all.end(), 0);
-  return quality(map, net, all);
+  return quality(map, net, indices(map.n_elements()));
 }
 
 Quality worse(const Quality& a, const Quality& b) {
@@ -81,20 +55,17 @@ Quality quality(const BezierMap& map, const Net& net, std::span<const int> eleme
   Quality result;
   double bezier[3 * most];
   Tangents a1, a2;
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(4);
   for (const Block& block : map.blocks()) {
     const int n_b = (block.degree + 1) * (block.degree + 1);
-    const Table derivatives = table(block.degree);
-    const auto at_points = [&](const auto& rows, Tangents& out) {
-      three_sums(points, n_b, rows.data(), bezier, out.data());
-    };
+    const spline::TensorBernstein polynomials = spline::tensor_bernstein(block.degree, rule.s, rule.t);
     for (const int e : elements) {
       if (map.degree(e) != block.degree) continue;
       map.points(e, net, bezier);
-      at_points(derivatives.in_s, a1);
-      at_points(derivatives.in_t, a2);
+      three_sums(points, n_b, polynomials.s.data(), bezier, a1.data());
+      three_sums(points, n_b, polynomials.t.data(), bezier, a2.data());
       const Worst here = worst(a1, a2);
       if (here.jacobian_ratio < result.jacobian_ratio) {
-        const quadrature::TensorRule& rule = quadrature::tensor_gauss(4);
         result.jacobian_ratio = here.jacobian_ratio;
         result.folded_element = e;
         result.folded_place = place({block.degree, bezier}, rule.s[here.point], rule.t[here.point]);

@@ -1,7 +1,6 @@
 #include "surface/solid_surface.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <Eigen/Geometry>
 
@@ -30,25 +29,12 @@ Unit unit_period(int elements) {
   return unit;
 }
 
-/// Returns the Kronecker product a x b as a sparse matrix.
-Eigen::SparseMatrix<double> product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index i = 0; i < a.rows(); ++i)
-    for (Eigen::Index j = 0; j < a.cols(); ++j)
-      for (Eigen::Index k = 0; k < b.rows() && std::abs(a(i, j)) > 1e-15; ++k)
-        for (Eigen::Index l = 0; l < b.cols(); ++l)
-          if (std::abs(b(k, l)) > 1e-15) entries.emplace_back(i * b.rows() + k, j * b.cols() + l, a(i, j) * b(k, l));
-  Eigen::SparseMatrix<double> all(a.rows() * b.rows(), a.cols() * b.cols());
-  all.setFromTriplets(entries.begin(), entries.end());
-  return all;
-}
-
 }  // namespace
 
 SolidSurface plate(const Vec3& middle, const Vec3& first, const Vec3& second, const std::array<int, 2>& elements) {
   const Unit s = unit_period(elements[0]), t = unit_period(elements[1]);
   SolidSurface plate{product(s.line.open, t.line.open), {}, sites_of(s.line.open, t.line.open),
-                     product(s.line.open_from_periodic, t.line.open_from_periodic), elements};
+                     kronecker(s.line.open_from_periodic, t.line.open_from_periodic), elements};
   plate.space.description = formatted("plate of %d x %d cubic elements", elements[0], elements[1]);
   plate.net.resize(plate.space.n_points, 3);
   Eigen::Index row = 0;
@@ -66,7 +52,7 @@ SolidSurface cylinder(const Vec3& middle, const Vec3& period, double radius, int
   add(ring, curve.breaks, true, false);
   const Unit t = unit_period(along);
   SolidSurface cylinder{product(ring, t.line.open), {}, sites_of(ring, t.line.open),
-                        product(Eigen::MatrixXd::Identity(ring.n, ring.n), t.line.open_from_periodic), {0, 0}};
+                        kronecker(Eigen::MatrixXd::Identity(ring.n, ring.n), t.line.open_from_periodic), {0, 0}};
   cylinder.space.description = formatted("cylinder of %d x %d cubic elements", around, along);
   cylinder.net.resize(cylinder.space.n_points, 3);
   Eigen::Index row = 0;

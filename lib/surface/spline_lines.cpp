@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <Eigen/LU>
+#include <unsupported/Eigen/KroneckerProduct>
 
 #include "spline/bernstein.hpp"
 
@@ -110,6 +111,10 @@ std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& a
   return all;
 }
 
+Eigen::SparseMatrix<double> kronecker(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return Eigen::kroneckerProduct(Eigen::SparseMatrix<double>(a.sparseView(1, 1e-15)), Eigen::SparseMatrix<double>(b.sparseView(1, 1e-15)));
+}
+
 spline::Space product(const Line& along, const Line& around) {
   spline::Space space;
   space.n_points = along.n * around.n;
@@ -118,15 +123,10 @@ spline::Space product(const Line& along, const Line& around) {
     for (int k = 0; k < m; ++k) {
       const Line::Piece &s = along.pieces[i], &t = around.pieces[k];
       spline::Element element;
-      Eigen::MatrixXd extraction(16, 16);
       element.origin = {static_cast<double>(i), static_cast<double>(k)};
       for (int b = 0; b < 4; ++b)
-        for (int a = 0; a < 4; ++a) {
-          element.points.push_back(s.functions[a] * around.n + t.functions[b]);
-          for (int q = 0; q < 4; ++q)
-            for (int p = 0; p < 4; ++p) extraction(4 * b + a, 4 * q + p) = s.extraction(a, p) * t.extraction(b, q);
-        }
-      element.extraction = std::make_shared<const Eigen::MatrixXd>(std::move(extraction));
+        for (int a = 0; a < 4; ++a) element.points.push_back(s.functions[a] * around.n + t.functions[b]);
+      element.extraction = std::make_shared<const Eigen::MatrixXd>(Eigen::kroneckerProduct(t.extraction, s.extraction));
       space.elements.push_back(std::move(element));
     }
   space.collocation = sites_of(along, around);

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/SparseCore>
+
 #include "base/types.hpp"
 #include "spline/space.hpp"
 
@@ -45,6 +47,9 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
 
 /// Returns the collocation points of a product of two lines; the index on the second line runs fastest.
 std::vector<std::vector<spline::Site>> sites_of(const Line& along, const Line& around);
+
+/// Returns the Kronecker product a x b, without entries that are zero up to round-off.
+Eigen::SparseMatrix<double> kronecker(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 /// Returns the space of products of two lines: s runs along the first one, t along the second one. Control point i n + k belongs to function i of the
 /// first and function k of the second line, which has n functions.

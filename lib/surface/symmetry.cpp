@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "spline/places.hpp"
 #include "surface/bezier_points.hpp"
 
@@ -159,10 +159,7 @@ std::vector<Image> joined(std::vector<Image> group, const Image& more) {
 }
 
 std::vector<Image> identity(std::size_t n_points, std::size_t n_elements) {
-  Image one{Vec3::Ones(), std::vector<int>(n_points), std::vector<int>(n_elements), std::vector<Turn>(n_elements)};
-  std::iota(one.point.begin(), one.point.end(), 0);
-  std::iota(one.element.begin(), one.element.end(), 0);
-  return {one};
+  return {{Vec3::Ones(), indices(n_points), indices(n_elements), std::vector<Turn>(n_elements)}};
 }
 
 /// Generators of the group are sought in this order: mirror planes first, because the description should name them; then the point symmetry, then
@@ -200,10 +197,7 @@ std::optional<Image> image(const spline::Space& space, std::span<const Net* cons
   return ImageSearch(space, nets).image(signs, [](const Image&) { return true; });
 }
 
-Symmetry::Symmetry(int n_points) : fundamental_(n_points), source_(n_points), signs_(Net::Ones(n_points, 3)) {
-  std::iota(fundamental_.begin(), fundamental_.end(), 0);
-  source_ = fundamental_;
-}
+Symmetry::Symmetry(int n_points) : fundamental_(indices(n_points)), source_(fundamental_), signs_(Net::Ones(n_points, 3)) {}
 
 Symmetry::Symmetry(const std::vector<Image>& generators, const Net& net) : Symmetry(static_cast<int>(net.rows())) {
   if (generators.empty()) return;

@@ -47,13 +47,7 @@ void repeat(TubeWall& wall, const Line& around, const std::vector<double>& knots
       wall.middle_of.push_back(piece % elements * m + k);
       if (piece < elements) wall.middles.push_back({piece * m + k, along.middles[static_cast<std::size_t>(piece)], 0.5});
     }
-  std::vector<Eigen::Triplet<double>> entries;
-  const Eigen::MatrixXd& e = along.open_from_periodic;
-  for (Eigen::Index i = 0; i < e.rows(); ++i)
-    for (Eigen::Index j = 0; j < e.cols(); ++j)
-      for (int k = 0; k < around.n && std::abs(e(i, j)) > 1e-15; ++k) entries.emplace_back(i * around.n + k, j * around.n + k, e(i, j));
-  wall.open_from_periodic.resize(e.rows() * around.n, e.cols() * around.n);
-  wall.open_from_periodic.setFromTriplets(entries.begin(), entries.end());
+  wall.open_from_periodic = kronecker(along.open_from_periodic, Eigen::MatrixXd::Identity(around.n, around.n));
   wall.period = wall.end - wall.start;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "base/formatted.hpp"
@@ -364,10 +363,6 @@ void Capsule::restore_volume(Net& x) {
     }
   }
   if (larger_than(1e-12)) x.setConstant(std::numeric_limits<double>::quiet_NaN());
-}
-
-double Capsule::volume_error(const Net& x) const {
-  return geometry_.volume(x) / std::accumulate(volume0_.begin(), volume0_.end(), 0.) - 1;
 }
 
 stokes::Evaluations Capsule::kernel_evaluations() const {

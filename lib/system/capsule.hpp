@@ -132,11 +132,10 @@ class Capsule : public Dynamics {
   double frozen_bytes() const override;
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
-  Net missed(const Net& dv, const Net& delta) override;
   Net defect(const Net& x, const Net& u) override;
   bool defect_spares_system() const override { return defect_without_system(); }
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net missed_of(const Net& change, const Net& delta, double shift) override;
+  Net missed(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
   void restore_volume(Net& x) override;
@@ -170,7 +169,6 @@ class Capsule : public Dynamics {
   /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
   Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
   void prepare_step(double shift);  ///< prepares step_preconditioner
-  bool preconditions_step() const { return area_.has_value(); }
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system that `solve`
                                                                                        ///< solves
 
@@ -199,7 +197,6 @@ class Capsule : public Dynamics {
   const Loads& loads() const { return loads_; }
 
   const std::vector<Particle>& particles() const { return parameters_.particles; }
-  double volume_error(const Net& x) const;  ///< V/V0 - 1 of the total volume
   double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
   Tube* tube() { return tube_.get(); }      ///< null if there is no tube
   SolidResponse* solids() { return lattice_.solids.get(); }  ///< null if there are no plates or posts

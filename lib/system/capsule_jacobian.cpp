@@ -74,9 +74,7 @@ void Capsule::linearise(const Net& x) {
 std::vector<Mat3> Capsule::gradients_at(const Net& x) const {
   const std::vector<int>& rows = parameters_.symmetry.fundamental();
   if (static_cast<Eigen::Index>(rows.size()) == x.rows()) return flow_.gradients(x);
-  Net at(static_cast<Eigen::Index>(rows.size()), 3);
-  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = x.row(rows[k]);
-  const std::vector<Mat3> found = flow_.gradients(at);
+  const std::vector<Mat3> found = flow_.gradients(x(rows, Eigen::all));
   std::vector<Mat3> all(static_cast<std::size_t>(x.rows()), Mat3::Zero());
   for (std::size_t k = 0; k < rows.size(); ++k) all[static_cast<std::size_t>(rows[k])] = found[k];
   return all;
@@ -229,9 +227,9 @@ Net Capsule::correction(double shift, const Net& defect, double tolerance, const
   return stiff_system(shift, shift * defect, tolerance, secants);
 }
 
-Net Capsule::missed_of(const Net& change, const Net& delta, double shift) {
-  if (!defect_without_system()) return Dynamics::missed_of(change, delta, shift);
+Net Capsule::missed(const Net& change, const Net& delta, double shift) {
   const auto clock = phases_.time("implicit solve");
+  if (!defect_without_system()) return left(change + delta / shift) - rate_change(delta, {}).rate;
   return change + frozen_viscous(delta) / shift - energy_part(delta);
 }
 
@@ -261,7 +259,7 @@ Net Capsule::stiff_system(double shift, const Net& rhs, double tolerance, const 
   };
   prepare_step(shift);
   const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };
-  return symmetric(solve_step(apply, preconditions_step() ? Apply(keep_area) : Apply(), rhs, tolerance));
+  return symmetric(solve_step(apply, area_ ? Apply(keep_area) : Apply(), rhs, tolerance));
 }
 
 Net Capsule::solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance) {
@@ -278,11 +276,6 @@ void Capsule::improve_start(Net& y, const Net& before, double shift) {
   const auto clock = phases_.time("tangent");
   area_->bring(y, before, shift);
   y = symmetric(std::move(y));
-}
-
-Net Capsule::missed(const Net& dv, const Net& delta) {
-  const auto clock = phases_.time("implicit solve");
-  return left(dv) - rate_change(delta, {}).rate;
 }
 
 Net Capsule::mesh_motion(const Net& delta) {

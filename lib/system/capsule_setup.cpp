@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
+#include "base/indices.hpp"
 #include "system/capsule.hpp"
 #include "system/collocation.hpp"
 #include "system/solids/rigid_tractions.hpp"
@@ -125,8 +125,7 @@ void Capsule::make_layers() {
   }
   if (!contrasts.empty()) make(double_layer_, Layer::Kernel::double_layer, projection_ ? projection_->sites() : space_.collocation, contrasts);
   if (!contrasts.empty() && projection_) make(site_double_layer_, Layer::Kernel::double_layer, space_.collocation, contrasts);
-  std::vector<int> everybody = symmetry.fundamental();
-  if (projection_) everybody.resize(projection_->sites().size()), std::iota(everybody.begin(), everybody.end(), 0);
+  const std::vector<int> everybody = projection_ ? indices(projection_->sites().size()) : symmetry.fundamental();
   if (parameters_.wall) layer_.set_wall(*parameters_.wall);
   if (parameters_.wall && double_layer_) double_layer_->set_wall(*parameters_.wall);
   layer_.share(ranks_.rank(), ranks_.size(), everybody);

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "quadrature/gauss.hpp"
-#include "spline/basis.hpp"
 #include "surface/geometry.hpp"
 
 namespace tanktread::coupling {
@@ -29,12 +28,12 @@ BetweenSites between_sites(const spline::Space& space, const Net& surface, std::
   return {places, values, values.transpose() * Eigen::Map<const Eigen::VectorXd>(areas.data(), values.rows()).asDiagonal()};
 }
 
-Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites) {
+Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites, Eigen::VectorXd spline::Basis::* which) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const auto& [number, s, t] = sites[i].front();
     const spline::Element& element = space.elements[static_cast<std::size_t>(number)];
-    const Eigen::VectorXd values = spline::basis(element, s, t, 0).value;
+    const Eigen::VectorXd values = spline::basis(element, s, t).*which;
     for (std::size_t a = 0; a < element.points.size(); ++a)
       entries.emplace_back(static_cast<int>(i), element.points[a], values[static_cast<Eigen::Index>(a)]);
   }

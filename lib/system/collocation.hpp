@@ -6,13 +6,15 @@
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
+#include "spline/basis.hpp"
 #include "spline/space.hpp"
 #include "stokes/sums/self_field.hpp"
 
 namespace tanktread::coupling {
 
-/// Returns the values N_A at sites, shape (sites, N).
-Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites);
+/// Returns the values N_A, or with another member of Basis their derivatives, at sites. Shape (sites, N).
+Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites,
+                                         Eigen::VectorXd spline::Basis::* which = &spline::Basis::value);
 
 /// Gauss points q on a surface, to integrate the residual of collocation, which is zero only at the collocation sites. On an element of size h the
 /// residual is about h^4 times a quartic polynomial, for which as many Gauss points per direction as the spline degree suffice.

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 namespace tanktread::coupling {
 
 namespace {
-Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
-
 /// Returns the rows of a block of a net; an empty net stays empty.
 Net rows_of(const spline::Block& block, const Net& net) { return net.rows() > 0 ? Net(block.rows(net)) : Net(); }
 }  // namespace
@@ -191,10 +188,8 @@ Net CoupledMotion::correction(double shift, const Net& defect, double tolerance,
   return defect_spares_system() ? system(shift, shift * defect, tolerance, secants) : Dynamics::correction(shift, defect, tolerance, secants);
 }
 
-Net CoupledMotion::missed(const Net& dv, const Net& delta) { return left(dv) - right(delta); }
-
-Net CoupledMotion::missed_of(const Net& change, const Net& delta, double shift) {
-  return defect_spares_system() ? Net(change + left(delta) / shift - right(delta)) : Dynamics::missed_of(change, delta, shift);
+Net CoupledMotion::missed(const Net& change, const Net& delta, double shift) {
+  return (defect_spares_system() ? Net(change + left(delta) / shift) : left(change + delta / shift)) - right(delta);
 }
 
 Net CoupledMotion::derivative(const Net& y, const Net& v, const Net& delta) {

@@ -63,11 +63,10 @@ class CoupledMotion : public Dynamics {
   double frozen_bytes() const override { return capsule_.frozen_bytes(); }
   void linearise(const Net& y) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
-  Net missed(const Net& dv, const Net& delta) override;
   Net defect(const Net& y, const Net& u) override;
   bool defect_spares_system() const override { return capsule_.defect_spares_system(); }
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
-  Net missed_of(const Net& change, const Net& delta, double shift) override;
+  Net missed(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& y, const Net& v, const Net& delta) override;
   Net mesh_motion(const Net& delta) override;
   void restore_volume(Net& y) override;

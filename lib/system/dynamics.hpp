@@ -10,6 +10,9 @@
 
 namespace tanktread::coupling {
 
+/// Returns a net of NaN with as many rows as `like`, which stands for a failed evaluation.
+inline Net not_a_number(const Net& like) { return Net::Constant(like.rows(), 3, std::numeric_limits<double>::quiet_NaN()); }
+
 /// The system dx/dt = v(x) (4.2) of the control net x. Nets are replicated on all ranks, and every call is collective. If the motion depends on time,
 /// all calls refer to the time passed to at() last.
 class Dynamics {
@@ -38,13 +41,9 @@ class Dynamics {
   /// Solves delta = (I - shift J)^{-1} r to the relative residual `tolerance`, with the Jacobian J (4.3) corrected by `secants`. `shift` is gamma dt.
   virtual Net solve(double shift, const Net& r, double tolerance, const Secants& secants) = 0;
 
-  /// Returns the error B (dv - J delta) of the Jacobian J at the last linearisation, where dv is the velocity change that the displacement delta
-  /// caused. B is the operator of `defect`. Used by Secants.
-  virtual Net missed(const Net& dv, const Net& delta) = 0;
-
   /// Returns the defect B (v - u) of a velocity u, where v is the velocity at x and B an operator that may depend on x. B is the identity by default.
   /// If v is the solution of a linear system B v = w, the defect is w - B u, which takes one sum over the surface and no linear solve. `correction`
-  /// and `missed_of` expect defects with the same B.
+  /// and `missed` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
   /// Returns true if the velocity requires a linear solve that the defect of a given velocity does not require.
@@ -56,9 +55,10 @@ class Dynamics {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the result of `missed` for the displacement delta of x without the velocity change dv. The argument `change` replaces dv: it is the
-  /// change of the defect of the velocity u = (x - c)/shift, where c is a constant net. If B is the identity, `change` is dv - delta/shift.
-  virtual Net missed_of(const Net& change, const Net& delta, double shift) { return missed(change + delta / shift, delta); }
+  /// Returns the error B (dv - J delta) of the Jacobian J at the last linearisation, where dv is the velocity change that the displacement delta
+  /// caused. B is the operator of `defect`. The argument `change` is the change of the defect of the velocity u = (x - c)/shift, where c is a
+  /// constant net. If B is the identity, `change` is dv - delta/shift. Used by Secants.
+  virtual Net missed(const Net& change, const Net& delta, double shift) = 0;
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.

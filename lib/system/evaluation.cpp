@@ -1,8 +1,8 @@
 #include "system/evaluation.hpp"
 
-#include <numeric>
 #include <utility>
 
+#include "base/indices.hpp"
 #include "system/capsule.hpp"
 
 namespace tanktread::coupling {
@@ -119,10 +119,8 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   }
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
-    std::vector<int> elements(static_cast<std::size_t>(particle.block.n_elements));
-    std::iota(elements.begin(), elements.end(), particle.block.first_element);
     Net flux;
-    system.geometry_.volume_gradient(x_, elements, flux);
+    system.geometry_.volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();

@@ -1,7 +1,8 @@
 #include "system/particle.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "base/indices.hpp"
 
 namespace tanktread::coupling {
 
@@ -120,8 +121,7 @@ double Loads::energy(const Net& x, const std::vector<Net>& sums, std::size_t p) 
 void Loads::add_stored_work(const Net& x, Net& work) const {
   for (const One& one : all_) {
     if (!one.load->stores()) continue;
-    std::vector<int> elements(static_cast<std::size_t>(one.block.n_elements));
-    std::iota(elements.begin(), elements.end(), 0);
+    const std::vector<int> elements = indices(one.block.n_elements);
     std::vector<Net> sums(one.load->n_sums(), Net::Zero(one.block.n_points, 3));
     const Net own = one.block.rows(x);
     add_rows(one.block, work, [&](Net& rows) {

@@ -1,8 +1,8 @@
 #include "system/power_balance.hpp"
 
 #include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 #include "surface/geometry.hpp"
 #include "system/collocation.hpp"
@@ -66,8 +66,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   Powers powers;
   powers.flow = of_flow(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
-  std::vector<int> all(space_.elements.size());
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = indices(space_.elements.size());
   capsule_.membrane().load(x, all, stored);
   capsule_.loads().add_stored_work(x, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {

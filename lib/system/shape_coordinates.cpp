@@ -1,8 +1,6 @@
 #include "system/shape_coordinates.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
-#include "spline/basis.hpp"
+#include "system/collocation.hpp"
 
 namespace tanktread::coupling {
 
@@ -27,23 +27,7 @@ struct Functions {
 };
 
 Functions functions(const spline::Space& space, const stokes::Sites& sites) {
-  std::vector<Eigen::Triplet<double>> entries[3];
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    const spline::Site& site = sites[i].front();
-    const spline::Element& element = space.elements[static_cast<std::size_t>(site.element)];
-    const spline::Basis basis = spline::basis(element, site.s, site.t);
-    const Eigen::VectorXd* of[] = {&basis.value, &basis.s, &basis.t};
-    for (int k = 0; k < 3; ++k)
-      for (std::size_t a = 0; a < element.points.size(); ++a)
-        entries[k].emplace_back(static_cast<int>(i), element.points[a], (*of[k])[static_cast<Eigen::Index>(a)]);
-  }
-  Functions all;
-  Eigen::SparseMatrix<double>* const matrices[] = {&all.value, &all.s, &all.t};
-  for (int k = 0; k < 3; ++k) {
-    matrices[k]->resize(static_cast<Eigen::Index>(sites.size()), space.n_points);
-    matrices[k]->setFromTriplets(entries[k].begin(), entries[k].end());
-  }
-  return all;
+  return {value_matrix(space, sites), value_matrix(space, sites, &spline::Basis::s), value_matrix(space, sites, &spline::Basis::t)};
 }
 
 stokes::Sites places(std::span<const int> elements) {
@@ -72,8 +56,7 @@ VelocityProjection::VelocityProjection(const spline::Space& space, const Net& un
                                        const membrane::DirectSolverOptions& direct, const Ranks& ranks)
     : symmetry_(symmetry.fundamental().empty() ? surface::Symmetry(space.n_points) : symmetry), mass_(direct, symmetry_), scalar_mass_(direct) {
   const int n_elements = static_cast<int>(space.elements.size());
-  std::vector<int> elements(static_cast<std::size_t>(n_elements));
-  std::iota(elements.begin(), elements.end(), 0);
+  std::vector<int> elements = indices(n_elements);
   const Functions everywhere = functions(space, places(elements));
   mass_.factor(weighted(everywhere, unstressed) * everywhere.value);
 

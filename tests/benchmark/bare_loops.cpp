@@ -136,8 +136,8 @@ void program_far_sum(benchmark::State& state) {
   constexpr bool single = precision == stokes::Precision::single;
   state.SetLabel(instructions());
   const double found = rate<double>(state, [](const double* f, const double* target, double* u) {
-    const stokes::PointForces forces{n, f, f + n, f + 2 * n, f + 3 * n, f + 4 * n, f + 5 * n};
-    single ? stokes::far_sum_in_single(forces, target, u) : stokes::far_sum(forces, target, u);
+    const stokes::Charges forces{n, f, f + n, f + 2 * n, {f + 3 * n, f + 4 * n, f + 5 * n}};
+    single ? stokes::stokeslet_sum_in_single(forces, target, u) : stokes::stokeslet_sum(forces, target, u);
   });
   state.counters["over the fastest"] = found / (single ? fastest_single : fastest);
 }

@@ -38,7 +38,7 @@ void bare_far_sum(benchmark::State& state) {
   for (auto _ : state) {
     const double start = now();
     for (int b = 0; b < blocks; ++b) {
-      stokes::far_sum(stokes::PointForces{n, f, f + n, f + 2 * n, f + 3 * n, f + 4 * n, f + 5 * n}, &targets[3 * stokes::far_block * b],
+      stokes::stokeslet_sum(stokes::Charges{n, f, f + n, f + 2 * n, {f + 3 * n, f + 4 * n, f + 5 * n}}, &targets[3 * stokes::far_block * b],
                       u.data());
       benchmark::DoNotOptimize(u.data());
     }

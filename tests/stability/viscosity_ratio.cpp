@@ -21,7 +21,7 @@ Outcome outcome(const std::string& ratio, const std::string& constraint) {
                  "Membrane/load measure=current"});
   run.to(0.5);
   const coupling::Work& work = run.capsule->work();
-  return {std::abs(run.capsule->volume_error(run.state.x)),
+  return {std::abs(run.volume_error()),
           static_cast<double>(work.velocity_iterations) / static_cast<double>(work.evaluations)};
 }
 

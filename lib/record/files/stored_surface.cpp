@@ -1,6 +1,5 @@
 #include "record/files/stored_surface.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 

@@ -119,20 +119,21 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the film width at each element of the T-mesh, which may consist of several Bezier elements: the smallest of their widths.
-std::vector<double> widths_of_mesh(const Body& body, std::span<const double> films) {
-  std::vector<double> widths;
-  if (films.empty()) return widths;
+/// Returns the smallest value on each element of the T-mesh, which may consist of several Bezier elements. `values`: one per Bezier element; if
+/// empty, the result is empty.
+std::vector<double> least_of_mesh(const Body& body, std::span<const double> values) {
+  std::vector<double> least;
+  if (values.empty()) return least;
   const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
-  widths.assign(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, std::numeric_limits<double>::infinity());
-  for (size_t e = 0; e < films.size(); ++e) widths[static_cast<size_t>(tile[e])] = std::min(widths[static_cast<size_t>(tile[e])], films[e]);
-  return widths;
+  least.assign(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, std::numeric_limits<double>::infinity());
+  for (size_t e = 0; e < values.size(); ++e) least[static_cast<size_t>(tile[e])] = std::min(least[static_cast<size_t>(tile[e])], values[e]);
+  return least;
 }
 
 Findings findings(const Subject& particle, const surface::FieldAt& traction, const surface::FieldsAt& fields_at) {
   const auto& [scene, body, block, state, x, films] = particle;
   const motion::AdaptationOptions& options = scene.adaptation;
-  const std::vector<double> widths = widths_of_mesh(body, films);
+  const std::vector<double> widths = least_of_mesh(body, films);
   const auto of = [&](auto indicator) {
     const std::vector<std::array<double, 2>> lengths = lengths_of(indicator);
     std::vector<spline::Merge> merges = decided([&] {
@@ -195,15 +196,6 @@ Adapted refined(const Subject& of, const Findings& found) {
   return result;
 }
 
-/// Returns, per element of the T-mesh, true if the displacement of the surface (`defect`) on one of its Bezier elements exceeds the tolerance.
-std::vector<bool> elements_over(const Body& body, const std::vector<double>& defect, double tolerance) {
-  const std::vector<int> tile = spline::mesh_elements(body.mesh, body.nested());
-  std::vector<bool> over(static_cast<size_t>(*std::ranges::max_element(tile)) + 1, false);
-  for (size_t e = 0; e < defect.size(); ++e)
-    if (defect[e] > tolerance) over[static_cast<size_t>(tile[e])] = true;
-  return over;
-}
-
 /// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and tries the
 /// others again.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
@@ -225,8 +217,10 @@ Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
       settle(result, change, body.radius);
       return result;
     }
-    const std::vector<bool> spoilt = elements_over(body, defect, scene.adaptation.coarsening_tolerance);
-    std::erase_if(merges, [&](const spline::Merge& merge) { return spoilt[static_cast<size_t>(merge.element)]; });
+    std::vector<double> unmoved;
+    for (const double moved : defect) unmoved.push_back(scene.adaptation.coarsening_tolerance - moved);
+    const std::vector<double> left = least_of_mesh(body, unmoved);
+    std::erase_if(merges, [&](const spline::Merge& merge) { return left[static_cast<size_t>(merge.element)] < 0; });
   }
   return {};
 }

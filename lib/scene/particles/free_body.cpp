@@ -1,6 +1,5 @@
 // Free rigid body in the time loop.
 
-
 #include "scene/member.hpp"
 #include "scene/particles/adaptation.hpp"
 #include "scene/particles/particle_system.hpp"

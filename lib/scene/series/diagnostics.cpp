@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "spline/bernstein.hpp"
 #include "surface/geometry.hpp"
@@ -278,8 +279,7 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry
   now.quaternion << turn.w(), turn.vec();
   now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
   if (!scene.time.steady_tolerance) return now;
-  std::vector<int> elements(static_cast<std::size_t>(geometry.bezier().n_elements()));
-  std::iota(elements.begin(), elements.end(), 0);
+  const std::vector<int> elements = indices(geometry.bezier().n_elements());
   const Net v = coupling::rigid_velocity(x, motion, now.centre);
   const std::vector<double> sums = surface::shape_velocity_sums(geometry.bezier(), x, v, body.radius, elements);
   now.shape_velocity = surface::shape_velocity(sums, scene.tube.present) / unit_speed(scene, body);

@@ -23,17 +23,6 @@ Mat3 axes(const surface::Channel::Section& place) {
   return axes;
 }
 
-using Components = std::vector<double>[3];
-
-PointForces forces(const Components& x, const Components& f) {
-  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
-}
-
-Stresslets stresslets(const Components& x, const Components& v, const Components& n) {
-  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), v[0].data(), v[1].data(), v[2].data(), n[0].data(), n[1].data(),
-          n[2].data()};
-}
-
 }  // namespace
 
 DuctEnd::DuctEnd(DuctFlow flow, const surface::Channel::Section& place, int inward) : flow_(std::move(flow)), place_(place), inward_(inward) {
@@ -134,7 +123,7 @@ DuctEnd::Sources DuctEnd::sources(const Nodes& nodes) const {
 void DuctEnd::add(const Sources& s, const Vec3& target, Eigen::Ref<Eigen::Matrix<double, 1, 3>> u) {
   double by_forces[3], by_stresslets[3];
   const double none[3] = {};
-  node_sum(forces(s.x, s.force), target.data(), by_forces);
+  node_sum(charges(s.x, s.force), target.data(), by_forces);
   node_sum(stresslets(s.x, s.velocity, s.normal), target.data(), none, by_stresslets);
   for (int c = 0; c < 3; ++c) u[c] += by_forces[c] + by_stresslets[c];
 }
@@ -162,7 +151,7 @@ Net DuctEnd::velocities(const Net& x) const {
   }
   std::vector<double> one(3 * at.size()), other(3 * at.size());
   const std::vector<Vec3> none(at.size(), Vec3::Zero());
-  far_sums(forces(far_.x, far_.force), at, one.data());
+  far_sums(charges(far_.x, far_.force), at, one.data());
   far_sums(stresslets(far_.x, far_.velocity, far_.normal), at, none, other.data());
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (std::size_t c = 0; c < 3; ++c) u(rows[k], static_cast<Eigen::Index>(c)) = one[3 * k + c] + other[3 * k + c];

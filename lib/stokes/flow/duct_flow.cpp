@@ -1,7 +1,5 @@
 #include "stokes/flow/duct_flow.hpp"
 
-#include <Eigen/LU>
-
 #include "stokes/flow/duct_boundary.hpp"
 
 namespace tanktread::stokes {

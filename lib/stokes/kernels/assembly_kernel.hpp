@@ -26,10 +26,6 @@ struct PanelNodes {
 /// target[n + l] and target[2 n + l]. Differences x_k - x0_l are computed in double precision. `scratch`: 6 n n_nodes numbers.
 void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
 void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
-template <class Real>
-void add_far_moments(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* scratch, Real* sums) {
-  far_moments(panel, target, skip, scratch, sums);
-}
 
 /// Returns the sums for the two identities of the rule `desingularised` (see Layer), over the nodes (x, y, z) for a target x0 with the normal n0.
 /// N = (nx, ny, nz) is the normal of a node times its quadrature weight, and r is the vector from the target to the node:

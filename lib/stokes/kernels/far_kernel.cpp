@@ -20,7 +20,7 @@ Number coincident(const Number& x0, const Number& y0, const Number& z0) {
 }
 
 /// Computes the sums for `tile` packs of targets; a pack fills one register.
-void tile_sum(const PointForces& forces, const double* target, double* u) {
+void tile_sum(const Charges& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};
   for (int p = 0; p < tile; ++p) {
     x0[p] = load(target + lanes * p);
@@ -29,7 +29,7 @@ void tile_sum(const PointForces& forces, const double* target, double* u) {
     least[p] = coincident(x0[p], y0[p], z0[p]);
   }
   for (int k = 0; k < forces.n; ++k) {
-    const double x = forces.x[k], y = forces.y[k], z = forces.z[k], fx = forces.fx[k], fy = forces.fy[k], fz = forces.fz[k];
+    const double x = forces.x[k], y = forces.y[k], z = forces.z[k], fx = forces.q[0][k], fy = forces.q[1][k], fz = forces.q[2][k];
 #pragma GCC unroll 8
     for (int p = 0; p < tile; ++p) {
       const Register rx = x - x0[p], ry = y - y0[p], rz = z - z0[p];
@@ -64,20 +64,21 @@ void sums_of_packs(const Nodes& nodes, const double* target, double* value, cons
 
 }  // namespace
 
-void far_sum(const PointForces& forces, const double* target, double* u) {
+void stokeslet_sum(const Charges& forces, const double* target, double* u) {
   for (int first = 0; first < far_block; first += tile * lanes) tile_sum(forces, target + first, u + first);
 }
 
-void node_sum(const PointForces& forces, const double* x0, double* u) {
+void node_sum(const Charges& forces, const double* x0, double* u) {
+  const auto& q = forces.q;
   const double least = coincident(x0[0], x0[1], x0[2]);
   double ux = 0, uy = 0, uz = 0;
   for (int k = 0; k < forces.n; ++k) {
     const double rx = forces.x[k] - x0[0], ry = forces.y[k] - x0[1], rz = forces.z[k] - x0[2];
     const double square = rx * rx + ry * ry + rz * rz, inverse = square > least ? 1 / std::sqrt(square) : 0;
-    const double along = (rx * forces.fx[k] + ry * forces.fy[k] + rz * forces.fz[k]) * (inverse * inverse);
-    ux += inverse * (forces.fx[k] + rx * along);
-    uy += inverse * (forces.fy[k] + ry * along);
-    uz += inverse * (forces.fz[k] + rz * along);
+    const double along = (rx * q[0][k] + ry * q[1][k] + rz * q[2][k]) * (inverse * inverse);
+    ux += inverse * (q[0][k] + rx * along);
+    uy += inverse * (q[1][k] + ry * along);
+    uz += inverse * (q[2][k] + rz * along);
   }
   u[0] = ux, u[1] = uy, u[2] = uz;
 }
@@ -108,10 +109,6 @@ void node_sum(const Stresslets& nodes, const double* x0, const double* v0, doubl
   u[0] = ux, u[1] = uy, u[2] = uz;
 }
 
-void stokeslet_sum(const Charges& p, const double* target, double* value) {
-  INSTRUCTIONS::far_sum(PointForces{p.n, p.x, p.y, p.z, p.q[0], p.q[1], p.q[2]}, target, value);
-}
-
 void stresslet_sum(const Charges& points, const double* target, double* value) {
   const auto& q = points.q;
   sums_of_packs<3, 3>(points, target, value, [&](int k, const Register (&r)[3], const auto&, const Register& inverse, Register (&sum)[3]) {
@@ -134,11 +131,10 @@ void normal_stress_sum(const Charges& points, const double* target, double* valu
 
 }  // namespace INSTRUCTIONS
 
-KERNEL(void, far_sum, (const PointForces& forces, const double* target, double* u), (forces, target, u))
-KERNEL(void, node_sum, (const PointForces& forces, const double* x0, double* u), (forces, x0, u))
+KERNEL(void, stokeslet_sum, (const Charges& forces, const double* target, double* u), (forces, target, u))
+KERNEL(void, node_sum, (const Charges& forces, const double* x0, double* u), (forces, x0, u))
 KERNEL(void, far_sum, (const Stresslets& nodes, const double* target, double* u), (nodes, target, u))
 KERNEL(void, node_sum, (const Stresslets& nodes, const double* x0, const double* v0, double* u), (nodes, x0, v0, u))
-KERNEL(void, stokeslet_sum, (const Charges& points, const double* target, double* value), (points, target, value))
 KERNEL(void, stresslet_sum, (const Charges& points, const double* target, double* value), (points, target, value))
 KERNEL(void, normal_stress_sum, (const Charges& points, const double* target, double* value), (points, target, value))
 

@@ -3,63 +3,13 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "base/types.hpp"
 
 namespace tanktread::stokes {
 
-/// Point forces: positions and strengths (weight times density), n of each.
-struct PointForces {
-  int n = 0;
-  const double *x = nullptr, *y = nullptr, *z = nullptr, *fx = nullptr, *fy = nullptr, *fz = nullptr;
-
-  PointForces part(int first, int count) const { return {count, x + first, y + first, z + first, fx + first, fy + first, fz + first}; }
-};
-
-/// Regularised stresslets: positions, velocities, and normals times the area of the node.
-struct Stresslets {
-  int n = 0;
-  const double *x = nullptr, *y = nullptr, *z = nullptr, *vx = nullptr, *vy = nullptr, *vz = nullptr;
-  const double *nx = nullptr, *ny = nullptr, *nz = nullptr;
-
-  Stresslets part(int first, int count) const {
-    return {count, x + first, y + first, z + first, vx + first, vy + first, vz + first, nx + first, ny + first, nz + first};
-  }
-};
-
-/// Precision of the terms of a far sum. The sums are accumulated in double precision.
-enum class Precision { single, full };
-
-/// Number of targets that are processed together in one pass over the nodes.
-constexpr int far_block = 16;
-
-/// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
-/// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
-/// (2^-40 of the target's distance from the origin), is skipped.
-void far_sum(const PointForces& forces, const double* target, double* u);
-
-/// Computes the far_sum() of point forces for any number of targets k; result u[3 k + c].
-void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
-
-/// Computes the far_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
-/// subtracts this sum from the far sum.
-void node_sum(const PointForces& forces, const double* x0, double* u);
-
-/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5
-/// component c - 3 of the velocity v0 there.
-void far_sum(const Stresslets& nodes, const double* target, double* u);
-void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
-void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
-
-/// Number of terms that are summed in single precision. The functions below compute far_sum() with terms in single precision. Position differences
-/// have a relative error of 1e-7 even for close points, because the part of a position that single precision drops is stored separately. The terms of
-/// `single_run` consecutive nodes are summed in single precision; this sum is then added to the double-precision sum. The error is 3e-8 of the sum of
-/// the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the other targets.
-constexpr int single_run = 64;
-void far_sum_in_single(const PointForces& forces, const double* target, double* u);
-void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
-
-/// Points with up to six source strengths each.
+/// Points with up to six source strengths each. A point force has three: weight times density.
 struct Charges {
   int n = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr;
@@ -72,12 +22,67 @@ struct Charges {
   }
 };
 
-/// Kernels for TreeSum: each computes a sum over sources with several components, at far_block targets. Targets have the layout of far_sum().
+/// Returns all points with the positions `x` and the source strengths `q`, one array per component.
+inline Charges charges(const std::vector<double> (&x)[3], std::span<const std::vector<double>> q) {
+  Charges all{static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), {}};
+  for (std::size_t c = 0; c < q.size(); ++c) all.q[c] = q[c].data();
+  return all;
+}
+
+/// Regularised stresslets: positions, velocities, and normals times the area of the node.
+struct Stresslets {
+  int n = 0;
+  const double *x = nullptr, *y = nullptr, *z = nullptr, *vx = nullptr, *vy = nullptr, *vz = nullptr;
+  const double *nx = nullptr, *ny = nullptr, *nz = nullptr;
+
+  Stresslets part(int first, int count) const {
+    return {count, x + first, y + first, z + first, vx + first, vy + first, vz + first, nx + first, ny + first, nz + first};
+  }
+};
+
+/// Returns all nodes with the positions x, the velocities v and the normals n, one array per component.
+inline Stresslets stresslets(const std::vector<double> (&x)[3], const std::vector<double> (&v)[3], const std::vector<double> (&n)[3]) {
+  return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), v[0].data(), v[1].data(), v[2].data(), n[0].data(), n[1].data(),
+          n[2].data()};
+}
+
+/// Precision of the terms of a far sum. The sums are accumulated in double precision.
+enum class Precision { single, full };
+
+/// Number of targets that are processed together in one pass over the nodes.
+constexpr int far_block = 16;
+
+/// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
+/// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
+/// (2^-40 of the target's distance from the origin), is skipped.
+void stokeslet_sum(const Charges& forces, const double* target, double* u);
+
+/// Computes the stokeslet_sum() of point forces for any number of targets k; result u[3 k + c].
+void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u, Precision precision = Precision::full);
+
+/// Computes the stokeslet_sum() of a few point forces at one target x0[3]; result u[3]. If a better quadrature rule replaces these nodes, the caller
+/// subtracts this sum from the far sum.
+void node_sum(const Charges& forces, const double* x0, double* u);
+
+/// Computes u_l = sum_k (v_k - v0_l)_j T_ijk(x_k, x0_l) n_k (2.2). target[far_block c + l] is coordinate c = 0, 1, 2 of target l, and for c = 3, 4, 5
+/// component c - 3 of the velocity v0 there.
+void far_sum(const Stresslets& nodes, const double* target, double* u);
+void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision = Precision::full);
+void node_sum(const Stresslets& nodes, const double* x0, const double* v0, double* u);
+
+/// Number of terms that are summed in single precision. The functions below compute stokeslet_sum() and far_sum() with terms in single precision.
+/// Position differences have a relative error of 1e-7 even for close points, because the part of a position that single precision drops is stored
+/// separately. The terms of `single_run` consecutive nodes are summed in single precision; this sum is then added to the double-precision sum. The
+/// error is 3e-8 of the sum of the magnitudes of the terms (root mean square; at most 3e-7). The result of one target does not depend on the other
+/// targets.
+constexpr int single_run = 64;
+void stokeslet_sum_in_single(const Charges& forces, const double* target, double* u);
+void far_sum_in_single(const Stresslets& nodes, const double* target, double* u);
+
+/// Kernels for TreeSum: each computes a sum over sources with several components, at far_block targets. Targets have the layout of stokeslet_sum().
 /// Component c of the result at target l is value[far_block c + l].
-void stokeslet_sum(const Charges& points, const double* target, double* value);
 void stresslet_sum(const Charges& points, const double* target, double* value);
 void normal_stress_sum(const Charges& points, const double* target, double* value);
-void stokeslet_sum_in_single(const Charges& points, const double* target, double* value);
 void stresslet_sum_in_single(const Charges& points, const double* target, double* value);
 using KernelSum = void (*)(const Charges& points, const double* target, double* value);
 

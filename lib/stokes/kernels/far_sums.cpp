@@ -29,22 +29,14 @@ void sums_by_blocks(const Nodes& nodes, const std::array<std::span<const Vec3>, 
   }
 }
 
-/// Returns the function that sums nodes of this type in this precision.
-template <class Nodes>
-auto of(Precision precision) {
-  void (*const full)(const Nodes&, const double*, double*) = far_sum;
-  void (*const single)(const Nodes&, const double*, double*) = far_sum_in_single;
-  return precision == Precision::single ? single : full;
-}
-
 }  // namespace
 
-void far_sums(const PointForces& forces, std::span<const Vec3> targets, double* u, Precision precision) {
-  sums_by_blocks<1>(forces, {targets}, u, of<PointForces>(precision));
+void far_sums(const Charges& forces, std::span<const Vec3> targets, double* u, Precision precision) {
+  kernel_sums(precision == Precision::single ? stokeslet_sum_in_single : stokeslet_sum, forces, targets, u);
 }
 
 void far_sums(const Stresslets& nodes, std::span<const Vec3> targets, std::span<const Vec3> v0, double* u, Precision precision) {
-  sums_by_blocks<2>(nodes, {targets, v0}, u, of<Stresslets>(precision));
+  sums_by_blocks<2>(nodes, {targets, v0}, u, precision == Precision::single ? far_sum_in_single : far_sum);
 }
 
 void kernel_sums(KernelSum kernel, const Charges& points, std::span<const Vec3> targets, double* u) {

@@ -5,7 +5,7 @@
 namespace tanktread::stokes {
 
 Mat3 stokeslet(const Vec3& r) {
-  const double inverse = 1 / r.norm();
+  const double square = r.squaredNorm(), inverse = square > 0 ? 1 / std::sqrt(square) : 0;
   return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
 }
 

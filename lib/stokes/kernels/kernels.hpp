@@ -13,7 +13,7 @@ constexpr double over_8_pi = 1 / (8 * std::numbers::pi);
 ///
 ///   G_ij = delta_ij/|r| + r_i r_j/|r|^3,   r = x - x0                     (2.1)
 ///
-/// Units 1/length. Pozrikidis 1992, eq. 2.2.8.
+/// Zero at r = 0. Units 1/length. Pozrikidis 1992, eq. 2.2.8.
 Mat3 stokeslet(const Vec3& r);
 
 /// Returns the stresslet contracted with a normal: T_ijk n_k = -6 r_i r_j (r.n)/|r|^5   (2.1). Units 1/length^2.

@@ -1,6 +1,5 @@
 #include "stokes/kernels/pair_kernel.hpp"
 
-
 #include "base/kernel.hpp"
 #include "stokes/kernels/panel_points.hpp"
 

@@ -81,17 +81,7 @@ inline void add_terms(const Sight& sight, int n, double factor, double* u, const
 
 using Three = FloatRegister[3];
 
-void add_run(const PointForces& forces, const double* target, double* u) {
-  const Sight sight(forces.n, {forces.x, forces.y, forces.z}, target);
-  float f[3][single_run];
-  narrow(forces.n, forces.fx, 0, f[0]), narrow(forces.n, forces.fy, 0, f[1]), narrow(forces.n, forces.fz, 0, f[2]);
-  add_terms(sight, forces.n, sight.scale, u, [&](int, int k, const Three& r, const FloatRegister& inverse, Three& sum) {
-    const FloatRegister along = (r[0] * f[0][k] + r[1] * f[1][k] + r[2] * f[2][k]) * (inverse * inverse);
-    for (int c = 0; c < 3; ++c) sum[c] += inverse * (f[c][k] + r[c] * along);
-  });
-}
-
-void add_run(const Stresslets& nodes, const double* target, double* u) {
+void add_differences(const Stresslets& nodes, const double* target, double* u) {
   const Sight sight(nodes.n, {nodes.x, nodes.y, nodes.z}, target);
   float v[3][single_run], n[3][single_run], v0[3][far_block];
   const double *const velocity[3] = {nodes.vx, nodes.vy, nodes.vz}, *const normal[3] = {nodes.nx, nodes.ny, nodes.nz};
@@ -110,7 +100,17 @@ void add_run(const Stresslets& nodes, const double* target, double* u) {
   });
 }
 
-void add_run(const Charges& points, const double* target, double* u) {
+void add_forces(const Charges& forces, const double* target, double* u) {
+  const Sight sight(forces.n, {forces.x, forces.y, forces.z}, target);
+  float f[3][single_run];
+  for (std::size_t c = 0; c < 3; ++c) narrow(forces.n, forces.q[c], 0, f[c]);
+  add_terms(sight, forces.n, sight.scale, u, [&](int, int k, const Three& r, const FloatRegister& inverse, Three& sum) {
+    const FloatRegister along = (r[0] * f[0][k] + r[1] * f[1][k] + r[2] * f[2][k]) * (inverse * inverse);
+    for (int c = 0; c < 3; ++c) sum[c] += inverse * (f[c][k] + r[c] * along);
+  });
+}
+
+void add_stresslets(const Charges& points, const double* target, double* u) {
   const Sight sight(points.n, {points.x, points.y, points.z}, target);
   float q[6][single_run];
   for (int c = 0; c < 6; ++c) narrow(points.n, points.q[static_cast<unsigned>(c)], 0, q[c]);
@@ -122,29 +122,25 @@ void add_run(const Charges& points, const double* target, double* u) {
   });
 }
 
+/// Computes the sum over the nodes as the sum over their runs. `add` adds the sum over one run.
 template <class Nodes>
-void add_runs(const Nodes& nodes, const double* target, double* u) {
+void sum_of_runs(void (*add)(const Nodes&, const double*, double*), const Nodes& nodes, const double* target, double* u) {
   std::fill_n(u, 3 * far_block, 0.);
-  for (int first = 0; first < nodes.n; first += single_run) add_run(nodes.part(first, std::min(single_run, nodes.n - first)), target, u);
+  for (int first = 0; first < nodes.n; first += single_run) add(nodes.part(first, std::min(single_run, nodes.n - first)), target, u);
 }
 
 }  // namespace
 
-void far_sum_in_single(const PointForces& forces, const double* target, double* u) { add_runs(forces, target, u); }
+void far_sum_in_single(const Stresslets& nodes, const double* target, double* u) { sum_of_runs(add_differences, nodes, target, u); }
 
-void far_sum_in_single(const Stresslets& nodes, const double* target, double* u) { add_runs(nodes, target, u); }
+void stokeslet_sum_in_single(const Charges& forces, const double* target, double* u) { sum_of_runs(add_forces, forces, target, u); }
 
-void stokeslet_sum_in_single(const Charges& p, const double* target, double* value) {
-  add_runs(PointForces{p.n, p.x, p.y, p.z, p.q[0], p.q[1], p.q[2]}, target, value);
-}
-
-void stresslet_sum_in_single(const Charges& points, const double* target, double* value) { add_runs(points, target, value); }
+void stresslet_sum_in_single(const Charges& points, const double* target, double* value) { sum_of_runs(add_stresslets, points, target, value); }
 
 }  // namespace INSTRUCTIONS
 
-KERNEL(void, far_sum_in_single, (const PointForces& forces, const double* target, double* u), (forces, target, u))
 KERNEL(void, far_sum_in_single, (const Stresslets& nodes, const double* target, double* u), (nodes, target, u))
-KERNEL(void, stokeslet_sum_in_single, (const Charges& points, const double* target, double* value), (points, target, value))
+KERNEL(void, stokeslet_sum_in_single, (const Charges& forces, const double* target, double* u), (forces, target, u))
 KERNEL(void, stresslet_sum_in_single, (const Charges& points, const double* target, double* value), (points, target, value))
 
 }  // namespace tanktread::stokes

@@ -1,21 +1,11 @@
 #include "stokes/medium/image_sum.hpp"
 
-#include <numeric>
 #include <utility>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/image_kernel.hpp"
 
 namespace tanktread::stokes {
-
-namespace {
-
-Charges charges_of(int n, const std::vector<double>* node, const std::vector<double>* carried) {
-  Charges charges{n, node[0].data(), node[1].data(), node[2].data(), {}};
-  for (int c = 0; c < 6; ++c) charges.q[static_cast<std::size_t>(c)] = carried[c].data();
-  return charges;
-}
-
-}  // namespace
 
 ImageSum::ImageSum(Kind kind, const PlaneWall& wall, std::optional<double> tolerance) : kind_(kind), wall_(wall) {
   if (tolerance) tree_.emplace(*tolerance);
@@ -42,9 +32,7 @@ bool ImageSum::want(std::vector<Vec3> targets, std::vector<int> wanted) {
   if (!tree_) return true;
   std::vector<Vec3> at;
   for (const Vec3& x : targets_) at.push_back(below(x));
-  std::vector<int> singles(node_[0].size() + 1);
-  std::iota(singles.begin(), singles.end(), 0);
-  tree_->place(node_[0].data(), node_[1].data(), node_[2].data(), singles, at);
+  tree_->place(node_, indices(node_[0].size() + 1), at);
   tree_->want(wanted_);
   return true;
 }
@@ -69,45 +57,34 @@ void ImageSum::turn(const Charges& carried, std::vector<double> (&own)[6]) const
 }
 
 Net ImageSum::sum(std::span<const std::vector<double>> carried) {
-  const int n = static_cast<int>(node_[0].size());
   std::vector<double> own[6];
-  Charges in_space{n, nullptr, nullptr, nullptr, {}};
-  for (std::size_t c = 0; c < carried.size(); ++c) in_space.q[c] = carried[c].data();
-  turn(in_space, own);
+  turn(charges(node_, carried), own);
+  const Charges sources = charges(node_, own);
   Net sums(wanted_.size(), 3);
-  if (tree_)
-    sum_by_clusters(charges_of(n, node_, own), sums);
-  else
-    sum_all(charges_of(n, node_, own), sums);
-  interactions_ = tree_ ? tree_->interactions() : static_cast<long long>(n) * sums.rows();
+  if (tree_) {
+    Net all = Net::Zero(static_cast<Eigen::Index>(targets_.size()), 3);
+    kind_ == Kind::forces ? tree_->sum<ImageStokesletKernel>(sources.q, all.data()) : tree_->sum<ImageStressletKernel>(sources.q, all.data());
+    sums = all(wanted_, Eigen::all);
+    interactions_ = tree_->interactions();
+  } else {
+    std::vector<Vec3> at;
+    for (const int i : wanted_) at.push_back(below(targets_[static_cast<std::size_t>(i)]));
+    kernel_sums(kernel(), sources, at, sums.data());
+    interactions_ = static_cast<long long>(sources.n) * sums.rows();
+  }
   return sums * wall_.axes();
-}
-
-void ImageSum::sum_by_clusters(const Charges& charges, Net& sums) {
-  Net all = Net::Zero(static_cast<Eigen::Index>(targets_.size()), 3);
-  if (kind_ == Kind::forces)
-    tree_->sum<ImageStokesletKernel>(charges.q, all.data());
-  else
-    tree_->sum<ImageStressletKernel>(charges.q, all.data());
-  for (std::size_t k = 0; k < wanted_.size(); ++k) sums.row(static_cast<Eigen::Index>(k)) = all.row(wanted_[k]);
 }
 
 KernelSum ImageSum::kernel() const { return kind_ == Kind::forces ? image_stokeslet_sum : image_stresslet_sum; }
 
-void ImageSum::sum_all(const Charges& charges, Net& sums) const {
-  std::vector<Vec3> at;
-  for (const int i : wanted_) at.push_back(below(targets_[static_cast<std::size_t>(i)]));
-  kernel_sums(kernel(), charges, at, sums.data());
-}
-
 Vec3 ImageSum::sum(const Charges& carried, int first, const Vec3& target) const {
   std::vector<double> own[6];
   turn(carried, own);
-  Charges charges = charges_of(carried.n, node_, own);
-  charges.x += first, charges.y += first, charges.z += first;
+  Charges sources = charges(node_, own);
+  sources.n = carried.n, sources.x += first, sources.y += first, sources.z += first;
   const Vec3 at = below(target);
   Vec3 value;
-  kernel_sums(kernel(), charges, {&at, 1}, value.data());
+  kernel_sums(kernel(), sources, {&at, 1}, value.data());
   return wall_.axes().transpose() * value;
 }
 

@@ -47,8 +47,6 @@ class ImageSum {
   void turn(const Charges& carried, std::vector<double> (&own)[6]) const;
   Vec3 below(const Vec3& x) const { return wall_.in_axes(wall_.mirrored(x)); }
   KernelSum kernel() const;
-  void sum_all(const Charges& charges, Net& sums) const;
-  void sum_by_clusters(const Charges& charges, Net& sums);
 
   Kind kind_;
   PlaneWall wall_;

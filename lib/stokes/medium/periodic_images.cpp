@@ -85,6 +85,15 @@ PeriodicCell::PeriodicCell(const Mat3& vectors, int n, double reference) : vecto
   inverse_ = vectors_.inverse();
 }
 
+std::array<Vec3, 2> PeriodicCell::range(const Net& x) const {
+  std::array<Vec3, 2> extent{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  for (const auto row : x.rowwise()) {
+    const Vec3 s = coordinates(row.transpose());
+    extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
+  }
+  return extent;
+}
+
 Vec3 PeriodicCell::shift(const Vec3& x) const {
   Vec3 shift = Vec3::Zero();
   const Vec3 s = coordinates(x);

@@ -24,6 +24,9 @@ class PeriodicCell {
   /// Returns the lattice coordinates of a position. In directions that do not repeat they are lengths.
   Vec3 coordinates(const Vec3& x) const { return inverse_ * x; }
 
+  /// Returns the lowest and highest lattice coordinates of the rows of x.
+  std::array<Vec3, 2> range(const Net& x) const;
+
   /// Returns the lattice vector that must be subtracted from x to move it into the cell around the origin.
   Vec3 shift(const Vec3& x) const;
 

@@ -55,15 +55,14 @@ bool Cluster::serves(const ChebyshevBox& other, const Vec3& beyond) const {
   return square >= reach * reach;
 }
 
-void Clusters::place(const double* x, const double* y, const double* z, std::span<const int> starts) {
-  const double* const at[3] = {x, y, z};
+void Clusters::place(const std::vector<double> (&x)[3], std::span<const int> starts) {
   const int n_groups = static_cast<int>(starts.size()) - 1;
   groups_.resize(n_groups);
   for (int g = 0; g < n_groups; ++g) {
     groups_[g].number = g;
     for (int c = 0; c < 3; ++c) {
       double sum = 0;
-      for (int k = starts[g]; k < starts[g + 1]; ++k) sum += at[c][k];
+      for (int k = starts[g]; k < starts[g + 1]; ++k) sum += x[c][k];
       groups_[g].centre[c] = sum / (starts[g + 1] - starts[g]);
     }
   }
@@ -80,7 +79,7 @@ void Clusters::place(const double* x, const double* y, const double* z, std::spa
   split(0, n_groups, Mat3::Identity(), starts);
   for (int c = 0; c < 3; ++c) {
     point_[c].resize(order_.size());
-    for (std::size_t k = 0; k < order_.size(); ++k) point_[c][k] = at[c][order_[k]];
+    for (std::size_t k = 0; k < order_.size(); ++k) point_[c][k] = x[c][order_[k]];
     node_[c].clear();
   }
   n_blocks_ = 0;

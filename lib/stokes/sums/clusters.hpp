@@ -42,14 +42,14 @@ class Clusters {
   /// a multiple of `quantum` groups, and the cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
-  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only,
-  /// and errors of rounding do not change it.
-  void place(const double* x, const double* y, const double* z, std::span<const int> starts);
+  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding do
+  /// not change it.
+  void place(const std::vector<double> (&x)[3], std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children
   const std::vector<int>& order() const { return order_; }       ///< indices of the points in the order of the tree
-  const double* point(int c) const { return point_[c].data(); }  ///< component c of their positions
-  const double* node(int c) const { return node_[c].data(); }    ///< component c of the positions of the Chebyshev nodes
+  const std::vector<double> (&points() const)[3] { return point_; }  ///< positions of the points in the order of the tree
+  const std::vector<double> (&nodes() const)[3] { return node_; }    ///< positions of the Chebyshev nodes
   int n_nodes() const { return static_cast<int>(node_[0].size()); }
   int n_blocks() const { return n_blocks_; }
   std::size_t bytes() const;

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "base/indices.hpp"
 #include "quadrature/gauss.hpp"
 
 namespace tanktread::stokes {
@@ -29,8 +29,7 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
 /// the number of surfaces.
 int connected(const Panels& panels, std::vector<int>& surface) {
   std::vector<int> first;  // for each control point, the first panel that depends on it; -1 if not found yet
-  std::vector<int> root(static_cast<std::size_t>(panels.size()));
-  std::iota(root.begin(), root.end(), 0);
+  std::vector<int> root = indices(panels.size());
   const auto find = [&](int e) {
     while (root[e] != e) e = root[e] = root[root[e]];
     return e;
@@ -172,11 +171,7 @@ const PointTable& NearField::rule(int panel, const Vec3& target, std::span<const
   const int order = std::max(needed, t.order + 1);
   if (order <= largest_order_ && view.bulge <= 0.5 * seen.distance) {
     const auto [at, is_new] = whole_.try_emplace({t.degree, order});
-    if (is_new) {
-      const auto& gauss = quadrature::tensor_gauss(order);
-      tabulate({{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}}, t.degree,
-               at->second);
-    }
+    if (is_new) tabulate(quadrature::Rule(quadrature::tensor_gauss(order)), t.degree, at->second);
     return at->second;
   }
   points_.clear();

@@ -13,20 +13,10 @@ namespace tanktread::stokes {
 namespace {
 
 NodeTable table(int degree, int order) {
-  const auto& rule = quadrature::tensor_gauss(order);
-  const int n = degree + 1, n_nodes = rule.size();
-  NodeTable t{degree, order, n * n, n_nodes, {}, {}, {}, {rule.weights.begin(), rule.weights.end()}};
-  for (auto* values : {&t.value, &t.along_s, &t.along_t}) values->resize(static_cast<std::size_t>(n) * n * n_nodes);
-  double bs[spline::max_degree + 1], bt[spline::max_degree + 1], ds[spline::max_degree + 1], dt[spline::max_degree + 1];
-  for (int k = 0; k < n_nodes; ++k) {
-    spline::bernstein(degree, rule.s[k], bs, ds, nullptr);
-    spline::bernstein(degree, rule.t[k], bt, dt, nullptr);
-    for (int b = 0; b < n * n; ++b) {
-      const int i = b % n, j = b / n, at = n_nodes * b + k;
-      t.value[at] = bs[i] * bt[j], t.along_s[at] = ds[i] * bt[j], t.along_t[at] = bs[i] * dt[j];
-    }
-  }
-  return t;
+  const quadrature::TensorRule& rule = quadrature::tensor_gauss(order);
+  const auto [value, s, t] = spline::tensor_bernstein(degree, rule.s, rule.t);
+  const auto numbers = [](const auto& a) { return std::vector<double>(a.data(), a.data() + a.size()); };
+  return {degree, order, (degree + 1) * (degree + 1), rule.size(), numbers(value), numbers(s), numbers(t), numbers(rule.weights)};
 }
 
 }  // namespace
@@ -51,23 +41,19 @@ Panels::Panels(const spline::Space& space, const std::vector<int>& orders) {
 
 void Panels::bezier(const Net& net, std::vector<double>& points) const {
   points.resize(bezier_size_);
-  for (int e = 0; e < size(); ++e) bezier(e, net, points);
-}
-
-void Panels::bezier(int e, const Net& net, std::vector<double>& points) const {
-  const Panel& p = panels_[e];
-  extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
+  for (int e = 0; e < size(); ++e) {
+    const Panel& p = panels_[e];
+    extract(p.table->n_bernstein, p.functions, this->points(e), extraction(e), net.data(), &points[p.first_bezier]);
+  }
 }
 
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
   for (auto& component : value) component.resize(panels.n_nodes());
-  for (int e = 0; e < panels.size(); ++e) node_values(panels, e, bezier, value);
-}
-
-void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]) {
-  const NodeTable& t = *panels[e].table;
-  for (int c = 0; c < 3; ++c)
-    combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
+  for (int e = 0; e < panels.size(); ++e) {
+    const NodeTable& t = *panels[e].table;
+    for (int c = 0; c < 3; ++c)
+      combine(t.n_bernstein, t.n_nodes, t.value.data(), &bezier[panels[e].first_bezier + c * t.n_bernstein], &value[c][panels[e].first_node]);
+  }
 }
 
 namespace {

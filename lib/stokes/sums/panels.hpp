@@ -35,14 +35,12 @@ class Panels {
 
   int size() const { return static_cast<int>(panels_.size()); }
   int n_nodes() const { return n_nodes_; }
-  std::size_t bezier_size() const { return bezier_size_; }
   const Panel& operator[](int e) const { return panels_[e]; }
   const int* points(int e) const { return &points_[panels_[e].first_point]; }
   const double* extraction(int e) const { return &extraction_[panels_[e].first_extraction]; }
 
-  /// Compute the Bezier points of all panels, or of panel e only, from the control net of any field. `points` has the Bezier points of all panels.
+  /// Computes the Bezier points of all panels from the control net of any field.
   void bezier(const Net& net, std::vector<double>& points) const;
-  void bezier(int e, const Net& net, std::vector<double>& points) const;
 
  private:
   std::deque<NodeTable> tables_;
@@ -62,9 +60,8 @@ struct PanelImages {
   bool own(int e) const { return image[e] < 0; }
 };
 
-/// Compute the values of a field from its Bezier points at all far nodes, or at the far nodes of panel e only; one array per component for all nodes.
+/// Computes the values of a field from its Bezier points at all far nodes, one array per component.
 void node_values(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
-void node_values(const Panels& panels, int e, const std::vector<double>& bezier, std::vector<double> (&value)[3]);
 
 /// Computes Gauss weight times x_,s x x_,t at all far nodes: the outward normal times the area that the node represents.
 void node_normals(const Panels& panels, const std::vector<double>& bezier, std::vector<double> (&normal)[3]);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <tuple>
 
-#include <Eigen/Geometry>
-
 #include "quadrature/gauss.hpp"
 #include "spline/bernstein.hpp"
 
@@ -24,11 +22,6 @@ double distortion_allowed(double tolerance) { return 0.5 * std::min(1., std::pow
 /// Maximum number of cached rules, and of their points (136 bytes each). The limit is needed because metrics change in a long run, and a strongly
 /// deformed shape may need rules of 25,000 points.
 constexpr std::size_t most_tables = 1000, most_points = 1'000'000;
-
-quadrature::Rule whole_square(int order) {
-  const auto& gauss = quadrature::tensor_gauss(order);
-  return {{gauss.s.begin(), gauss.s.end()}, {gauss.t.begin(), gauss.t.end()}, {gauss.weights.begin(), gauss.weights.end()}};
-}
 
 /// Returns sum B_i(s) B_j(t) p_ij for the Bezier points p_ij. At corners and on sides of a panel most of the polynomials vanish.
 Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
@@ -126,7 +119,7 @@ const PointTable& SelfField::made(const SelfPair& pair, int degree) {
   else if (!orders.radial)
     tabulate(quadrature::polar(s, t, shear, quadrature::polar_orders(s, t, shear, radial_, options_.tolerance)), degree, *table);
   else if (orders.angular == std::array<int, 4>{})
-    tabulate(whole_square(orders.radial), degree, *table);
+    tabulate(quadrature::Rule(quadrature::tensor_gauss(orders.radial)), degree, *table);
   else
     tabulate(quadrature::polar(s, t, shear, orders), degree, *table);
   return *table;

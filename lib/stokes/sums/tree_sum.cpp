@@ -1,7 +1,8 @@
 #include "stokes/sums/tree_sum.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "base/indices.hpp"
 
 namespace tanktread::stokes {
 namespace {
@@ -15,12 +16,11 @@ constexpr double allowance = 0.3;
 
 int blocks_of(int n) { return (n + far_block - 1) / far_block; }
 
-/// Copies n positions into blocks; unused lanes repeat the last position.
-void fill_blocks(int n, const double* x, const double* y, const double* z, double* block) {
+/// Copies n positions, from index `first`, into blocks; unused lanes repeat the last position.
+void fill_blocks(int n, int first, const std::vector<double> (&x)[3], double* block) {
   for (int k = 0; k < far_block * blocks_of(n); ++k) {
     double* to = block + 3 * far_block * (k / far_block) + k % far_block;
-    const int from = std::min(k, n - 1);
-    to[0] = x[from], to[far_block] = y[from], to[2 * far_block] = z[from];
+    for (int c = 0; c < 3; ++c) to[far_block * c] = x[c][first + std::min(k, n - 1)];
   }
 }
 
@@ -46,25 +46,22 @@ void reflect(ChebyshevBox& box, const surface::Reflection& image) {
 TreeSum::TreeSum(double tolerance, Precision precision)
     : precision_(precision), sources_(allowance * tolerance, source_leaf, 1), target_tree_(allowance * tolerance, target_leaf, far_block) {}
 
-void TreeSum::place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
+void TreeSum::place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
                     std::span<const surface::Reflection> reflections) {
-  sources_.place(x, y, z, starts);
+  sources_.place(x, starts);
   std::vector<double> at[3];
   for (int c = 0; c < 3; ++c)
     for (const Vec3& target : targets) at[c].push_back(target[c]);
-  std::vector<int> singles(targets.size() + 1);
-  std::iota(singles.begin(), singles.end(), 0);
-  target_tree_.place(at[0].data(), at[1].data(), at[2].data(), singles);
+  target_tree_.place(at, indices(targets.size() + 1));
   const Clusters& tree = target_tree_;
 
   const int n = static_cast<int>(targets.size()), n_clusters = static_cast<int>(tree.all().size());
   target_at_.resize(static_cast<std::size_t>(3) * far_block * blocks_of(n));
-  fill_blocks(n, tree.point(0), tree.point(1), tree.point(2), target_at_.data());
+  fill_blocks(n, 0, tree.points(), target_at_.data());
   node_at_.resize(static_cast<std::size_t>(3) * far_block * tree.n_blocks());
   for (const Cluster& c : tree.all())
     if (!c.bare)
-      fill_blocks(c.n_nodes(), tree.node(0) + c.first_node, tree.node(1) + c.first_node, tree.node(2) + c.first_node,
-                  &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
+      fill_blocks(c.n_nodes(), c.first_node, tree.nodes(), &node_at_[static_cast<std::size_t>(3) * far_block * c.first_block]);
 
   targets_ = tree.all();
   n_trees_ = 1;
@@ -142,22 +139,6 @@ void TreeSum::sum(const std::array<const double*, 6>& carried, double* values) {
   }
 }
 
-Charges TreeSum::points() const {
-  return {sources_.all().front().n_points(),
-          sources_.point(0),
-          sources_.point(1),
-          sources_.point(2),
-          {q_[0].data(), q_[1].data(), q_[2].data(), q_[3].data(), q_[4].data(), q_[5].data()}};
-}
-
-Charges TreeSum::nodes() const {
-  return {sources_.n_nodes(),
-          sources_.node(0),
-          sources_.node(1),
-          sources_.node(2),
-          {node_q_[0].data(), node_q_[1].data(), node_q_[2].data(), node_q_[3].data(), node_q_[4].data(), node_q_[5].data()}};
-}
-
 /// Copies the source strengths into the order of the tree, and computes the strengths at the Chebyshev nodes of all clusters in use, from the leaves
 /// upwards.
 void TreeSum::collect(const std::array<const double*, 6>& carried) {
@@ -167,7 +148,7 @@ void TreeSum::collect(const std::array<const double*, 6>& carried) {
     node_q_[c].assign(sources_.n_nodes(), 0);
   }
   const std::vector<Cluster>& all = sources_.all();
-  const Charges points = this->points(), nodes = this->nodes();
+  const Charges points = charges(sources_.points(), q_), nodes = charges(sources_.nodes(), node_q_);
   const auto take = [&](const Cluster& c, const Charges& from) {
     std::array<double*, 6> to{};
     for (int d = 0; d < in_; ++d) to[d] = &node_q_[d][c.first_node];
@@ -232,7 +213,8 @@ void TreeSum::add(const Pair& pair) {
   const double* at = (target_nodes ? node_at_ : target_at_).data() + 3 * far_block * block;
   double* u = (target_nodes ? node_u_ : target_u_).data() + out_ * far_block * block;
   const int n = target_nodes ? target.n_nodes() : target.n_points();
-  const Charges from = source_nodes ? nodes().part(source.first_node, source.n_nodes()) : points().part(source.first, source.n_points());
+  const Charges from = source_nodes ? charges(sources_.nodes(), node_q_).part(source.first_node, source.n_nodes())
+                                    : charges(sources_.points(), q_).part(source.first, source.n_points());
   const Vec3& beyond = images_[static_cast<std::size_t>(pair.image)];
   double sums[6 * far_block], seen[3 * far_block];
   for (int b = 0; b < blocks_of(n); ++b, at += 3 * far_block, u += out_ * far_block) {

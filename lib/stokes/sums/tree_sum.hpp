@@ -22,10 +22,10 @@ class TreeSum {
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Sets the positions x, y, z of the nodes and of all n targets. Clusters do not split a group of nodes starts[g] .. starts[g + 1] - 1. The sums
+  /// Sets the positions x of the nodes and of all n targets. Clusters do not split a group of nodes starts[g] .. starts[g + 1] - 1. The sums
   /// have n rows for the targets, then n rows for the images of the targets in each of the `reflections`: row i + n k belongs to the image of target
   /// i in reflections[k - 1]. The clusters of image targets are the images of the clusters of targets.
-  void place(const double* x, const double* y, const double* z, std::span<const int> starts, std::span<const Vec3> targets,
+  void place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
   /// Sets the lattice vectors by which the sources are displaced; include 0 for the sources themselves. Must be called before place(). If there are
@@ -74,8 +74,6 @@ class TreeSum {
   long long work(const Pair& pair) const;
   void add(const Pair& pair);
   void hand_down();
-  Charges points() const;
-  Charges nodes() const;
 
   Precision precision_;
   int part_ = 0, parts_ = 1;

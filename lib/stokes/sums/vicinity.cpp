@@ -1,8 +1,8 @@
 #include "stokes/sums/vicinity.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/panel_kernel.hpp"
 
 namespace tanktread::stokes {
@@ -16,8 +16,7 @@ constexpr int leaf = 64;
 
 void Vicinity::place(int n, const double* x, const double* y, const double* z, const double* square) {
   const double* const at[3] = {x, y, z};
-  number_.resize(n);
-  std::iota(number_.begin(), number_.end(), 0);
+  number_ = indices(n);
   boxes_.clear();
   for (int c = 0; c < 3; ++c) centre_[c].assign(at[c], at[c] + n);
   square_.assign(square, square + n);

@@ -1,8 +1,8 @@
 #include "system/solids/channel_flow.hpp"
 
 #include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 
@@ -68,10 +68,8 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   const std::shared_ptr<Wall> wall = this->wall();
   Solved solved;
   const std::vector<int>& own = wall->own_targets();
-  Net at(static_cast<Eigen::Index>(own.size()), 3), of_ends(wall->targets().rows(), 3);
-  for (std::size_t k = 0; k < own.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = wall->targets().row(own[k]);
-  const Net found = ends(at);
-  for (std::size_t k = 0; k < own.size(); ++k) of_ends.row(own[k]) = found.row(static_cast<Eigen::Index>(k));
+  Net of_ends(wall->targets().rows(), 3);
+  of_ends(own, Eigen::all) = ends(wall->targets()(own, Eigen::all));
   const Net without = viscosity() * wall->solve(wall->collocated(of_ends)), &with = wall->pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();
@@ -115,10 +113,8 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
     v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
   };
   if (x.rows() >= few) return wall->ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
-  std::vector<int> all(static_cast<std::size_t>(x.rows()));
-  std::iota(all.begin(), all.end(), 0);
   Net v(x.rows(), 3);
-  evaluate(all, v);
+  evaluate(indices(x.rows()), v);
   return v;
 }
 

@@ -1,10 +1,10 @@
 #include "system/solids/one_body.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "base/dense_factors.hpp"
+#include "base/indices.hpp"
 #include "stokes/layer.hpp"
 #include "system/collocation.hpp"
 
@@ -30,8 +30,7 @@ std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const 
   auto factors = std::make_shared<Factors>();
   factors->prescribed = particle.rigid->prescribed;
   factors->sites = collocation_matrix(*particle.space);
-  std::vector<int> all(static_cast<std::size_t>(particle.space->n_points));
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = indices(particle.space->n_points);
   stokes::Rows<double> matrix;
   const spline::Space& space = *particle.space;
   stokes::Layer double_layer(stokes::Layer::Kernel::double_layer, space, space.collocation, quadrature);
@@ -147,10 +146,9 @@ FilmInverses::FilmInverses(std::span<const Particle> particles, const OneBodyInv
 void FilmInverses::add(Net& y) const {
   const Net before = y;
   for (const Film& film : films_) {
-    Eigen::VectorXd right(3 * static_cast<Eigen::Index>(film.sites.size()));
-    for (std::size_t k = 0; k < film.sites.size(); ++k) right.segment<3>(3 * static_cast<Eigen::Index>(k)) = before.row(film.sites[k]).transpose();
-    const Eigen::VectorXd change = film.one_and_coupling.solve(right) - right;
-    for (std::size_t k = 0; k < film.sites.size(); ++k) y.row(film.sites[k]) += change.segment<3>(3 * static_cast<Eigen::Index>(k)).transpose();
+    const Net own = before(film.sites, Eigen::all);
+    const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(own.data(), own.size()), change = film.one_and_coupling.solve(right) - right;
+    y(film.sites, Eigen::all) += Eigen::Map<const Net>(change.data(), own.rows(), 3);
   }
 }
 

@@ -2,7 +2,6 @@
 // Inverse of the single layer of plates with equal elements, by Fourier series.
 
 #include <array>
-#include <complex>
 #include <vector>
 
 #include "base/types.hpp"

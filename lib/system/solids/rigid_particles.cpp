@@ -1,13 +1,13 @@
 #include "system/solids/rigid_particles.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 
+#include "base/indices.hpp"
 #include "base/small_matrices.hpp"
 #include "membrane/direct_solver.hpp"
 #include "membrane/mass.hpp"
@@ -20,18 +20,12 @@ namespace tanktread::coupling {
 
 namespace {
 
-std::vector<int> numbers(int first, int last) {
-  std::vector<int> all(static_cast<std::size_t>(last - first));
-  std::iota(all.begin(), all.end(), first);
-  return all;
-}
-
 /// Returns the single layer A f at sites for each of six densities f.
 std::array<Net, 6> single_layer_at(const stokes::Sites& sites, const spline::Space& space, const Net& surface, const std::array<Net, 6>& f,
                                    const quadrature::Options& quadrature) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, space, sites, quadrature);
   layer.place(surface);
-  const std::vector<int> all = numbers(0, static_cast<int>(sites.size()));
+  const std::vector<int> all = indices(sites.size());
   std::array<Net, 6> u;
   u.fill(Net(sites.size(), 3));
   for (std::size_t k = 0; k < f.size(); ++k) layer.apply(f[k], all, u[k]);
@@ -51,7 +45,7 @@ Eigen::MatrixXd weighted_double_layer(const stokes::Sites& sites, const Eigen::S
   stokes::Rows<double> rows;
   for (int first = 0; first < n_sites; first += at_a_time) {
     const int last = std::min(first + at_a_time, n_sites);
-    layer.assemble(numbers(first, last), rows);
+    layer.assemble(indices(last - first, first), rows);
     for (int c = 0; c < 3; ++c)
       sum(Eigen::seq(c, Eigen::last, 3), Eigen::all) +=
           weights.middleCols(first, last - first) * Strided(rows.row(c).data(), last - first, rows.cols(), Eigen::OuterStride<>(3 * rows.cols()));
@@ -154,8 +148,6 @@ RigidMotion RigidParticles::Body::mean(const Net& w) const {
 }
 
 Net RigidParticles::Body::field(const RigidMotion& of) const { return rigid_velocity(rest * turn.transpose(), of, Vec3::Zero()); }
-
-RigidMotion RigidParticles::Body::load() const { return carrying(force, torque); }
 
 void RigidParticles::push(const Net& work) {
   for (Body& body : bodies_) body.pushed = work.size() > 0 ? Net(body.block.rows(work)) : Net();
@@ -267,7 +259,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
 /// Computes int df r dG in closed form for the load df = -(a + b x r).
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
-  const RigidMotion load = of.load();
+  const RigidMotion load = of.carrying(of.force, of.torque);
   const Mat3 second = of.turn * of.second * of.turn.transpose();
   return -(load.velocity * (of.turn * of.first).transpose() + cross(load.angular_velocity) * second);
 }

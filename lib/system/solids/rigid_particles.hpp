@@ -132,8 +132,6 @@ class RigidParticles {
     RigidMotion carrying(const Vec3& force, const Vec3& torque) const;  // load a + b x r whose integral over the surface is `force` and whose moment
                                                                         // is `torque`
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
-    RigidMotion load() const;                                           // coefficients a and b of the force density a + b x r on the fluid, which is
-                                                                        // -df in (2.23)
     Net lacking_of(const RigidMotion& load) const;                      // collocation-error correction (OwnLacking) of the single layer R^-1 A f of
                                                                         // the load f = a + b x r
     Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of the double layer R^-1 H w;

@@ -24,16 +24,6 @@ surface::SolidSurface all_of(const std::vector<Solids::Solid>& solids) {
   return stacked(surfaces);
 }
 
-/// Returns the range of the coordinates of points in the axes of a cell.
-std::array<Vec3, 2> range(const stokes::PeriodicCell& cell, const Net& x) {
-  std::array<Vec3, 2> extent{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const Vec3 s = cell.coordinates(x.row(i).transpose());
-    extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
-  }
-  return extent;
-}
-
 }  // namespace
 
 Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
@@ -61,7 +51,7 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
-  reached_ = range(cell_, surface_.net);
+  reached_ = cell_.range(surface_.net);
   if (solids.size() == 1 && cell_.n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
     const double period = cell_.vectors().col(0).norm();
     reached_[0][2] -= period, reached_[1][2] += period;
@@ -98,7 +88,7 @@ void Solids::make_layer() {
 
 void Solids::reach(const Net& x) {
   if (cell_.n() == 3) return;
-  const auto [low, high] = range(cell_, x);
+  const auto [low, high] = cell_.range(x);
   if (low[2] >= reached_[0][2] && high[2] <= reached_[1][2]) return;
   const double more = (high[2] - low[2]) / 2;
   reached_[0][2] = std::min(reached_[0][2], low[2] - more), reached_[1][2] = std::max(reached_[1][2], high[2] + more);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/indices.hpp"
 #include "surface/clearance.hpp"
 #include "surface/closest_points.hpp"
 #include "system/collocation.hpp"
@@ -44,12 +45,6 @@ std::vector<Vec3> points_of_caps(const surface::TubeWall& wall) {
     add_points_of_cap(wall.channel->outline(s), place, points);
   }
   return points;
-}
-
-std::vector<int> everybody(Eigen::Index n) {
-  std::vector<int> all(static_cast<std::size_t>(n));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  return all;
 }
 
 }  // namespace
@@ -124,9 +119,9 @@ double Tube::cap_velocity(const Net& f, const Net& v, const Response& response) 
   Particle& particle = *particle_;
   const double mu = viscosity();
   const std::vector<Vec3> points = points_of_caps(wall_->surface());
-  Net at(static_cast<Eigen::Index>(points.size()), 3), part = at;
-  for (std::size_t k = 0; k < points.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
-  const std::vector<int> all = everybody(at.rows());
+  const Net at = Eigen::Map<const Net>(points.front().data(), static_cast<Eigen::Index>(points.size()), 3);
+  Net part = at;
+  const std::vector<int> all = indices(at.rows());
   Net u = response.pressure_drop / mu * wall_->inlet().integral(at);
   wall_->layer().apply(wall_->on_space(response.wall_traction), at, all, part);
   u -= part / mu;
@@ -159,7 +154,7 @@ double Tube::gap() const {
         nearest =
             std::min(nearest, surface::closest_points(surface::ElementBoxes(seen), wall_->boxes(), 1e-5 * wall().radius(), wall().radius()).gap);
     }
-    return inside(particle_->sites, everybody(particle_->sites.rows())) ? nearest : -nearest;
+    return inside(particle_->sites, indices(particle_->sites.rows())) ? nearest : -nearest;
   }
   return surface::clearance(patches, wall_->surface().outline).gap;
 }

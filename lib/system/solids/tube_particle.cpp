@@ -1,9 +1,9 @@
 #include "system/solids/tube_particle.hpp"
 
-#include <numeric>
 #include <span>
 #include <vector>
 
+#include "base/indices.hpp"
 #include "system/collocation.hpp"
 #include "system/solids/nearest_sites.hpp"
 
@@ -69,9 +69,7 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   }
   if (dual) {
     dual->place(shape);
-    std::vector<int> everybody(static_cast<std::size_t>(wall.targets().rows()));
-    std::iota(everybody.begin(), everybody.end(), 0);
-    nearest = nearest_sites(sites, wall.targets(), everybody, period ? &period->cell : nullptr);
+    nearest = nearest_sites(sites, wall.targets(), indices(wall.targets().rows()), period ? &period->cell : nullptr);
     if (period) {
       dual->see_images_only(static_cast<int>(wall.targets().rows()));
       dual_on_wall = dual->near(period->targets, period->own);
@@ -158,10 +156,8 @@ Net Tube::Particle::ambient_of(const stokes::DuctFlow& flow) const {
   const surface::Symmetry& symmetry = parameters.symmetry;
   if (symmetry.order() == 1) return flow.velocities(sites);
   const std::vector<int>& rows = symmetry.fundamental();
-  Net at(static_cast<Eigen::Index>(rows.size()), 3), all = Net::Zero(sites.rows(), 3);
-  for (std::size_t k = 0; k < rows.size(); ++k) at.row(static_cast<Eigen::Index>(k)) = sites.row(rows[k]);
-  const Net v = flow.velocities(at);
-  for (std::size_t k = 0; k < rows.size(); ++k) all.row(rows[k]) = v.row(static_cast<Eigen::Index>(k));
+  Net all = Net::Zero(sites.rows(), 3);
+  all(rows, Eigen::all) = flow.velocities(sites(rows, Eigen::all));
   symmetry.complete(all);
   return all;
 }

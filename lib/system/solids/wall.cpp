@@ -138,15 +138,6 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
 }
 
-std::array<Vec3, 2> Wall::across() const {
-  std::array<Vec3, 2> extent{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
-  for (Eigen::Index i = 0; i < surface_.net.rows(); ++i) {
-    const Vec3 s = cell_->coordinates(surface_.net.row(i).transpose());
-    extent[0] = extent[0].cwiseMin(s), extent[1] = extent[1].cwiseMax(s);
-  }
-  return extent;
-}
-
 /// Appends the midpoints of the wall's elements to the targets (2.39).
 void Wall::add_middles() {
   const auto n = static_cast<int>(surface_.middles.size()), first = static_cast<int>(sites_.rows());

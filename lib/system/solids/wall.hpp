@@ -99,7 +99,7 @@ class Wall {
   const std::optional<stokes::PeriodicCell>& cell() const { return cell_; }
 
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
-  std::array<Vec3, 2> across() const;
+  std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
 
   /// Converts control values of a traction f, one row per site, to control values on the space of the layer. The two differ only if the wall is
   /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.

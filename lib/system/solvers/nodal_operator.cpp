@@ -1,9 +1,8 @@
 #include "system/solvers/nodal_operator.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
+#include "base/indices.hpp"
 #include "stokes/kernels/far_kernel.hpp"
 #include "stokes/kernels/kernels.hpp"
 #include "stokes/sums/vicinity.hpp"
@@ -18,11 +17,6 @@ constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 /// sum by clusters is faster than the direct sum. Both were chosen from measurements on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
 constexpr Eigen::Index nodes_worth_a_tree = 4000;
-
-Mat3 stokeslet(const Vec3& r) {
-  const double square = r.squaredNorm(), inverse = square > 0 ? 1 / std::sqrt(square) : 0;
-  return inverse * Mat3::Identity() + inverse * inverse * inverse * r * r.transpose();
-}
 
 using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
@@ -61,11 +55,9 @@ void NodalOperator::assemble(const std::vector<int>& targets, const Surface& sur
   tree_.reset();
   if (far_sum == "dense" || (far_sum == "auto" && n < nodes_worth_a_tree)) return;
   tree_.emplace(cluster_tolerance);
-  std::vector<int> starts(static_cast<std::size_t>(n) + 1);
-  std::iota(starts.begin(), starts.end(), 0);
   std::vector<Vec3> at;
   for (const auto site : surface.sites.rowwise()) at.emplace_back(site.transpose());
-  tree_->place(node_[0].data(), node_[1].data(), node_[2].data(), starts, at);
+  tree_->place(node_, indices(n + 1), at);
   tree_->share(part_, parts_);
   tree_->want(parts_ > 1 ? everybody_ : targets_);
 }
@@ -94,7 +86,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
     for (std::size_t j = near_.first[k]; j < near_.first[k + 1]; ++j) {
       Mat3 rule = Mat3::Zero();
       for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, near_.point[j]); entry; ++entry)
-        rule += weights_[entry.row()] * entry.value() * stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
+        rule += weights_[entry.row()] * entry.value() * stokes::stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
       for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(upper[c][0], upper[c][1]);
     }
   }
@@ -119,10 +111,8 @@ void NodalOperator::sum(Net& u) {
     for (const int i : shared() ? everybody_ : targets_) u.row(i) = Vec3(&rows[3 * static_cast<std::size_t>(i)]).transpose();
     return;
   }
-  const stokes::PointForces all{static_cast<int>(node_[0].size()), node_[0].data(), node_[1].data(), node_[2].data(), force_[0].data(),
-                                force_[1].data(), force_[2].data()};
   std::vector<double> sums(3 * targets_.size());
-  stokes::far_sums(all, at_, sums.data());
+  stokes::far_sums(stokes::charges(node_, force_), at_, sums.data());
   for (std::size_t k = 0; k < targets_.size(); ++k) u.row(targets_[k]) = Vec3(&sums[3 * k]).transpose();
 }
 

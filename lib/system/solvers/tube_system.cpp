@@ -3,7 +3,6 @@
 #include <type_traits>
 #include <utility>
 
-
 namespace tanktread::coupling {
 
 namespace {

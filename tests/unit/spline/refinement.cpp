@@ -66,7 +66,6 @@ TEST(Refinement, AChainIntoAnExtraordinaryPointCosts45PointsALevel) {
     auto next = std::make_unique<Space>(space(r.mesh, rule));
     EXPECT_EQ(next->n_points - now->n_points, 45);
     const Transfer transfer(*now, *next);
-    EXPECT_EQ(transfer.straddling(), 0);
     EXPECT_LT(transfer(random_net(now->n_points, unsigned(level))).residual, 1e-12);
     mesh = r.mesh;
     now = std::move(next);

@@ -29,7 +29,6 @@ void expect_nested(const Findings& found) {
   EXPECT_EQ(found.crossings, 0);
   EXPECT_EQ(found.overlaps, 0);
   EXPECT_EQ(found.broken_zones, 0);
-  EXPECT_EQ(found.straddling, 0);
   EXPECT_EQ(found.wrong_counts, 0);
   EXPECT_LT(found.unity, 1e-13);
   EXPECT_LT(found.residual, 1e-12);  // for fields of order 1; measured: 1e-14, and 1e-3 to 1 if a rule is violated
@@ -118,7 +117,6 @@ void run_sequence(TMesh mesh, unsigned seed, const SequenceOptions& options, Fin
     auto next = std::make_unique<Space>(options.space(mesh));
     const Transfer transfer(*now, *next);
     found.residual = std::max(found.residual, transfer(random_net(now->n_points, unsigned(generator()))).residual);
-    found.straddling += transfer.straddling();
     found.wrong_counts += wrong_counts(mesh, *next, options.per_pole);
     for (const Element& e : next->elements)
       found.unity = std::max(found.unity, (e.extraction->colwise().sum().array() - 1).abs().maxCoeff());

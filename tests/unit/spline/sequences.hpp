@@ -17,7 +17,7 @@ TMesh merged_wherever_allowed(TMesh mesh, const TMesh& base);
 
 /// The worst values found in one or more sequences.
 struct Findings {
-  int steps = 0, crossings = 0, overlaps = 0, broken_zones = 0, straddling = 0;
+  int steps = 0, crossings = 0, overlaps = 0, broken_zones = 0;
   int wrong_counts = 0;       // number of regular elements that do not have 16 functions
   double unity = 0;           // error of the partition of unity
   double residual = 0;        // residual of the transfer of a random field

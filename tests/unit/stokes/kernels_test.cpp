@@ -40,23 +40,23 @@ TEST(Stresslet, IsTheStressOfTheStokeslet) {
 
 struct Forces {
   std::vector<double> values;
-  PointForces view;
+  Charges view;
 
   explicit Forces(int n) : values(static_cast<std::size_t>(6) * n) {
     std::mt19937 random(1);
     for (double& v : values) v = std::uniform_real_distribution<>(-1, 1)(random);
     const double* v = values.data();
-    view = {n, v, v + n, v + 2 * n, v + 3 * n, v + 4 * n, v + 5 * n};
+    view = {n, v, v + n, v + 2 * n, {v + 3 * n, v + 4 * n, v + 5 * n}};
   }
   Vec3 position(int k) const { return {view.x[k], view.y[k], view.z[k]}; }
-  Vec3 force(int k) const { return {view.fx[k], view.fy[k], view.fz[k]}; }
+  Vec3 force(int k) const { return {view.q[0][k], view.q[1][k], view.q[2][k]}; }
 };
 
 TEST(FarSum, IsTheSumOfStokeslets) {
   const Forces forces(37);
   double target[3 * far_block], u[3 * far_block];
   for (int k = 0; k < 3 * far_block; ++k) target[k] = std::sin(k);
-  far_sum(forces.view, target, u);
+  stokeslet_sum(forces.view, target, u);
   for (int l = 0; l < far_block; ++l) {
     const Vec3 x0(target[l], target[far_block + l], target[2 * far_block + l]);
     Vec3 sum = Vec3::Zero(), one;
@@ -73,7 +73,7 @@ TEST(FarSum, IsAccurateAtEveryScale) {
     const Vec3 place = scale * r, force(0.4, -0.2, 0.9);
     double target[3 * far_block] = {}, u[3 * far_block];
     for (int l = 0; l < far_block; ++l) target[l] = 0.1 * l * scale;
-    far_sum(PointForces{1, &place[0], &place[1], &place[2], &force[0], &force[1], &force[2]}, target, u);
+    stokeslet_sum(Charges{1, &place[0], &place[1], &place[2], {&force[0], &force[1], &force[2]}}, target, u);
     for (int l = 0; l < far_block; ++l) {
       const Vec3 exact = stokeslet(place - Vec3(target[l], 0, 0)) * force;
       EXPECT_LT((Vec3(u[l], u[far_block + l], u[2 * far_block + l]) - exact).norm(), 1e-14 * exact.norm()) << scale;
@@ -86,7 +86,7 @@ TEST(FarSum, OfATargetIsTheSameToTheBitInEveryLane) {
   const Forces forces(37);
   double target[3 * far_block], u[3 * far_block];
   for (int k = 0; k < 3 * far_block; ++k) target[k] = std::sin(k / far_block + 1);
-  far_sum(forces.view, target, u);
+  stokeslet_sum(forces.view, target, u);
   for (int c = 0; c < 3; ++c)
     for (int l = 1; l < far_block; ++l) EXPECT_EQ(u[far_block * c + l], u[far_block * c]);
 }
@@ -96,7 +96,7 @@ TEST(FarSum, TakesNothingFromANodeAtTheTarget) {
   double target[3 * far_block], u[3 * far_block];
   for (int l = 0; l < far_block; ++l)  // exact coincidence in the first lane, up to rounding in the others
     for (int c = 0; c < 3; ++c) target[far_block * c + l] = forces.position(2)[c] * (1 + 1e-16 * l * (c + 1));
-  far_sum(forces.view, target, u);
+  stokeslet_sum(forces.view, target, u);
   Vec3 sum = Vec3::Zero(), one;
   for (const int k : {0, 1, 3, 4}) sum += stokeslet(forces.position(k) - forces.position(2)) * forces.force(k);
   for (int l = 0; l < far_block; ++l) {

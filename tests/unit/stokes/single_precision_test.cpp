@@ -31,13 +31,10 @@ struct Scene {
       }
   }
 
-  PointForces forces() const { return {n, x[0].data(), x[1].data(), x[2].data(), q[0].data(), q[1].data(), q[2].data()}; }
   Stresslets stresslets() const {
     return {n, x[0].data(), x[1].data(), x[2].data(), q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()};
   }
-  Charges charges() const {
-    return {n, x[0].data(), x[1].data(), x[2].data(), {q[0].data(), q[1].data(), q[2].data(), q[3].data(), q[4].data(), q[5].data()}};
-  }
+  Charges charges() const { return stokes::charges(x, q); }
 
   /// Returns sum 10 / r^power over the nodes that do not coincide with target l, of the order of the sum of the magnitudes of the terms.
   double magnitude(int l, int power) const {
@@ -67,9 +64,7 @@ TEST(SinglePrecision, ErrsByRoundingHoweverCloseANodeIsAndInAnyUnit) {
   for (const double unit : {1e-9, 1e-6, 1., 1e9}) {
     const Scene scene(unit);
     double single[3 * far_block], full[3 * far_block];
-    far_sum_in_single(scene.forces(), scene.target, single), far_sum(scene.forces(), scene.target, full);
-    EXPECT_LT(largest_error(scene, 1, single, full), 4 * rounding) << unit;
-    stokeslet_sum_in_single(scene.charges(), scene.target, single);
+    stokeslet_sum_in_single(scene.charges(), scene.target, single), stokeslet_sum(scene.charges(), scene.target, full);
     EXPECT_LT(largest_error(scene, 1, single, full), 4 * rounding) << unit;
     far_sum_in_single(scene.stresslets(), scene.target, single), far_sum(scene.stresslets(), scene.target, full);
     EXPECT_LT(largest_error(scene, 2, single, full), 16 * rounding) << unit;
@@ -89,8 +84,8 @@ TEST(SinglePrecision, GivesATargetTheSameWhateverItsNeighboursAre) {
       for (int c = 0; c < 3; ++c) EXPECT_EQ(alone[far_block * c], together[far_block * c + l]) << l;
     }
   };
-  same([](const PointForces& nodes, const double* target, double* u) { far_sum_in_single(nodes, target, u); }, scene.forces());
-  same([](const Stresslets& nodes, const double* target, double* u) { far_sum_in_single(nodes, target, u); }, scene.stresslets());
+  same(stokeslet_sum_in_single, scene.charges());
+  same(far_sum_in_single, scene.stresslets());
   same(stresslet_sum_in_single, scene.charges());
 }
 

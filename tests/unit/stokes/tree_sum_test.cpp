@@ -37,13 +37,9 @@ struct Cloud {
     for (int i = 0; i < n_targets; ++i) targets.push_back(i % 100 ? place() : Vec3(x[0][i], x[1][i], x[2][i]));
   }
 
-  PointForces forces() const {
-    return {static_cast<int>(x[0].size()), x[0].data(), x[1].data(), x[2].data(), f[0].data(), f[1].data(), f[2].data()};
-  }
-
   Net sum(TreeSum& tree, const std::vector<int>& wanted) const {
     Net u = Net::Zero(static_cast<Eigen::Index>(targets.size()), 3);
-    tree.place(x[0].data(), x[1].data(), x[2].data(), starts, targets);
+    tree.place(x, starts, targets);
     tree.sum<StokesletKernel>({f[0].data(), f[1].data(), f[2].data()}, wanted, u.data());
     return u;
   }
@@ -53,7 +49,7 @@ struct Cloud {
     double largest = 0;
     for (const int i : wanted) {
       Vec3 exact;
-      node_sum(forces(), targets[i].data(), exact.data());
+      node_sum(charges(x, f), targets[i].data(), exact.data());
       double size = 0;
       for (std::size_t k = 0; k < x[0].size(); ++k) {
         const double r = (Vec3(x[0][k], x[1][k], x[2][k]) - targets[i]).norm();
@@ -88,7 +84,7 @@ TEST(TreeSum, KeepsItsToleranceInACubeAndInATiltedSlab) {
 TEST(Clusters, HaveNodesOnlyWhereTheseAreFewerThanTheirPoints) {
   const Cloud cloud(9000, 0, 1);
   Clusters tree(1e-5, 64, 1);
-  tree.place(cloud.x[0].data(), cloud.x[1].data(), cloud.x[2].data(), cloud.starts);
+  tree.place(cloud.x, cloud.starts);
   int nodes = 0, bare = 0;
   for (const Cluster& c : tree.all()) {
     EXPECT_EQ(c.bare, c.n_points() <= c.n_nodes());
@@ -113,8 +109,8 @@ TEST(Clusters, OfMirroredPointsDoNotDependOnRounding) {
     for (int c = 0; c < 3; ++c) moved[c].push_back(x[c][k] + 1e-16 * std::sin(static_cast<double>(7 * k) + c));
   }
   Clusters tree(1e-5, 64, 1), other(1e-5, 64, 1);
-  tree.place(x[0].data(), x[1].data(), x[2].data(), starts);
-  other.place(moved[0].data(), moved[1].data(), moved[2].data(), starts);
+  tree.place(x, starts);
+  other.place(moved, starts);
   EXPECT_EQ(tree.order(), other.order());
 }
 

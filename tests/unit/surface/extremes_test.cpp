@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {
@@ -43,7 +44,7 @@ TEST(Extremes, OfNoElementsAreOfNothingAndASurfaceThatThePlaneMissesIsRefused) {
   for (const Range& range : geometry.extremes(net, Vec3::Zero(), {})) EXPECT_GT(range.smallest, range.largest);
   Measures measures = geometry.measures(net);
   measures.centroid[1] = 2;
-  EXPECT_THROW(geometry.deformation(net, measures), RunFailure);
+  EXPECT_THROW(Geometry::deformation(measures, geometry.extremes(net, measures.centroid, indices(cube.space.elements.size()))), RunFailure);
 }
 
 // If the section is nearly a circle, samples on chords do not distinguish near from far.
