@@ -11,33 +11,17 @@
 
 namespace tanktread::surface {
 
-/// Smooth map from the surface of a cube to the unit sphere: Catmull-Clark subdivision of a net of 3 x 3 elements per face, projected radially onto
-/// the sphere. It is C2, also across the edges of the cube, except at its eight corners. (An equiangular map has kinks along the cube edges, which
-/// smooth splines cannot represent; the error in the normal is ten times as large.) The initial net divides the cube's edges in thirds. Its inner
-/// vertices lie at (0.26, 0.26, 1), which gave the smallest error in the normal for fitted spheres of 3 to 24 elements per side.
+/// Returns a point of the unit sphere for each control point of the mesh, as a start for fits: Catmull-Clark subdivision of a net of 3 x 3 elements
+/// per face of the cube, projected radially onto the sphere. This map from the cube to the sphere is C2, also across the edges of the cube, except at
+/// its eight corners. (An equiangular map has kinks along the cube edges, which smooth splines cannot represent; the error in the normal is ten times
+/// as large.) The initial net divides the cube's edges in thirds. Its inner vertices lie at (0.26, 0.26, 1), which gave the smallest error in the
+/// normal for fitted spheres of 3 to 24 elements per side.
 ///
-/// The surface has all symmetries of the cube, so one face is stored; its neighbours are its mirror images.
-class CubeSphere {
- public:
-  /// Constructs the net of one face of the cube by subdividing the initial net of 3 x 3 elements `levels` times.
-  explicit CubeSphere(int levels = 5);
+/// If the mesh is uniform with 3 * 2^k elements per side of the cube, the points are the vertices of the net after k subdivisions. Otherwise they are
+/// points of the limit surface.
+Net smooth_sphere(const spline::TMesh& mesh);
 
-  int elements_per_side() const { return n_; }
-
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube [-1, 1]^3, by bilinear interpolation between the vertices of the
-  /// last subdivided net.
-  Vec3 net_point(const Vec3& on_cube) const;
-
-  /// Returns the image, on the unit sphere, of a point on the surface of the cube, from the limit surface of the subdivision. The limit surface is
-  /// evaluated as a bicubic B-spline, which is exact except in the elements at the corners of the cube.
-  Vec3 limit_point(const Vec3& on_cube) const;
-
- private:
-  int n_;
-  Net net_;  ///< vertices (i, j), -1 <= i, j <= n + 1, of the face x3 = 1, i fastest
-};
-
-/// Returns the control points of the unit sphere: the control points of a CubeSphere after `fits` least-squares fits of the surface to its own radial
+/// Returns the control points of the unit sphere: the points of smooth_sphere() after `fits` least-squares fits of the surface to its own radial
 /// image. The error in the radius falls with h^4, the error in the normal with h^2.7. Both errors are 10 to 40 per cent smaller than if the fits
 /// start from the projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
