@@ -45,25 +45,24 @@ int resist(const Scene& scene, const RunRequest& request) {
   Body body = tanktread::body(scene);
   refine_alone(scene, body, [&](const Body& on) {
     const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
-    coupling::Resistance there = resistance_of(scene, on, ranks, phases, wall.get());
-    return rigid_solution(scene, on, there, phases, wall.get()).density;
+    coupling::RigidTractions there = tractions_of(scene, on, ranks, wall.get());
+    return rigid_solution(scene, on, there, phases).density;
   });
   const output::Entries<std::string> chosen = plan(scene, body, ranks.size());
   if (ranks.rank() == 0 && !request.quiet) std::fputs(plan_text(chosen).c_str(), stdout);
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
-  coupling::Resistance resistance = resistance_of(scene, body, ranks, phases, around.get());
+  coupling::RigidTractions tractions = tractions_of(scene, body, ranks, around.get());
   clock.reset();
   stop_where_told();
-  const RigidSolution solution = rigid_solution(scene, body, resistance, phases, around.get());
+  const RigidSolution solution = rigid_solution(scene, body, tractions, phases);
   stop_where_told();
   const double seconds = ranks.seconds_since(start);
-  const stokes::Evaluations kernel = ranks.of_all(resistance.kernel_evaluations());
+  const stokes::Evaluations kernel = ranks.of_all(tractions.kernel_evaluations());
   Columns row;
   ProgressRow now{.wall_seconds = seconds};
   now.work.solver_iterations = solution.iterations;
   now.add_columns(scene, row);
-  PrescribedRow{solution, surface::measures(body.space, body.rest), -resistance.stresslet(solution.density, scene.particle.shape.center),
-                body.space.n_points, static_cast<double>(kernel.total())}
+  PrescribedRow{solution, surface::measures(body.space, body.rest), body.space.n_points, static_cast<double>(kernel.total())}
       .add_columns(scene, row);
   if (around) tube_row(*around, body.flow.amplitude(), solution.density, solution.pressure_drop).add_columns(scene, row);
   if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
@@ -80,7 +79,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   account.plan = chosen;
   account.counts = {{"unknowns", 3L * body.space.n_points},
                     {"solver_iterations", solution.iterations},
-                    {"solver_iterations_in_all", resistance.solver_iterations()},
+                    {"solver_iterations_in_all", solution.iterations},
                     {"kernel_evaluations_far", static_cast<long>(kernel.far)},
                     {"kernel_evaluations_near", static_cast<long>(kernel.near)},
                     {"kernel_evaluations_self", static_cast<long>(kernel.self)}};

@@ -19,8 +19,8 @@ inline RigidSolution rigid_solution(const std::string& deck_name, const std::vec
   coupling::Ranks ranks;
   Phases phases;
   const Body body = tanktread::body(scene);
-  coupling::Resistance resistance(body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases);
-  return rigid_solution(scene, body, resistance, phases);
+  coupling::RigidTractions tractions = tractions_of(scene, body, ranks, nullptr);
+  return rigid_solution(scene, body, tractions, phases);
 }
 
 }  // namespace tanktread

@@ -250,8 +250,8 @@ std::string solvers_line(const Scene& scene) {
     if (own.preconditioner != "own") line += ", preconditioner `" + own.preconditioner + "`";
   };
   if (!scene.in_system()) {
-    add("traction", solvers.traction);
-    return line;
+    if (scene.tube.present) add("traction", solvers.traction);
+    return line.empty() ? "no iterative solver" : line;
   }
   const bool blocks = scene.tube.present && solvers.tube != "schur";
   if (blocks || std::ranges::any_of(scene.alone(), &Scene::has_velocity_system)) add("velocity", solvers.velocity);
@@ -270,7 +270,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("forces", forces_line(scene));
   lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("assembled", formatted("%.1f MB ", (scene.wall.present ? 144e-6 : 72e-6) * n * n) + on_ranks(ranks));
+  lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", 72e-6 * n * n));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   if (scene.adaptation.enabled)

@@ -337,6 +337,7 @@ stokes::Rows<double> Capsule::double_rows_of(const Net& x, std::span<const int> 
 void Capsule::forget_recycled() const {
   for (const Krylov* solver : {&velocity_solver_, &step_solver_, &inner_solver_}) solver->forget();
   if (tube_) tube_->forget_recycled();
+  if (tractions_) tractions_->forget_recycled();
 }
 
 /// Moves x onto the prescribed volumes by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails.

@@ -157,7 +157,8 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   std::vector<Rigid> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (rigid_.holds(p)) centres.push_back(rigid_.centre(p)), driven.push_back(rigid_.given(p));
-  tractions_->solve(x, centres, driven, flow_, {flow, repeats() || tube_ || solids() || double_layer_ || viscous_, product, load});
+  const bool responds = repeats() || tube_ || solids() || double_layer_ || viscous_;
+  tractions_->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
   Net v = parts(tractions_->unknowns()).first;
   auto body = tractions_->bodies().begin();
   for (std::size_t p = 0; p < particles().size(); ++p)

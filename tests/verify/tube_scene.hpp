@@ -13,6 +13,7 @@
 #include "surface/shapes.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/rigid_body.hpp"
+#include "system/solids/rigid_tractions.hpp"
 #include "system/solids/tube.hpp"
 
 namespace tanktread {
@@ -79,7 +80,7 @@ struct RigidSphere {
   coupling::SolverOptions solvers;
   stokes::AmbientFlow flow;
   std::unique_ptr<coupling::Tube> tube;
-  std::unique_ptr<coupling::Resistance> resistance;
+  std::unique_ptr<coupling::RigidTractions> tractions;
   std::unique_ptr<coupling::FreeBodyInTube> body;
   double radius;
 
@@ -88,20 +89,30 @@ struct RigidSphere {
     parameters.quadrature.tolerance = tolerance;
     solvers.tolerance = 1e-9;
     tube = std::make_unique<coupling::Tube>(duct.wall, *duct.flow, sphere.space, parameters, phases);
-    resistance =
-        std::make_unique<coupling::Resistance>(sphere.space, sphere.net, 1.0, parameters.quadrature, solvers, ranks, phases, tube.get());
-    body = std::make_unique<coupling::FreeBodyInTube>(*resistance, sphere.centre, radius, flow, 1.0, solvers);
+    tractions = std::make_unique<coupling::RigidTractions>(sphere.space, sphere.net, radius, 1.0, parameters.quadrature, solvers, ranks, tube.get());
+    body = std::make_unique<coupling::FreeBodyInTube>(*tractions, sphere.net, sphere.centre, radius, flow, 1.0);
   }
 
-  /// Return the force density on the fluid: of the sphere towed along the axis with unit speed in quiescent fluid, and of the sphere held in the
-  /// flow.
-  Net towed() {
-    return resistance->force_density(coupling::rigid_velocity(resistance->surface(), {Vec3::UnitX(), Vec3::Zero()}, Vec3::Zero()));
-  }
-  Net held() { return resistance->force_density(-resistance->ambient(flow)); }
+  /// Axial force on the fluid divided by 6 pi mu a, and the pressure drop.
+  struct Resistance {
+    double drag, pressure_drop;
+  };
 
-  /// Returns the axial force on the fluid divided by 6 pi mu a.
-  double drag(const Net& f) const { return resistance->force(f)[0] / (6 * std::numbers::pi * radius); }
+  /// Return the resistance of the sphere towed along the axis with unit speed in quiescent fluid, and of the sphere held in the flow.
+  Resistance towed() {
+    stokes::FlowOptions at_rest;
+    at_rest.type = "quiescent";
+    return resistance({true, {Vec3::UnitX(), Vec3::Zero()}}, stokes::AmbientFlow(at_rest));
+  }
+  Resistance held() { return resistance({true, {}}, flow); }
+
+ private:
+  Resistance resistance(const coupling::Rigid& driven, const stokes::AmbientFlow& in) {
+    tube->place(sphere.net);
+    tractions->solve(sphere.net, {&sphere.centre, 1}, {&driven, 1}, in);
+    return {tractions->bodies().front().force[0] / (6 * std::numbers::pi * radius),
+            tractions->lacking_pressure() - tube->pressure_of(tractions->unknowns())};
+  }
 };
 
 }  // namespace tanktread

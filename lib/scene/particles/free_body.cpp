@@ -17,7 +17,7 @@ class Free : public ParticleSystem {
  public:
   Free(const Scene& scene, coupling::Ranks& ranks, Phases& phases)
       : scene_(scene), ranks_(ranks), body_(refined(scene, ranks, phases)), geometry_(body_.space), tube_(tube(scene, body_, phases)),
-        resistance_(resistance_of(scene, body_, ranks, phases, tube_.get())), free_(driven(scene, body_, resistance_)) {}
+        tractions_(tractions_of(scene, body_, ranks, tube_.get())), free_(driven(scene, body_, tractions_)) {}
 
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
@@ -30,27 +30,23 @@ class Free : public ParticleSystem {
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
     phase_angle_ = resumed.totals.phase_angle.at(0);
-    free_->start_from({resumed.checkpoint.arrays.at("start place"), resumed.checkpoint.arrays.at("start unknowns")});
     return false;
   }
   void store(output::Checkpoint& checkpoint) const override {
     checkpoint.arrays["unstressed"] = body_.unstressed;
     checkpoint.arrays["initial"] = body_.rest;
-    const coupling::LoneRigidBody::Start start = free_->start();
-    checkpoint.arrays["start place"] = start.place;
-    checkpoint.arrays["start unknowns"] = start.unknowns;
   }
-  void forget_recycled() override { free_->forget_recycled(); }
+  void forget_recycled() override { tractions_.forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }
   const surface::BezierMap& bezier() const override { return geometry_.bezier(); }
-  stokes::Evaluations kernel_evaluations() const override { return resistance_.kernel_evaluations(); }
+  stokes::Evaluations kernel_evaluations() const override { return tractions_.kernel_evaluations(); }
 
   coupling::Work work() const override {
     coupling::Work work = before_;
     work.evaluations += free_->evaluations();
     work.assemblies += 1;
     work.solves += tube_ || scene_.wall.present ? free_->evaluations() : body_.flow.affine() ? 11 : 29;
-    work.solver_iterations += iterations();
+    work.solver_iterations += free_->solver_iterations();
     return work;
   }
 
@@ -87,20 +83,20 @@ class Free : public ParticleSystem {
     Body body = tanktread::body(scene);
     refine_alone(scene, body, [&](const Body& on) {
       const std::unique_ptr<coupling::Tube> wall = tube(scene, on, phases);
-      coupling::Resistance resistance = resistance_of(scene, on, ranks, phases, wall.get());
-      const auto free = driven(scene, on, resistance);
+      coupling::RigidTractions tractions = tractions_of(scene, on, ranks, wall.get());
+      const auto free = driven(scene, on, tractions);
       return free->force_density(coupling::placed(free->centre()));
     });
     return body;
   }
 
   /// Returns the free body with the given resistance, in a tube or at a wall if the scene has one.
-  static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::Resistance& resistance) {
+  static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.wall.present)
-      return std::make_unique<coupling::FreeBodyInTube>(resistance, centre, body.radius, body.flow, scene.flow.viscosity, scene.solvers,
+      return std::make_unique<coupling::FreeBodyInTube>(tractions, body.rest, centre, body.radius, body.flow, scene.flow.viscosity,
                                                         rigid(scene, body));
-    return std::make_unique<coupling::FreeBody>(resistance, centre, body.radius, body.flow, rigid(scene, body));
+    return std::make_unique<coupling::FreeBody>(tractions, body.rest, centre, body.radius, body.flow, rigid(scene, body));
   }
 
   /// Sets the tank-treading velocity, the frequency and the phase of a rigid body in the plane of the flow (Body::plane). The frequency (6.6) is the
@@ -115,17 +111,12 @@ class Free : public ParticleSystem {
     now.phase = phase_angle_.degrees;
   }
 
-  long iterations() const {
-    const auto* in_tube = dynamic_cast<const coupling::FreeBodyInTube*>(free_.get());
-    return resistance_.solver_iterations() + (in_tube ? in_tube->solver_iterations() : 0);
-  }
-
   const Scene& scene_;
   const coupling::Ranks& ranks_;
   Body body_;
   surface::Geometry geometry_;
   std::unique_ptr<coupling::Tube> tube_;
-  coupling::Resistance resistance_;
+  coupling::RigidTractions tractions_;
   std::unique_ptr<coupling::LoneRigidBody> free_;
   PhaseAngle phase_angle_;
   coupling::Work before_;  // work of earlier parts of a resumed run

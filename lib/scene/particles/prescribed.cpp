@@ -1,7 +1,5 @@
 #include "scene/particles/prescribed.hpp"
 
-#include <functional>
-
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "surface/geometry.hpp"
@@ -11,23 +9,13 @@ namespace tanktread {
 
 namespace {
 
-/// Returns seven integrals of the velocity residual of the force density f, which is the error of the velocity between collocation points
-/// (Resistance::residual_work). The first six are the errors of the force and of the torque on the fluid, by the reciprocal theorem. The seventh is
-/// the work of f on the velocity residual.
-Eigen::VectorXd reciprocal_correction(coupling::Resistance& body, const std::function<Net(const Net& x)>& u, const Net& f, const Vec3& centre) {
-  std::vector<Net> z;
-  for (int k = 0; k < 6; ++k) z.push_back(body.force_density(coupling::rigid_velocity(body.surface(), coupling::unit_motion(k), centre)));
-  z.push_back(f);
-  return body.residual_work(u, f, z);
-}
-
 double relative(const Vec3& value, const Vec3& exact) { return exact.norm() > 0 ? (value - exact).norm() / exact.norm() : RigidSolution::unknown; }
 
 }  // namespace
 
 void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
   add_size(measures, to);
-  add_stresslet(stresslet, to);
+  add_stresslet(solution.stresslet, to);
   add_points(n_points, to);
   add_drag(solution.force, solution.torque, to);
   const auto exact = exact_body(scene);
@@ -55,30 +43,28 @@ void PrescribedRow::add_columns(const Scene& scene, Columns& to) const {
          {"kernel_evaluations", "1", "number of evaluations of the Stokes kernels for the boundary integrals, by all quadrature rules"});
 }
 
-coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube) {
-  return {body.space, body.rest, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, phases, tube, scene.wall.plane()};
+coupling::RigidTractions tractions_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube) {
+  return {body.space, body.rest, body.radius, scene.flow.viscosity, scene.quadrature, scene.solvers, ranks, tube, scene.wall.plane()};
 }
 
-RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases, const coupling::Tube* tube) {
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases) {
   const Vec3& centre = scene.particle.shape.center;
-  const coupling::RigidMotion motion = prescribed_motion(scene);
-  const auto relative_velocity = [&](const Net& x) -> Net { return coupling::rigid_velocity(x, motion, centre) - body.flow.velocities(x); };
-
-  RigidSolution s;
-  s.density = resistance.force_density(resistance.interpolated(relative_velocity));
-  s.iterations = resistance.last_iterations();
-  s.integral = s.force = -resistance.force(s.density);
-  s.torque = -resistance.torque(s.density, centre);
-  double drop_lacking = 0;
-  if (scene.reciprocal_forces()) {
-    const Eigen::VectorXd lacking = reciprocal_correction(resistance, relative_velocity, s.density, centre);
-    s.force -= lacking.head<3>();
-    s.torque -= lacking.segment<3>(3);
-    const double work_of_motion = lacking.head<3>().dot(motion.velocity) + lacking.segment<3>(3).dot(motion.angular_velocity);
-    drop_lacking = resistance.lacking_pressure(body.flow, s.density, work_of_motion - lacking[6]);
+  const coupling::Rigid driven{true, prescribed_motion(scene)};
+  coupling::Tube* const tube = tractions.tube();
+  {
+    const auto clock = phases.time("tractions");
+    if (tube) tube->place(body.rest);
+    tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
   }
+  RigidSolution s;
+  s.density = tractions.unknowns();
+  s.iterations = tractions.converged_iterations();
+  const auto integrals = tractions.integrals(0, s.density), corrected = scene.reciprocal_forces() ? tractions.bodies().front() : integrals;
+  s.integral = -integrals.force;
+  s.force = -corrected.force, s.torque = -corrected.torque;
+  s.stresslet = -integrals.stresslet();
   if (tube) {
-    s.pressure_drop = resistance.pressure_drop(s.density) + drop_lacking;
+    s.pressure_drop = (scene.reciprocal_forces() ? tractions.lacking_pressure() : 0) - tube->pressure_of(s.density);
     return s;
   }
   if (const auto exact = exact_body(scene)) {

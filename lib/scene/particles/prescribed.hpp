@@ -7,7 +7,7 @@
 #include "scene/exact_body.hpp"
 #include "scene/scene.hpp"
 #include "scene/series/diagnostics.hpp"
-#include "system/solids/resistance.hpp"
+#include "system/solids/rigid_tractions.hpp"
 
 namespace tanktread {
 
@@ -16,7 +16,8 @@ struct RigidSolution {
   Net density;         ///< force per area on the fluid, control values; the traction on the body is its negative
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque on the body, about its centre
   Vec3 integral;       ///< force computed only as the integral of the traction
-  int iterations = 0;  ///< iterations of the solver for this traction
+  Mat3 stresslet = Mat3::Zero();
+  int iterations = 0;  ///< iterations of the solver for this traction and for the corrections of the forces
   double pressure_drop = unknown;  ///< additional pressure drop caused by the body in a tube (2.7)
   double error = unknown, integral_error = unknown, torque_error = unknown;  ///< relative errors of `force`, of `integral` and of `torque`
   SurfaceErrors surface{unknown, unknown, 0};
@@ -28,17 +29,15 @@ struct RigidSolution {
 struct PrescribedRow {
   RigidSolution solution;
   surface::Measures measures{0, 0, Vec3::Zero(), Mat3::Zero()};
-  Mat3 stresslet = Mat3::Zero();
   int n_points = 0;
   double kernel_evaluations = 0;
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the resistance problem of the scene's body. `tube`: the tube around it, or null.
-coupling::Resistance resistance_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, Phases& phases, coupling::Tube* tube);
+/// Returns the equation for the traction on the scene's body. `tube`: the tube around it, or null.
+coupling::RigidTractions tractions_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
 
-/// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. `tube`: the tube around it, or null. Collective.
-RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Resistance& resistance, Phases& phases,
-                             const coupling::Tube* tube = nullptr);
+/// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. Collective.
+RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::RigidTractions& tractions, Phases& phases);
 
 }  // namespace tanktread

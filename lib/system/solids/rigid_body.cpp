@@ -61,22 +61,27 @@ Net rigid_velocity(const Net& x, const RigidMotion& motion, const Vec3& centre) 
   return u;
 }
 
-RigidModes::RigidModes(Resistance& body, const Vec3& centre, bool quadratic) : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
-  const Net from_centre = body.surface().rowwise() - centre.transpose();
+RigidModes::RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic)
+    : response(6, affine_modes + (quadratic ? quadratic_modes : 0)) {
+  body.place(surface, {&centre, 1});
+  const Net& at = body.sites();
+  const Net from_centre = at.rowwise() - centre.transpose();
   const auto field = [&](int k) -> Net {
-    if (k < 6) return rigid_velocity(body.surface(), unit_motion(k), centre);
+    if (k < 6) return rigid_velocity(at, unit_motion(k), centre);
     if (k < affine_modes) return from_centre * unit_strain(k - 6);
     const UnitQuadratic q = unit_quadratic(k - affine_modes);
-    return body.interpolated([&](const Net& x) -> Net {
-      Net u = Net::Zero(x.rows(), 3);
-      u.col(q.i) = (x.col(q.b).array() - centre[q.b]) * (x.col(q.c).array() - centre[q.c]);
-      return u;
-    });
+    Net u = Net::Zero(at.rows(), 3);
+    u.col(q.i) = from_centre.col(q.b).cwiseProduct(from_centre.col(q.c));
+    return u;
   };
-  for (int k = 0; k < response.cols(); ++k) {
-    density.push_back(body.force_density(field(k)));
-    response.col(k) << body.force(density.back()), body.torque(density.back(), centre);
-    stresslet.push_back(body.stresslet(density.back(), centre));
+  Eigen::MatrixXd velocities(at.size(), response.cols());
+  for (int k = 0; k < velocities.cols(); ++k) velocities.col(k) = field(k).reshaped<Eigen::RowMajor>();
+  const Eigen::MatrixXd densities = body.layer().solved(velocities);
+  for (int k = 0; k < densities.cols(); ++k) {
+    density.push_back(Eigen::Map<const Net>(densities.col(k).data(), at.rows(), 3));
+    const SolvedBody found = body.integrals(0, density.back());
+    response.col(k) << found.force, found.torque;
+    stresslet.push_back(found.stresslet());
   }
 }
 
@@ -91,8 +96,8 @@ Vec3 centre_of(const Net& place) { return place.row(0).transpose(); }
 
 Mat3 rotation_of(const Net& place) { return quaternion(place).normalized().toRotationMatrix(); }
 
-FreeBody::FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
-    : LoneRigidBody(body.surface(), centre, radius, flow, driven), modes_(body, centre, !flow.affine()) {
+FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
+    : LoneRigidBody(surface, centre, radius, flow, driven), modes_(body, surface, centre, !flow.affine()) {
   mobility_ = modes_.response.leftCols<6>().inverse();
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
@@ -142,10 +147,8 @@ double LoneRigidBody::norm(const Net& displacement) const {
   return std::hypot(displacement.row(0).norm() / radius_, 2 * displacement.bottomRows<2>().norm());
 }
 
-Net LoneRigidBody::surface(const Net& place) const {
-  Net x = (surface_.rowwise() - centre_.transpose()) * rotation_of(place).transpose();
-  x.rowwise() += place.row(0);
-  return x;
+Net LoneRigidBody::moved(const Net& x, const Net& place) const {
+  return ((x.rowwise() - centre_.transpose()) * rotation_of(place).transpose()).rowwise() + place.row(0);
 }
 
 Net FreeBody::force_density(const Net& place) const {

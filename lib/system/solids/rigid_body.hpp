@@ -1,14 +1,15 @@
 #pragma once
 // Rigid body, free or driven by a given force and torque, in an unbounded flow, in a tube or near a plane wall.
 
+#include <optional>
 #include <vector>
 
 #include "base/types.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "system/dynamics.hpp"
 #include "system/particle.hpp"
-#include "system/solids/resistance.hpp"
 #include "system/solids/rigid_motion.hpp"
+#include "system/solids/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 
@@ -22,7 +23,7 @@ Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& products);
 /// `surface`. The response to any affine flow is a combination of the first eleven solutions. The response to a flow (2.20) is a combination of all
 /// twenty-nine.
 struct RigidModes {
-  RigidModes(Resistance& body, const Vec3& centre, bool quadratic);
+  RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic);
 
   std::vector<Net> density;                     ///< force densities on the fluid: translations, rotations, strains, quadratic fields
   Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid, one column per solution
@@ -58,22 +59,15 @@ class LoneRigidBody : public Dynamics {
   virtual Net force_density(const Net& place) const = 0;  ///< force density on the fluid, control values
   virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
+  virtual long solver_iterations() const { return 0; }          ///< number of iterations of the linear solver since construction
 
-  /// The latest solution, which is the initial guess of the next iterative solve. Checkpoints store it, so that a resumed run is bitwise equal. Both
-  /// members are empty if no iterative solver is used.
-  struct Start {
-    Net place;                 ///< position of the body
-    Eigen::VectorXd unknowns;  ///< solution of the linear system at this position
-  };
-  virtual Start start() const { return {}; }
-  virtual void start_from(const Start&) {}
-  virtual void forget_recycled() const {}  ///< discards the products that a preconditioner of the type `recycled` keeps from earlier solves
-
-  Net surface(const Net& place) const;            ///< control net of the surface in the laboratory frame
+  Net surface(const Net& place) const { return moved(surface_, place); }  ///< control net of the surface in the laboratory frame
   const Vec3& centre() const { return centre_; }  ///< centre at the initial position
   long evaluations() const { return evaluations_; }
 
  protected:
+  Net moved(const Net& x, const Net& place) const;  ///< returns points of the body in its initial position, moved to `place`
+
   Net surface_;
   Vec3 centre_;
   double radius_;
@@ -89,7 +83,7 @@ class LoneRigidBody : public Dynamics {
 /// of small matrices.
 class FreeBody : public LoneRigidBody {
  public:
-  FreeBody(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
+  FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
 
   RigidMotion motion(const Net& place) const override;
   Net force_density(const Net& place) const override;
@@ -104,18 +98,18 @@ class FreeBody : public LoneRigidBody {
                                                     ///< flow
 };
 
-/// A free body in a tube or near a plane wall. At each position the traction and the rigid motion are solved for together,
+/// A free body in a tube or near a plane wall, with the equation (2.40), which is solved at each position. In a tube the force density and the motion
+/// are the unknowns of one system in body-fixed axes,
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u is the response of wall and pressure drop. The previous solution is the initial guess. Near a plane wall the single layer A includes the
-/// images, the densities of the unit motions are solved for one by one, and the collocation errors of the force and torque of f are corrected (2.11).
-/// Calls are collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
+/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse without u. Calls are
+/// collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
-  /// `body`: surface of the body with its tube or wall. `solvers`: solver options of the linear system for traction and motion.
-  FreeBodyInTube(Resistance& body, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
-                 const SolverOptions& solvers, const Rigid& driven = {});
+  /// `body`: equation of the body, with its tube or wall. `surface`: net of the body in its initial position.
+  FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
+                 const Rigid& driven = {});
 
   void at(double time, double start) override {
     if (flow_.at(time, start)) place_ = {};
@@ -124,10 +118,7 @@ class FreeBodyInTube : public LoneRigidBody {
   Net force_density(const Net& place) const override { return solution(place).density; }
   Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
   double pressure_drop(const Net& place) const override;
-  Start start() const override { return {place_, unknowns_}; }
-  void start_from(const Start& start) override;
-  void forget_recycled() const override;
-  long solver_iterations() const { return iterations_; }
+  long solver_iterations() const override { return iterations_; }
 
  private:
   struct Solution {
@@ -136,19 +127,14 @@ class FreeBodyInTube : public LoneRigidBody {
     Mat3 stresslet;
   };
   const Solution& solution(const Net& place) const;
-  void keep(const Net& place, const Net& f, const RigidMotion& own) const;
-  void solve_in_tube(const Net& place) const;
-  Net density_of_unknowns() const;
-  RigidMotion motion_of_unknowns() const;
-  void solve_beside_wall(const Net& place, Net& f, RigidMotion& own) const;
+  Solution in_tube(const Net& place) const;
+  Solution at_wall(const Net& place) const;
 
-  Resistance& body_;
+  RigidTractions& body_;
   double viscosity_;
-  Krylov krylov_;
-  double tolerance_;
-  mutable Net place_;                 // position of the latest solve
-  mutable Solution solution_;         // solution at this position
-  mutable Eigen::VectorXd unknowns_;  // solution of the linear system at the latest position
+  std::optional<RigidModes> modes_;  // solutions without the response of the tube
+  mutable Net place_;                // position of the latest solve
+  mutable Solution solution_;        // solution at this position
   mutable long iterations_ = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Rigid-body motion.
+// Rigid-body motion, and the forces that a body exerts.
 
 #include "base/types.hpp"
 
@@ -8,6 +8,16 @@ namespace tanktread::coupling {
 /// Rigid motion v = U + Omega x (x - centre).
 struct RigidMotion {
   Vec3 velocity = Vec3::Zero(), angular_velocity = Vec3::Zero();
+};
+
+/// Motion of a rigid body, and integrals of its force density f on the fluid.
+struct SolvedBody {
+  RigidMotion motion;
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
+  Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, with the position r from the centre
+
+  /// Returns the symmetric, traceless part of `moment`.
+  Mat3 stresslet() const { return (moment + moment.transpose()) / 2 - moment.trace() / 3 * Mat3::Identity(); }
 };
 
 /// Returns the unit motion k: translations along x1, x2, x3, then rotations about them.

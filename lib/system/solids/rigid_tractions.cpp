@@ -37,13 +37,29 @@ std::vector<Particle> bodies_among(std::span<const Particle> particles) {
   return bodies;
 }
 
-std::vector<spline::Block> blocks_of(std::span<const Particle> particles) {
-  std::vector<spline::Block> blocks;
-  for (const Particle& one : particles) blocks.push_back(one.block);
-  return blocks;
+Particle single(const spline::Space& space, double radius) {
+  Particle body;
+  body.space = &space, body.block = spline::whole(space), body.radius = radius;
+  body.rigid.emplace(), body.by_traction = true;
+  return body;
 }
 
-/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Prescribed motions do not change.
+/// Returns the options for the system of a single body, whose keys are those of `Solvers/traction`.
+SolverOptions for_single(SolverOptions solvers) {
+  solvers.velocity = solvers.traction;
+  return solvers;
+}
+
+/// Returns the indices, six per body, of the motions that are not prescribed.
+std::vector<int> free_motions(std::span<const Rigid> driven) {
+  std::vector<int> free;
+  for (std::size_t p = 0; p < driven.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      if (!driven[p].prescribed) free.push_back(static_cast<int>(6 * p) + k);
+  return free;
+}
+
+/// Returns the changes of the motions, six per body, that produce the missing forces and torques. Only the motions `free` change.
 Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& missing) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(missing.size());
   if (free.empty()) return motion;
@@ -53,44 +69,53 @@ Eigen::VectorXd freed(const std::vector<int>& free, const Eigen::MatrixXd& resis
   return motion;
 }
 
+/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
+/// torques on bodies at rest.
+Eigen::VectorXd motions(const std::vector<int>& free, const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
+  for (std::size_t p = 0; p < driven.size(); ++p) {
+    const Rigid& rigid = driven[p];
+    const auto first = static_cast<Eigen::Index>(6 * p);
+    if (rigid.prescribed)
+      motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
+    else
+      given.segment<6>(first) << rigid.force, rigid.torque;
+  }
+  return motion + freed(free, resistance, given - held - resistance * motion);
+}
+
 }  // namespace
 
 RigidTractions::RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
                                double viscosity, const quadrature::Options& quadrature, const SolverOptions& solvers,
                                const std::optional<stokes::PlaneWall>& wall, Tube* tube, const std::vector<int>& own, Ranks& ranks)
-    : n_particles_(particles.size()),
+    : alone_(std::ranges::all_of(particles, [](const Particle& one) { return one.rigid.has_value(); })),
       particles_(bodies_among(particles)),
-      viscosity_(viscosity),
-      walls_{tube},
-      ranks_(ranks),
+      walls_{tube, nullptr, wall},
       layer_(particles_, viscosity, quadrature, wall, own, ranks),
-      between_(between_sites(space, rest, blocks_of(particles_))),
-      between_layer_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
-      measure_(coupling::measure(particles)),
+      residual_(space, unstressed, rest, particles, viscosity, quadrature, wall, ranks),
       sites_(collocation_matrix(space)),
       mass_(space, 8),  // mass matrix by eight Gauss points per direction, because the area element is not a polynomial
       krylov_(solvers.of(solvers.velocity)),
       tolerance_(solvers.tolerance),
-      bodies_(particles_.size()) {
-  between_layer_.set_reference(unstressed, measured_on_present(particles));
-  if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
-    between_double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, quadrature, std::move(contrasts));
-  if (wall) between_layer_.set_wall(*wall);
-  if (wall && between_double_) between_double_->set_wall(*wall);
-  for (std::size_t p = 0; p < particles_.size(); ++p)
-    for (int k = 0; k < 6; ++k)
-      if (!particles_[p].rigid->prescribed) free_.push_back(static_cast<int>(6 * p) + k);
+      bodies_(particles_.size()) {}
+
+RigidTractions::RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
+                               const SolverOptions& solvers, Ranks& ranks, Tube* tube, const std::optional<stokes::PlaneWall>& wall)
+    : RigidTractions(space, surface, surface, std::vector{single(space, radius)}, viscosity, quadrature, for_single(solvers), wall, tube, {}, ranks) {
+  if (tube) tube->set_reference(surface);
 }
 
 void RigidTractions::repeat(const stokes::PeriodicCell& cell) {
-  between_layer_.repeat(cell);
-  if (between_double_) between_double_->repeat(cell);
+  residual_.repeat(cell);
   repeats_ = true;
 }
 
 /// Returns B y (see Surroundings::product), the left-hand side of the system for the unknowns y, including the regularising term of (2.10).
 Net RigidTractions::product(const Net& y) {
-  Net all = around_.product(y, repeats_ ? Net() : layer_.velocity(y));
+  const Net caused = repeats_ ? Net() : layer_.velocity(y);
+  if (!around_) return walls_.tube ? Net(caused + walls_.tube->respond(load(y)).velocity) : caused;
+  Net all = around_->product(y, caused);
   if (repeats_) all += layer_.regular(y);
   return all;
 }
@@ -100,7 +125,7 @@ Net RigidTractions::product(const Net& y) {
 /// copies the other rows.
 Eigen::MatrixXd RigidTractions::densities(const Eigen::MatrixXd& velocities) {
   reports_.clear();
-  if (!around_.responds) return layer_.solved(velocities);
+  if (!responds()) return layer_.solved(velocities);
   const Eigen::Index n = velocities.rows();
   const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n / 3, 3) = product(Eigen::Map<const Net>(in, n / 3, 3)); };
   const auto precondition = [&](const double* in, double* out) {
@@ -127,56 +152,36 @@ Net RigidTractions::force_densities(const Net& y) const {
 /// Returns the unknowns y. If the surroundings do not respond, adds the velocity that the force densities cause on deformable particles.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
-  if (around_.responds || alone()) return y;
+  if (responds() || alone_) return y;
   Net lacking = product(force_densities(y));
   for (const Particle& body : particles_) body.block.rows(lacking).setZero();
   return y - lacking;
 }
 
-/// Returns the amplitudes of the unit motions: prescribed motions, and the motions that give the prescribed forces and torques. `held`: forces and
-/// torques on bodies at rest.
-Eigen::VectorXd RigidTractions::motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const {
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(held.size()), given = motion;
-  for (std::size_t p = 0; p < particles_.size(); ++p) {
-    const Rigid& rigid = driven[p];
-    const auto first = static_cast<Eigen::Index>(6 * p);
-    if (rigid.prescribed)
-      motion.segment<6>(first) << rigid.motion.velocity, rigid.motion.angular_velocity;
-    else
-      given.segment<6>(first) << rigid.force, rigid.torque;
-  }
-  return motion + freed(free_, resistance, given - held - resistance * motion);
+void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around) {
+  around_ = std::move(around);
+  x_ = x, at_ = sites_ * x;
+  centres_.assign(centres.begin(), centres.end());
+  layer_.place(x, at_, responds() && !repeats_);
 }
 
-/// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at
-/// the Gauss points `between_`. `flow`: v_inf at these points. `v`: velocity of all particles.
-Net RigidTractions::left_over(const Net& x, const Net& y, const Net& v, Net flow) {
-  between_layer_.place(x, measure_);
-  if (between_double_) between_double_->place(x);
-  const Net at = between_.values * x, load = around_.load(y);
-  const Tube::Response response = walls_.tube ? walls_.tube->respond(load, v) : Tube::Response();
-  const Solids::Flow by_solids = walls_.solids ? walls_.solids->respond(load, v) + walls_.solids->empty() : Solids::Flow();
-  flow += ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
-    between_layer_.apply(load, own, u);
-    u /= -viscosity_;
-    Net part(u.rows(), 3);
-    const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
-    if (between_double_) between_double_->apply(v, own, part), add();
-    if (walls_.tube) walls_.tube->velocity_at(at, response, own, part), add();
-    if (walls_.solids) walls_.solids->velocity_at(at, own, by_solids, part), add();
-  });
-  return between_.weights * (between_.values * v - flow);
+/// Returns the corrections (2.11) of the work of the unknowns y in the velocities of the densities z, one per column, from the residual `left_`. In a
+/// channel the residual on the wall is included (2.42).
+Eigen::VectorXd RigidTractions::lacks(const Net& y, const Eigen::MatrixXd& z) {
+  Eigen::VectorXd work = z.transpose() * left_;
+  if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;
+  const Tube::Leak leak = walls_.tube->leak(load(y));
+  for (Eigen::Index k = 0; k < z.cols(); ++k) work[k] += walls_.tube->work(leak, walls_.tube->respond(load(as_net(z.col(k)))));
+  return work;
 }
 
 void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
-                           Surroundings around) {
+                           std::optional<Surroundings> around) {
   const Eigen::Index n = 3 * x.rows(), m = 6 * static_cast<Eigen::Index>(particles_.size());
-  around_ = std::move(around);
-  at_ = sites_ * x;
-  layer_.place(x, at_, around_.responds && !repeats_);
+  place(x, centres, std::move(around));
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(n, m + 1), fields = Eigen::MatrixXd::Zero(n, m);
-  const Net at_sites = sites_ * around_.flow;
-  Net empty = -around_.flow;
+  const Net at_sites = around_ ? Net(sites_ * around_->flow) : flow.velocities(at_);
+  Net empty = around_ ? Net(-around_->flow) : at_sites;
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto column = static_cast<Eigen::Index>(6 * p);
     const spline::Block& block = particles_[p].block;
@@ -191,31 +196,42 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   Eigen::MatrixXd work(n, m);  // the inner product of column k with a force density is the work of the density in unit motion k
   for (Eigen::Index k = 0; k < m; ++k) work.col(k) = flat(Net(mass * as_net(fields.col(k))));
   const Eigen::MatrixXd resistance = work.transpose() * z;
-  Eigen::VectorXd motion = motions(resistance, -work.transpose() * of_all.col(m), driven);
+  const std::vector<int> free = free_motions(driven);
+  Eigen::VectorXd motion = motions(free, resistance, -work.transpose() * of_all.col(m), driven);
   Eigen::VectorXd y = z * motion - of_all.col(m);
   Net v = completed(y);
   const Net unknowns = v;
   const Eigen::VectorXd moving = fields * motion;
   for (const Particle& body : particles_) body.block.rows(v) = body.block.rows(as_net(moving));
-  const Net between = flow.velocities(between_.values * x);
-  left_ = flat(left_over(x, unknowns, v, between));
-  const Eigen::VectorXd lacks = of_all.transpose() * left_, lacking = lacks.head(m);
-  const Eigen::VectorXd change = freed(free_, resistance, -lacking);
+  const Net between = flow.velocities(residual_.points().values * x);
+  left_ = flat(residual_.integrated(x, load(unknowns), v, between, walls_));
+  const Eigen::VectorXd lacking = lacks(unknowns, of_all), change = freed(free, resistance, -lacking.head(m));
   motion += change;
   y += z * change;
   unknowns_ = completed(y);
-  const Eigen::VectorXd integrals = work.transpose() * y + lacking;
   const Net f = force_densities(unknowns_);
-  if (walls_.tube && flow.duct() && alone())
-    lacking_pressure_ = walls_.tube->lacking_pressure(between_, between, flow.amplitude(), f, lacks[m]);
-  const Net weighted = mass * f;
+  if (walls_.tube && flow.duct() && alone_)
+    lacking_pressure_ = walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, lacking[m]);
   for (std::size_t p = 0; p < particles_.size(); ++p) {
     const auto first = static_cast<Eigen::Index>(6 * p);
-    const spline::Block& block = particles_[p].block;
-    bodies_[p] = {{motion.segment<3>(first), motion.segment<3>(first + 3)}, integrals.segment<3>(first), integrals.segment<3>(first + 3),
-                  block.rows(weighted).transpose() * (block.rows(x).rowwise() - centres[p].transpose())};
+    bodies_[p] = integrals(p, f);
+    bodies_[p].motion = {motion.segment<3>(first), motion.segment<3>(first + 3)};
+    bodies_[p].force += lacking.segment<3>(first), bodies_[p].torque += lacking.segment<3>(first + 3);
   }
-  centres_.assign(centres.begin(), centres.end());
+}
+
+SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
+  const spline::Block& block = particles_[p].block;
+  const Net weighted = block.rows(Net(mass_.update(x_) * f));
+  SolvedBody body;
+  body.force = weighted.colwise().sum().transpose();
+  body.moment = weighted.transpose() * (block.rows(x_).rowwise() - centres_[p].transpose());
+  body.torque << body.moment(2, 1) - body.moment(1, 2), body.moment(0, 2) - body.moment(2, 0), body.moment(1, 0) - body.moment(0, 1);
+  return body;
+}
+
+bool RigidTractions::inside(const Net& x) const {
+  return (!walls_.tube || walls_.tube->gap() > 0) && (!walls_.plane || stokes::in_front({&*walls_.plane, 1}, sites_ * x));
 }
 
 Mat3 RigidTractions::moment(std::size_t p) {
@@ -223,6 +239,22 @@ Mat3 RigidTractions::moment(std::size_t p) {
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(left_.size(), strains);
   set_unit_strains(at_, particles_[p].block, centres_[p], velocities);
   return bodies_[p].moment + strain_of_products(densities(velocities).transpose() * left_);
+}
+
+int RigidTractions::solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {
+  reports_ = {krylov_.solve(system, right, unknowns, tolerance_)};
+  return converged_iterations();
+}
+
+int RigidTractions::converged_iterations() const {
+  int sum = 0;
+  for (const SolveReport& report : reports_) require_convergence(report, "the traction on the rigid body", tolerance_), sum += report.iterations;
+  return sum;
+}
+
+void RigidTractions::forget_recycled() const {
+  krylov_.forget();
+  if (walls_.tube) walls_.tube->forget_recycled();
 }
 
 }  // namespace tanktread::coupling

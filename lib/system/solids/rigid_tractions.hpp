@@ -1,5 +1,5 @@
 #pragma once
-// Several rigid bodies, also among deformable particles, solved by the tractions on all of them.
+// Rigid bodies, also among deformable particles, solved by the tractions on all of them.
 
 #include <functional>
 #include <optional>
@@ -13,15 +13,12 @@
 #include "quadrature/options.hpp"
 #include "spline/space.hpp"
 #include "stokes/flow/ambient_flow.hpp"
-#include "stokes/layer.hpp"
 #include "stokes/medium/plane_wall.hpp"
-#include "system/collocation.hpp"
 #include "system/particle.hpp"
 #include "system/ranks.hpp"
 #include "system/solids/body_layer.hpp"
 #include "system/solids/rigid_motion.hpp"
-#include "system/solids/solid_response.hpp"
-#include "system/solids/tube.hpp"
+#include "system/solids/rigid_residual.hpp"
 #include "system/solvers/krylov.hpp"
 #include "system/solvers/options.hpp"
 
@@ -38,7 +35,8 @@ namespace tanktread::coupling {
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
 /// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
 /// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. In (2.23) they are linear in the error of one
-/// density. The matrix is dense, which limits the number of control points to a few thousand.
+/// density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the number of control points to a few
+/// thousand.
 ///
 /// Among other boundaries of the fluid, A includes their response to f: the images on a lattice, the wall of a tube and its pressure drop, plates and
 /// posts (2.47), and deformable particles; v_inf includes the flow that they cause without bodies. These additions are smooth, and A remains
@@ -47,17 +45,15 @@ namespace tanktread::coupling {
 /// is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
-  /// Boundaries of the fluid other than particles; null if there are none.
-  struct Walls {
-    Tube* tube = nullptr;
-    SolidResponse* solids = nullptr;
-  };
-
   /// `space`: common space of all particles. `unstressed`, `rest`: their nets. `own`: collocation points whose rows this rank computes. References
   /// must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
                  const std::vector<int>& own, Ranks& ranks);
+
+  /// Constructs the equation of a single body, in a tube or near a plane wall if they are given. `surface`: net of the body.
+  RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
+                 const SolverOptions& solvers, Ranks& ranks, Tube* tube = nullptr, const std::optional<stokes::PlaneWall>& wall = {});
 
   /// Sets the lattice on which the particles repeat, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
@@ -65,8 +61,8 @@ class RigidTractions {
   /// Sets the solids in the lattice, which must outlive this object.
   void put_among(SolidResponse& solids) { walls_.solids = &solids; }
 
-  /// Velocities and loads due to everything that surrounds the bodies. Nets have one row per control point of all particles. The unknowns y are the
-  /// force densities f in rows of bodies, and the velocity v in rows of deformable particles.
+  /// Velocities and loads due to deformable particles and to images on a lattice. Nets have one row per control point of all particles. The unknowns
+  /// y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies
@@ -78,65 +74,72 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  struct Body {
-    RigidMotion motion;
-    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque (about the centre) of the body on the fluid
-    Mat3 moment = Mat3::Zero();                        ///< first moment int f r dG, without the collocation-error correction that moment() adds
-  };
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: not set if all
+  /// particles are rigid and do not repeat on a lattice. Collective.
+  void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
-  /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles, for the control net x of all particles.
-  /// If there is a tube, it must have been set to x. `centres`: centres of the bodies. `driven`: their prescribed forces and torques, or motions.
-  /// Results are kept until the next call. Collective.
-  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow, Surroundings around);
+  /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed forces
+  /// and torques of the bodies, or motions. The other arguments are explained at place(). Results are kept until the next call. Collective.
+  void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
+             std::optional<Surroundings> around = {});
 
-  /// Returns the results for the bodies in the order of the particles.
-  const std::vector<Body>& bodies() const { return bodies_; }
+  /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
+  SolvedBody integrals(std::size_t p, const Net& f);
+
+  /// Returns the collocation sites of all particles at the latest net.
+  const Net& sites() const { return at_; }
+
+  BodyLayer& layer() { return layer_; }                                   ///< returns the single layer at the latest net
+  const BetweenSites& between() const { return residual_.points(); }      ///< returns the Gauss points on the bodies
+
+  /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, it must have been set to x.
+  bool inside(const Net& x) const;
+
+  /// Returns the results for the bodies in the order of the particles. Their moments lack the collocation-error correction that moment() adds.
+  const std::vector<SolvedBody>& bodies() const { return bodies_; }
 
   /// Returns int f r dG of body p for the latest solve. Unless there is a tube, its symmetric traceless part is corrected for the collocation error.
   /// This takes five additional solves, one for each unit strain. Collective.
   Mat3 moment(std::size_t p);
 
-  bool alone() const { return bodies_.size() == n_particles_; }  ///< returns whether all particles are rigid bodies
+  bool alone() const { return alone_; }              ///< returns whether all particles are rigid bodies
   const Net& unknowns() const { return unknowns_; }  ///< control values of f on bodies, and of v on deformable particles
   double lacking_pressure() const { return lacking_pressure_; }         ///< collocation-error correction of the pressure drop (2.7) due to all bodies
                                                                         ///< together
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
-  stokes::Evaluations kernel_evaluations() const {
-    const stokes::Evaluations sum = layer_.evaluations() + between_layer_.evaluations();
-    return between_double_ ? sum + between_double_->evaluations() : sum;
-  }
+  /// Throws RunFailure if an iterative solve of the latest call did not converge. Otherwise returns the number of iterations of all its solves.
+  int converged_iterations() const;
+  /// Solves another system for a traction, with the initial guess `unknowns`. Returns the number of iterations, or throws RunFailure. Collective.
+  int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
+  void forget_recycled() const;  ///< discards the data of earlier solves that the solver and the tube's wall keep
+  Tube* tube() const { return walls_.tube; }
+  stokes::Evaluations kernel_evaluations() const { return layer_.evaluations() + residual_.evaluations(); }
 
  private:
   Eigen::MatrixXd densities(const Eigen::MatrixXd& velocities);
+  bool responds() const { return around_ ? around_->responds : walls_.tube || walls_.solids; }
   Net product(const Net& y);
   Net force_densities(const Net& y) const;
   Net completed(const Eigen::VectorXd& y);
-  Eigen::VectorXd motions(const Eigen::MatrixXd& resistance, const Eigen::VectorXd& held, std::span<const Rigid> driven) const;
-  Net left_over(const Net& x, const Net& y, const Net& v, Net flow);
+  Net load(const Net& y) const { return around_ ? around_->load(y) : Net(-y); }
+  Eigen::VectorXd lacks(const Net& y, const Eigen::MatrixXd& z);
 
-  std::size_t n_particles_;
+  bool alone_;
   std::vector<Particle> particles_;  // the bodies
-  double viscosity_;
-  Walls walls_;
-  Ranks& ranks_;
+  FluidWalls walls_;
   BodyLayer layer_;
-  BetweenSites between_;                         // Gauss points on the bodies
-  stokes::Layer between_layer_;                  // single layer of all particles at the Gauss points `between_`
-  std::optional<stokes::Layer> between_double_;  // double layer of deformable particles at the Gauss points; set if 1 - lambda is not 0 for any of
-                                                 // them
-  stokes::Measure measure_;
-  Eigen::SparseMatrix<double> sites_;
+  RigidResidual residual_;
+  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::MassMatrix mass_;
   bool repeats_ = false;
   Krylov krylov_;
   double tolerance_;
-  std::vector<int> free_;  // indices, six per body, of the motions that are not prescribed
-  Surroundings around_;    // surroundings in the latest call of `solve`
-  Net at_;                 // collocation sites of all particles in the latest call of `solve`
+  std::optional<Surroundings> around_;  // surroundings at the latest net
+  Net x_, at_;                          // the latest net, and the collocation sites
   Eigen::VectorXd left_;   // int N_A (v - v_inf - (1/mu) A f) dG for the latest density f: weighted residual of (2.40), from which (2.11) computes
                            // corrections
   std::vector<Vec3> centres_;
-  std::vector<Body> bodies_;
+  std::vector<SolvedBody> bodies_;
   Net unknowns_;
   double lacking_pressure_ = 0;
   std::vector<SolveReport> reports_;

@@ -56,7 +56,7 @@ void SolverOptions::declare(deck::Section& section) {
   section.section("velocity", velocity,
                   "linear system for the velocity: with a viscosity ratio other than 1, rigid bodies among other particles, or the blocks in a "
                   "tube");
-  section.section("traction", traction, "linear system for the traction on a single rigid particle, and for its motion in a tube");
+  section.section("traction", traction, "linear system for the traction on a single rigid particle in a tube");
   section.section("implicit step", implicit_step, "linear system of an implicit time step");
   section.section("spectrum", spectrum, "shift-inverted linear system of Spectrum/method `krylov`");
   section.section("steady", steady, "linear system of a Newton step of Steady/method `newton-krylov`");

@@ -31,8 +31,8 @@ struct Fixture {
   spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
   surface::ParticleShape shape;
   Ranks ranks;
-  Phases phases;
-  std::unique_ptr<Resistance> resistance;
+  Net rest;
+  std::unique_ptr<RigidTractions> tractions;
   std::unique_ptr<FreeBody> body;
 
   explicit Fixture(const Vec3& semi_axes) {
@@ -41,14 +41,12 @@ struct Fixture {
     shape.center = Vec3(0.3, -0.1, 0.2);
     quadrature::Options quadrature;
     quadrature.tolerance = 1e-7;
-    SolverOptions solvers;
-    solvers.tolerance = 1e-12;  // symmetry and balance hold up to the residual of the solve
-    resistance =
-        std::make_unique<Resistance>(space, surface::initial_shape(space, mesh, shape), viscosity, quadrature, solvers, ranks, phases);
+    rest = surface::initial_shape(space, mesh, shape);
+    tractions = std::make_unique<RigidTractions>(space, rest, shape.equivalent_radius(), viscosity, quadrature, SolverOptions(), ranks);
     stokes::FlowOptions flow;
     flow.type = "linear";
     flow.gradient = some_gradient();
-    body = std::make_unique<FreeBody>(*resistance, shape.center, shape.equivalent_radius(), stokes::AmbientFlow(flow));
+    body = std::make_unique<FreeBody>(*tractions, rest, shape.center, shape.equivalent_radius(), stokes::AmbientFlow(flow));
   }
 
   Net turned(double angle, const Vec3& axis) const {
@@ -64,7 +62,7 @@ TEST(FreeBody, SphereGoesWithTheFlow) {
   const Fixture f(Vec3::Constant(0.8));
   const RigidMotion motion = f.body->motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Mat3 l = some_gradient();
-  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, and the system is solved to 1e-12
+  EXPECT_LT((motion.velocity - l * f.shape.center).norm(), 1e-9);  // the mesh is symmetric, and the system is factored
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-9);
   const Mat3 strain = 0.5 * (l + l.transpose()), exact = 20 * pi / 3 * viscosity * 0.8 * 0.8 * 0.8 * strain;  // Einstein 1906
   EXPECT_LT((f.body->stresslet(placed(f.shape.center)) - exact).norm() / exact.norm(), 5e-5);  // fourth order: 2.4e-5
@@ -90,7 +88,7 @@ stokes::FlowOptions parabolic() {
 TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
   const Fixture f(Vec3::Constant(0.8));
   const stokes::AmbientFlow flow(parabolic());
-  const FreeBody body(*f.resistance, f.shape.center, 0.8, flow);
+  const FreeBody body(*f.tractions, f.rest, f.shape.center, 0.8, flow);
   const RigidMotion motion = body.motion(f.turned(0.7, Vec3(1, 2, 3)));
   const Vec3 c = f.shape.center, laplacian(2 * flow.curvature().trace(), 0, 0);
   const Mat3 l = flow.gradient(c);
@@ -99,24 +97,24 @@ TEST(FreeBody, SphereInParabolicFlowGoesAsFaxenFound) {
   EXPECT_LT((motion.angular_velocity - 0.5 * Vec3(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1))).norm(), 1e-5);
 }
 
-// At one position the combination of modes must equal a direct solve, which FreeBodyInTube also computes without a tube.
+// At one position the combination of modes must equal a direct solve, which FreeBodyInTube also computes without a tube. The direct solve corrects
+// the collocation error of force and torque (2.11).
 TEST(FreeBody, MeetsAQuadraticFlowByItsModesAsBySolvingAtThePlace) {
   Fixture f(Vec3(0.7, 0.9, 1.2));
   stokes::FlowOptions options = parabolic();
   options.history.emplace();
   options.history->times = {0, 2}, options.history->amplitudes = {1, 3}, options.history->angles = {0, 60}, options.history->axis = "x3";
   const stokes::AmbientFlow flow(options);
-  FreeBody modes(*f.resistance, f.shape.center, 0.9, flow);
-  FreeBodyInTube solve(*f.resistance, f.shape.center, 0.9, flow, viscosity, {});
+  FreeBody modes(*f.tractions, f.rest, f.shape.center, 0.9, flow);
+  FreeBodyInTube solve(*f.tractions, f.rest, f.shape.center, 0.9, flow, viscosity);
   const Net place = f.turned(1.1, Vec3(1, -1, 0.5));
   for (const double time : {0.0, 1.0}) {
     modes.at(time, 0);
     solve.at(time, 0);
     const RigidMotion one = modes.motion(place), other = solve.motion(place);
-    EXPECT_LT((one.velocity - other.velocity).norm(), 1e-6 * other.velocity.norm());  // solves to 1e-8; a rotated quadratic field is interpolated at
-                                                                                      // other sites
-    EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 1e-6 * other.angular_velocity.norm());
-    EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-5 * solve.stresslet(place).norm());
+    EXPECT_LT((one.velocity - other.velocity).norm(), 2e-5 * other.velocity.norm());
+    EXPECT_LT((one.angular_velocity - other.angular_velocity).norm(), 5e-5 * other.angular_velocity.norm());
+    EXPECT_LT((modes.stresslet(place) - solve.stresslet(place)).norm(), 1e-4 * solve.stresslet(place).norm());
   }
 }
 
@@ -124,8 +122,9 @@ TEST(FreeBody, IsFreeOfForceAndTorque) {
   const Fixture f(Vec3(0.7, 0.9, 1.2));
   const Net f0 = f.body->force_density(placed(f.shape.center));
   const double scale = viscosity * some_gradient().norm();
-  EXPECT_LT(f.resistance->force(f0).norm(), 1e-9 * scale);  // residuals of 1e-12, condition numbers of 1e2
-  EXPECT_LT(f.resistance->torque(f0, f.shape.center).norm(), 1e-9 * scale);
+  const SolvedBody found = f.tractions->integrals(0, f0);
+  EXPECT_LT(found.force.norm(), 1e-9 * scale);  // round-off, times condition numbers of 1e2
+  EXPECT_LT(found.torque.norm(), 1e-9 * scale);
 }
 
 TEST(FreeBody, MovesAsItsSurfaceDoes) {

@@ -83,8 +83,8 @@ TEST(RigidParticles, OneMovesAsTheFirstKindEquationSays) {
   Net x = one.rest;
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   x = ((x.rowwise() - centre.transpose()) * turn.transpose()).rowwise() + centre.transpose();
-  Resistance resistance(one.space, one.rest, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks, one.phases);
-  FreeBody body(resistance, centre, 1, one.flow, driven);
+  RigidTractions tractions(one.space, one.rest, 1, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks);
+  FreeBody body(tractions, one.rest, centre, 1, one.flow, driven);
   Net place = placed(centre);
   const Eigen::Quaterniond q(turn);
   place.row(1) = q.vec().transpose(), place(2, 0) = q.w();

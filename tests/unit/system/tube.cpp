@@ -169,10 +169,10 @@ TEST(FreeBodyInTube, IsTheSameTurnedAndMoved) {
   solvers.tolerance = 1e-9;
   quadrature::Options quadrature;
   quadrature.tolerance = 1e-6;
-  Resistance resistance(s.space, s.x, viscosity, quadrature, solvers, s.ranks, s.phases, s.tube.get());
+  RigidTractions tractions(s.space, s.x, 0.5, viscosity, quadrature, solvers, s.ranks, s.tube.get());
   stokes::FlowOptions options;
   options.type = "duct", options.mean_velocity = 1.3;
-  const FreeBodyInTube body(resistance, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity, solvers);
+  const FreeBodyInTube body(tractions, s.x, s.shape.center, 0.5, stokes::AmbientFlow(options, s.flow), viscosity);
   const Net here = placed(s.shape.center);
   const RigidMotion motion = body.motion(here);
   const double drop = body.pressure_drop(here);

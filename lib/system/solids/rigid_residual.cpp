@@ -1,0 +1,56 @@
+#include "system/solids/rigid_residual.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace tanktread::coupling {
+
+namespace {
+
+std::vector<spline::Block> blocks_of_bodies(std::span<const Particle> particles) {
+  std::vector<spline::Block> blocks;
+  for (const Particle& one : particles)
+    if (one.rigid) blocks.push_back(one.block);
+  return blocks;
+}
+
+}  // namespace
+
+RigidResidual::RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles,
+                             double viscosity, const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks)
+    : viscosity_(viscosity),
+      ranks_(ranks),
+      between_(between_sites(space, rest, blocks_of_bodies(particles))),
+      single_(stokes::Layer::Kernel::single_layer, space, between_.places, quadrature),
+      measure_(coupling::measure(particles)) {
+  single_.set_reference(unstressed, measured_on_present(particles));
+  if (std::vector<double> contrasts = viscosity_contrasts(particles); !contrasts.empty())
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, between_.places, quadrature, std::move(contrasts));
+  if (wall) single_.set_wall(*wall);
+  if (wall && double_) double_->set_wall(*wall);
+}
+
+void RigidResidual::repeat(const stokes::PeriodicCell& cell) {
+  single_.repeat(cell);
+  if (double_) double_->repeat(cell);
+}
+
+Net RigidResidual::integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls) {
+  single_.place(x, measure_);
+  if (double_) double_->place(x);
+  const Net at = between_.values * x;
+  const Tube::Response response = walls.tube ? walls.tube->respond(load, v) : Tube::Response();
+  const Solids::Flow by_solids = walls.solids ? walls.solids->respond(load, v) + walls.solids->empty() : Solids::Flow();
+  flow += ranks_.divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& u) {
+    single_.apply(load, own, u);
+    u /= -viscosity_;
+    Net part(u.rows(), 3);
+    const auto add = [&] { u(own, Eigen::all) += part(own, Eigen::all); };
+    if (double_) double_->apply(v, own, part), add();
+    if (walls.tube) walls.tube->velocity_at(at, response, own, part), add();
+    if (walls.solids) walls.solids->velocity_at(at, own, by_solids, part), add();
+  });
+  return between_.weights * (between_.values * v - flow);
+}
+
+}  // namespace tanktread::coupling

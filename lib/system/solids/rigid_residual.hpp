@@ -1,0 +1,54 @@
+#pragma once
+// Velocity residual on rigid bodies between the collocation sites, and what else bounds the fluid.
+
+#include <optional>
+#include <span>
+
+#include "base/types.hpp"
+#include "quadrature/options.hpp"
+#include "spline/space.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "stokes/layer.hpp"
+#include "stokes/medium/plane_wall.hpp"
+#include "system/collocation.hpp"
+#include "system/particle.hpp"
+#include "system/ranks.hpp"
+#include "system/solids/solid_response.hpp"
+#include "system/solids/tube.hpp"
+
+namespace tanktread::coupling {
+
+/// Boundaries of the fluid other than particles; null or empty if there are none.
+struct FluidWalls {
+  Tube* tube = nullptr;
+  SolidResponse* solids = nullptr;
+  std::optional<stokes::PlaneWall> plane;
+};
+
+/// Residual of the velocity on rigid bodies at Gauss points between the collocation sites, from which (2.11) computes corrections. Calls are
+/// collective.
+class RigidResidual {
+ public:
+  /// The arguments are explained at the constructor of RigidTractions. Only `particles` that are rigid bodies have Gauss points.
+  RigidResidual(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
+                const quadrature::Options& quadrature, const std::optional<stokes::PlaneWall>& wall, Ranks& ranks);
+
+  void repeat(const stokes::PeriodicCell& cell);
+
+  /// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at
+  /// the Gauss points. `flow`: v_inf at these points. `load`, `v`: load and velocity of all particles, which have the net x.
+  Net integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls);
+
+  const BetweenSites& points() const { return between_; }
+  stokes::Evaluations evaluations() const { return double_ ? single_.evaluations() + double_->evaluations() : single_.evaluations(); }
+
+ private:
+  double viscosity_;
+  Ranks& ranks_;
+  BetweenSites between_;                 // Gauss points on the bodies
+  stokes::Layer single_;                 // single layer of all particles at the Gauss points
+  std::optional<stokes::Layer> double_;  // double layer of deformable particles; set if 1 - lambda is not 0 for any of them
+  stokes::Measure measure_;
+};
+
+}  // namespace tanktread::coupling
