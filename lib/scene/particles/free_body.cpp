@@ -30,11 +30,14 @@ class Free : public ParticleSystem {
     before_.solves -= again.solves;
     before_.solver_iterations -= again.solver_iterations;
     phase_angle_ = resumed.totals.phase_angle.at(0);
+    if (const auto start = resumed.checkpoint.arrays.find("start unknowns"); start != resumed.checkpoint.arrays.end())
+      free_->start_from(start->second);
     return false;
   }
   void store(output::Checkpoint& checkpoint) const override {
     checkpoint.arrays["unstressed"] = body_.unstressed;
     checkpoint.arrays["initial"] = body_.rest;
+    if (const Eigen::VectorXd start = free_->unknowns(); start.size() > 0) checkpoint.arrays["start unknowns"] = start;
   }
   void forget_recycled() override { tractions_.forget_recycled(); }
   bool adapt(motion::State&, RunTotals&) override { return false; }

@@ -68,10 +68,10 @@ FreeBodyInTube::Solution FreeBodyInTube::in_tube(const Net& place) const {
   Eigen::VectorXd right(3 * n + 6);
   Eigen::Map<Net>(right.data(), n, 3) = -flow_.velocities(moved(body_.sites(), place)) * turn;
   right.tail<6>() << turn.transpose() * driven_.force / force_unit, turn.transpose() * driven_.torque / (force_unit * radius_);
-  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(right.size());
-  iterations_ += body_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns);
-  const Net f = unit * Eigen::Map<const Net>(unknowns.data(), n, 3);
-  const RigidMotion motion = motion_of(Six(unknowns.tail<6>()).cwiseProduct(of_motion));
+  if (unknowns_.size() != right.size()) unknowns_ = Eigen::VectorXd::Zero(right.size());
+  iterations_ += body_.solve({{{"traction", 3 * n}, {"rigid motion", 6}}, apply, precondition}, right, unknowns_);
+  const Net f = unit * Eigen::Map<const Net>(unknowns_.data(), n, 3);
+  const RigidMotion motion = motion_of(Six(unknowns_.tail<6>()).cwiseProduct(of_motion));
   return {{turn * motion.velocity, turn * motion.angular_velocity}, f * turn.transpose(),
           -turn * body_.integrals(0, f).stresslet() * turn.transpose()};
 }

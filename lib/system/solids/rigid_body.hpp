@@ -59,6 +59,12 @@ class LoneRigidBody : public Dynamics {
   virtual Net force_density(const Net& place) const = 0;  ///< force density on the fluid, control values
   virtual Mat3 stresslet(const Net& place) const = 0;     ///< int (t_i x_j + t_j x_i)/2 - delta_ij/3 t.x dG, t the traction on the body
   virtual double pressure_drop(const Net&) const { return 0; }  ///< additional pressure drop due to the body, in a tube
+
+  /// The latest solution of the linear system, which is the initial guess of the next solve; empty if no system is solved iteratively. Checkpoints
+  /// store it, so that a resumed run is bitwise equal.
+  virtual Eigen::VectorXd unknowns() const { return {}; }
+  virtual void start_from(const Eigen::VectorXd&) {}
+
   virtual long solver_iterations() const { return 0; }          ///< number of iterations of the linear solver since construction
 
   Net surface(const Net& place) const { return moved(surface_, place); }  ///< control net of the surface in the laboratory frame
@@ -103,8 +109,8 @@ class FreeBody : public LoneRigidBody {
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse without u. Calls are
-/// collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
+/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse without u, and the
+/// previous solution is the initial guess. Calls are collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
   /// `body`: equation of the body, with its tube or wall. `surface`: net of the body in its initial position.
@@ -118,6 +124,8 @@ class FreeBodyInTube : public LoneRigidBody {
   Net force_density(const Net& place) const override { return solution(place).density; }
   Mat3 stresslet(const Net& place) const override { return solution(place).stresslet; }
   double pressure_drop(const Net& place) const override;
+  Eigen::VectorXd unknowns() const override { return unknowns_; }
+  void start_from(const Eigen::VectorXd& unknowns) override { unknowns_ = unknowns; }
   long solver_iterations() const override { return iterations_; }
 
  private:
@@ -133,8 +141,9 @@ class FreeBodyInTube : public LoneRigidBody {
   RigidTractions& body_;
   double viscosity_;
   std::optional<RigidModes> modes_;  // solutions without the response of the tube
-  mutable Net place_;                // position of the latest solve
-  mutable Solution solution_;        // solution at this position
+  mutable Net place_;                 // position of the latest solve
+  mutable Solution solution_;         // solution at this position
+  mutable Eigen::VectorXd unknowns_;  // solution of the system in the tube
   mutable long iterations_ = 0;
 };
 
