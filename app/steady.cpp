@@ -98,8 +98,7 @@ class SteadyRun {
     report_.iterations = found.iterations, report_.error = found.rest;
     write();
     if (!found.converged)
-      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g, and the shape moves by %.2g R_C in one "
-                                 "step", found.iterations, found.rest, found.motion));
+      throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
   /// Finds the steady shape of a system by continuation from weaker flows, after the search from `start` has failed with the report `failed` and the

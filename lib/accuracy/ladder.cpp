@@ -25,8 +25,10 @@ using Clock = std::chrono::steady_clock;
 /// State of the directory of a level: finished, failed with the same deck, to be resumed, or to be run anew.
 enum class Start { finished, failed, resume, anew };
 
-/// File in the directory of a failed level: the level's deck and the reason. A resumed ladder does not run the level again.
+/// File in the directory of a level whose search for steady shapes failed: the level's deck and the reason. A resumed ladder does not search again.
+/// Failed runs in time are continued from their checkpoint instead.
 constexpr const char* failure_file = "failure.txt";
+constexpr const char* before_reason = "\n--- failed: ";
 
 class Ladder {
  public:
@@ -67,15 +69,19 @@ class Ladder {
     if (!task_.resume) {
       if (!task_.overwrite) output::check_vacant(task_.directory);
       output::start_directory(task_.directory);
+      std::error_code absent;
+      for (const auto& level : fs::directory_iterator(task_.directory)) fs::remove(level.path() / failure_file, absent);
     }
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns whether an earlier part of a resumed ladder finished level k or saw it fail.
+  /// Returns whether an earlier part of a resumed ladder has made level k or saw it fail, so that it will probably cost nothing. Its deck is not
+  /// compared, because it depends on shares that are measured later.
   bool is_over(int k) const {
     return coupling::decided([&] {
-      const Start start = start_of(directory(std::to_string(k)), level_at(k), program_.deck(settings(task_.values, level_at(k))));
-      return std::vector<double>{double(start == Start::finished || start == Start::failed)};
+      std::error_code absent;
+      const fs::path place = directory(std::to_string(k));
+      return std::vector<double>{double(task_.resume && (fs::exists(place / "summary.yaml", absent) || fs::exists(place / failure_file, absent)))};
     })[0] != 0;
   }
 
@@ -153,7 +159,8 @@ class Ladder {
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
     const auto began = Clock::now();
     if (start == Start::failed) {
-      fail(name, ranks_.rank() == 0 ? kept_failure(directory(name), deck) : "see the first rank");
+      const std::string why = ranks_.rank() == 0 ? kept_failure(directory(name), deck) : "";
+      fail(name, why.empty() ? "it failed before" : why + " (found before; without " + failure_file + " it is searched for again)");
       return 0;
     }
     if (start != Start::finished) {
@@ -163,10 +170,11 @@ class Ladder {
         if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
       } catch (const RunFailure& failure) {
         fail(name, failure.what());
-        serially([&] {
-          fs::create_directories(directory(name));
-          output::write_whole(directory(name) / failure_file, deck + failure_);
-        });
+        if (!task_.runs_in_time)
+          serially([&] {
+            fs::create_directories(directory(name));
+            output::write_whole(directory(name) / failure_file, deck + before_reason + failure_);
+          });
         return 0;
       }
     }
@@ -188,10 +196,12 @@ class Ladder {
 
   /// Returns why a run of this deck in this directory failed; empty if it did not fail or was not made.
   static std::string kept_failure(const fs::path& place, const std::string& deck) {
-    std::error_code absent;
-    if (!fs::is_regular_file(place / failure_file, absent)) return {};
-    const std::string text = text_of_file(place / failure_file, (place / failure_file).string(), 10'000'000);
-    return text.starts_with(deck) ? text.substr(deck.size()) : "";
+    try {
+      const std::string text = text_of_file(place / failure_file, (place / failure_file).string(), 10'000'000), start = deck + before_reason;
+      return text.starts_with(start) ? text.substr(start.size()) : "";
+    } catch (const UserError&) {  // there is no such file
+      return {};
+    }
   }
 
   Start start_of(const fs::path& place, const Level& level, const std::string& deck) const {

@@ -96,8 +96,8 @@ void approach(SteadyEquations& equations, Net& x) {
   }
 }
 
-/// A shape that moves by more than this part of R_C in one step is not steady, however small its correction: on a crumpled surface the Jacobian is
-/// so large that corrections are small although velocities are not.
+/// If the velocity times the step is more than this part of R_C, it counts as the error, however small the correction is: on a crumpled surface the
+/// Jacobian is so large that corrections are small although velocities are not.
 constexpr double largest_motion = 0.1;
 
 }  // namespace
@@ -108,7 +108,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   approach(equations, x);
   dynamics.freeze(x);
   Net best = x;
-  double rest = std::numeric_limits<double>::infinity(), latest = rest, motion = rest;
+  double rest = std::numeric_limits<double>::infinity(), latest = rest;
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";
   const int depth = coupling::FixedPoint::deep(x.size());
   FixedPointError error(depth);
@@ -116,7 +116,8 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
     const Net r = equations.residual(y), delta = equations.precondition(y, r);
     latest = dynamics.norm(delta);
     if (delta.allFinite()) latest = std::max(latest, dynamics.norm(error(y, delta)));
-    if (latest < rest) rest = latest, motion = dynamics.norm(r), best = y;
+    if (const double moved = dynamics.norm(r); !(moved < largest_motion)) latest = std::max(latest, moved);
+    if (latest < rest) rest = latest, best = y;
     return y + (bare ? r : delta);
   };
   const auto norm = [&](const Net& y) { return dynamics.norm(y); };
@@ -128,7 +129,7 @@ SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& option
   const coupling::NonlinearReport found = solver.solve(corrected, norm, options.tolerance, options.iterations, x, left);
   x = std::move(best);
   dynamics.restore_volume(x);
-  return {found.iterations, found.converged && motion < largest_motion, rest, motion};
+  return {found.iterations, found.converged, rest};
 }
 
 }  // namespace tanktread::motion

@@ -31,8 +31,7 @@ struct SteadyOptions {
 struct SteadyReport {
   int iterations = 0;
   bool converged = false;
-  double rest = 0;    ///< estimated error of the shape
-  double motion = 0;  ///< root mean square displacement in one implicit step, divided by R_C
+  double rest = 0;  ///< estimated error of the shape
 };
 
 /// Equations of the steady shape x reached from x0. Q is the projection onto the neutral directions, along which steady shapes map to other steady

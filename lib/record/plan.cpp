@@ -270,7 +270,7 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   lines.emplace_back("forces", forces_line(scene));
   lines.emplace_back("time", scene.particle.motion == Motion::free ? scene.time.scheme + " for centre and orientation" : "steady");
   lines.emplace_back("solvers", solvers_line(scene));
-  lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", 72e-6 * n * n));
+  lines.emplace_back("assembled", formatted("%.1f MB on every rank, factored", (scene.tube.present ? 144e-6 : 72e-6) * n * n));
   lines.emplace_back("kernels", instructions());
   lines.emplace_back("numbers", numbers_text(numbers(scene, body)));
   if (scene.adaptation.enabled)

@@ -93,7 +93,7 @@ class Free : public ParticleSystem {
     return body;
   }
 
-  /// Returns the free body with the given resistance, in a tube or at a wall if the scene has one.
+  /// Returns the free body with the given equation for its traction, in a tube or at a wall if the scene has one.
   static std::unique_ptr<coupling::LoneRigidBody> driven(const Scene& scene, const Body& body, coupling::RigidTractions& tractions) {
     const Vec3& centre = scene.particle.shape.center;
     if (scene.tube.present || scene.wall.present)

@@ -51,7 +51,7 @@ void each_count(Some& totals, const Act& act) {
   act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, for its motion",
       totals.work.solves);
   act("solver_iterations", all,
-      "number of iterations of the linear solver in `linear_solves`; for a prescribed body, in the solve for the traction",
+      "number of iterations of the linear solver in `linear_solves`; for a prescribed body, for its traction and that of unit motions",
       totals.work.solver_iterations);
   act("velocity_iterations", moving, "number of iterations of the linear solver for velocities", totals.work.velocity_iterations);
   act("velocity_solves", moving, "number of linear systems solved for velocities", totals.work.velocity_solves);

@@ -67,7 +67,7 @@ void Clusters::place(const std::vector<double> (&x)[3], std::span<const int> sta
     }
   }
   double extent = 0;
-  for (int c = 0; c < 3; ++c) {
+  for (int c = 0; c < 3 && n_groups > 0; ++c) {
     const auto [low, high] = std::ranges::minmax(groups_, {}, [c](const Group& group) { return group.centre[c]; });
     extent = std::max(extent, high.centre[c] - low.centre[c]);
   }

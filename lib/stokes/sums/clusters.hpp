@@ -42,8 +42,8 @@ class Clusters {
   /// a multiple of `quantum` groups, and the cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
-  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding do
-  /// not change it.
+  /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding
+  /// hardly ever change it.
   void place(const std::vector<double> (&x)[3], std::span<const int> starts);
 
   const std::vector<Cluster>& all() const { return clusters_; }  ///< parents before their children

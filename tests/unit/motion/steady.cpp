@@ -111,9 +111,8 @@ TEST_P(Steady, DoesNotTakeAShapeThatMovesForASteadyOne) {
   SteadyOptions options;
   options.method = GetParam(), options.tolerance = 1e-5;
   const SteadyReport report = find_steady(equations, options, {}, x);
-  EXPECT_LT(report.rest, options.tolerance);
   EXPECT_FALSE(report.converged);
-  EXPECT_GT(report.motion, 1e5);
+  EXPECT_GT(report.rest, 1e5);  // half of the velocity, not the correction of 1e-9
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"),
