@@ -110,7 +110,8 @@ class FreeBody : public LoneRigidBody {
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
 /// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse without u, and the
-/// previous solution is the initial guess. Calls are collective. Repeated calls at one position take one solve. The motion is not finite if the body intersects the wall.
+/// previous solution is the initial guess. Calls are collective. Repeated calls at one position take one solve. The motion is not
+/// finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
   /// `body`: equation of the body, with its tube or wall. `surface`: net of the body in its initial position.
