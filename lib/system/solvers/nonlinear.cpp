@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <typeinfo>
 
 #include <NOX.H>
 #include <NOX_Solver_Factory.H>
@@ -210,6 +212,9 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   } catch (const char*) {  // thrown by NOX if the function or a direction cannot be evaluated
     return {0, false};
   } catch (const Thyra::CatastrophicSolveFailure&) {
+    return {0, false};
+  } catch (const std::runtime_error& error) {  // of this type itself: thrown by Anderson's method if differences of iterates depend on each other
+    if (typeid(error) != typeid(std::runtime_error)) throw;
     return {0, false};
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {
     throw UserError(std::string("Solvers/NOX: NOX does not accept these parameters: ") + error.what());
