@@ -12,7 +12,7 @@ int row_at(const Eigen::Ref<const Net>& ring, const Vec3& at, double close) {
   return (ring.rowwise() - at.transpose()).rowwise().norm().minCoeff(&row) < close ? static_cast<int>(row) : -1;
 }
 
-/// Whether Q maps point k of each ring of `points` to point image[k] of the same ring.
+/// Returns whether Q maps point k of each ring of `points` to point image[k] of the same ring.
 bool maps(const Congruence& map, const Net& points, double close) {
   const auto m = static_cast<Eigen::Index>(map.image.size());
   for (Eigen::Index i = 0; i < points.rows(); ++i)

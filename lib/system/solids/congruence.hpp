@@ -21,11 +21,13 @@ struct Congruence {
 /// A(Q i, Q p) = Q A(i, p) Q^T.
 std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites);
 
-/// For each collocation point of a ring, another one from which a map leads to it.
+/// Point of a ring whose rows are assembled in place of those of another point of the ring.
 struct Original {
-  int point;               ///< smallest index in the ring from which a map leads to the point
-  const Congruence* from;  ///< this map
+  int point;               ///< smallest index in the ring that a map takes to the other point
+  const Congruence* from;  ///< this map; it points into the list given to originals()
 };
+
+/// Returns the original of each of the n_around points of a ring.
 std::vector<Original> originals(const std::vector<Congruence>& maps, int n_around);
 
 }  // namespace tanktread::coupling
