@@ -51,13 +51,18 @@ RigidSolution rigid_solution(const Scene& scene, const Body& body, coupling::Rig
   const Vec3& centre = scene.particle.shape.center;
   const coupling::Rigid driven{true, prescribed_motion(scene)};
   coupling::Tube* const tube = tractions.tube();
+  RigidSolution s;
   {
     const auto clock = phases.time("tractions");
     if (tube) tube->place(body.rest);
-    tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
+    if (scene.reciprocal_forces()) {
+      tractions.solve(body.rest, {&centre, 1}, {&driven, 1}, body.flow);
+      s.density = tractions.unknowns();
+    } else {
+      tractions.place(body.rest, {&centre, 1});
+      s.density = tractions.density(coupling::rigid_velocity(tractions.sites(), driven.motion, centre) - body.flow.velocities(tractions.sites()));
+    }
   }
-  RigidSolution s;
-  s.density = tractions.unknowns();
   s.iterations = tractions.converged_iterations();
   const auto integrals = tractions.integrals(0, s.density), corrected = scene.reciprocal_forces() ? tractions.bodies().front() : integrals;
   s.integral = -integrals.force;

@@ -220,6 +220,8 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   }
 }
 
+Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }
+
 SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {
   const spline::Block& block = particles_[p].block;
   const Net weighted = block.rows(Net(mass_.update(x_) * f));

@@ -83,6 +83,10 @@ class RigidTractions {
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
+  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the latest net, without motions of the bodies
+  /// and without corrections. All particles must be bodies. Collective.
+  Net density(const Net& velocities);
+
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 

@@ -2,55 +2,34 @@
 
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "spline/extraction.hpp"
-#include "spline/t_mesh.hpp"
+#include "single_ellipsoid.hpp"
 #include "stokes/flow/ellipsoid.hpp"
 #include "surface/geometry.hpp"
-#include "surface/shapes.hpp"
-#include "system/solids/rigid_tractions.hpp"
 
 namespace tanktread::coupling {
 namespace single_body_test {
 
 using std::numbers::pi;
-constexpr double viscosity = 1.7;
+constexpr double viscosity = SingleEllipsoid::viscosity;
 
-/// A rigid body on the cube mesh of six elements per side. The fitted surface has errors of 1e-5 in position and 1e-4 in the normal.
-struct Fixture {
-  spline::TMesh mesh = spline::cube(6);
-  spline::Space space = spline::space(mesh, spline::ExtraordinaryRule::g1);
-  surface::ParticleShape shape;
-  Net surface;
-  Ranks ranks;
-  std::unique_ptr<RigidTractions> tractions;
-
-  explicit Fixture(const Vec3& semi_axes) {
-    shape.shape = "ellipsoid";
-    shape.semi_axes = semi_axes;
-    surface = surface::initial_shape(space, mesh, shape);
-    quadrature::Options quadrature;
-    quadrature.tolerance = 1e-7;
-    tractions = std::make_unique<RigidTractions>(space, surface, shape.equivalent_radius(), viscosity, quadrature, SolverOptions(), ranks);
-    place(Vec3::Zero());
-  }
+struct Fixture : SingleEllipsoid {
+  explicit Fixture(const Vec3& semi_axes) : SingleEllipsoid(semi_axes, Vec3::Zero()) { place(Vec3::Zero()); }
 
   /// Sets the point about which torques and moments are computed.
-  void place(const Vec3& centre) const { tractions->place(surface, {&centre, 1}); }
+  void place(const Vec3& centre) const { tractions->place(rest, {&centre, 1}); }
 
   using Velocity = std::function<Vec3(const Vec3&)>;
 
   /// Returns the force density on the fluid for a velocity of the surface.
   Net density(const Velocity& velocity) const {
-    Eigen::VectorXd at_sites(surface.size());
-    for (Eigen::Index i = 0; i < surface.rows(); ++i) at_sites.segment<3>(3 * i) = velocity(tractions->sites().row(i).transpose());
-    const Eigen::MatrixXd f = tractions->layer().solved(at_sites);
-    return Eigen::Map<const Net>(f.data(), surface.rows(), 3);
+    Net at_sites = tractions->sites();
+    for (auto row : at_sites.rowwise()) row = velocity(row.transpose()).transpose().eval();
+    return tractions->density(at_sites);
   }
 
   SolvedBody integrals(const Net& f) const { return tractions->integrals(0, f); }
@@ -59,7 +38,7 @@ struct Fixture {
   double difference(const Net& f, const std::function<Vec3(const Vec3& x, const Vec3& n)>& exact, double scale) const {
     double largest = 0;
     for (const auto& sites : space.collocation) {
-      const surface::Point p = surface::point(space, surface, sites.front());
+      const surface::Point p = surface::point(space, rest, sites.front());
       largest = std::max(largest, (surface::value(space, f, sites.front()) - exact(p.x, p.n)).norm() / scale);
     }
     return largest;
@@ -121,7 +100,7 @@ TEST(SingleBody, LacksWhatTheReciprocalTheoremGives) {
   const Rigid moving{true, {u, Vec3::Zero()}};
   stokes::FlowOptions at_rest;
   at_rest.type = "quiescent";
-  s.tractions->solve(s.surface, {&centre, 1}, {&moving, 1}, stokes::AmbientFlow(at_rest));
+  s.tractions->solve(s.rest, {&centre, 1}, {&moving, 1}, stokes::AmbientFlow(at_rest));
   const Vec3 force = exact.force(viscosity, u);
   const double plain = (s.integrals(s.tractions->unknowns()).force - force).norm() / force.norm();
   const double corrected = (s.tractions->bodies().front().force - force).norm() / force.norm();
@@ -132,7 +111,7 @@ TEST(SingleBody, LacksWhatTheReciprocalTheoremGives) {
 TEST(SingleBody, KnowsNothingOfAUniformPressure) {
   const Fixture s = spheroid();
   const Net f = s.density([](const Vec3& x) -> Vec3 { return Vec3(1, 0, 0) + Vec3(0, 0, 1).cross(x); });
-  const Net b = surface::Geometry(s.space).volume_gradient(s.surface);
+  const Net b = surface::Geometry(s.space).volume_gradient(s.rest);
   EXPECT_LT(std::abs(b.cwiseProduct(f).sum()), 1e-10 * b.norm() * f.norm());  // the condition int f.n dG = 0 is a choice
 }
 
