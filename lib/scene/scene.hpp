@@ -143,7 +143,7 @@ struct Scene : ParticleKind {
   /// scene does not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
   bool in_system() const {
     if (only_solids) return false;
-    return !particles.empty() || !name.empty() || !particle.rigid() || (domain.present && !tube.present) || output.power_balance || !runs_in_time() ||
+    return !particles.empty() || !name.empty() || !particle.rigid() || domain.present || output.power_balance || !runs_in_time() ||
            tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
   }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.

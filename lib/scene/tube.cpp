@@ -112,7 +112,7 @@ std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene) {
   if (!scene.tube.present) return {};
   if (scene.tube.channel)
     return std::make_shared<const coupling::ChannelFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0), scene.quadrature,
-                                                         scene.solvers.wall);
+                                                         coupling::WallSolver{scene.solvers.wall, scene.solvers.tolerance});
   return std::make_shared<const stokes::DuctFlow>(scene.tube, scene.flow.viscosity, scene.flow.mean_velocity.value_or(1.0));
 }
 

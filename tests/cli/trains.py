@@ -66,6 +66,17 @@ def a_domain_along_the_tube_is_its_period():
         check(series("domain", name)[-1] == one[name], name)
 
 
+def a_body_is_solved_for_alike_as_particle_and_in_a_list():
+    """A list with one particle is the same scene. By default both solve for the traction."""
+    for motion in ("free", "prescribed"):
+        body = f"{{shape: sphere, radius: 0.4, motion: {motion}"
+        _run(HEAD + f"  Particle: {body}}}\n  Surface: {{elements per side: 4}}\n", "particle", "Time/scheme=bs3")
+        _run(HEAD + f"  Particles: {{ball: {body}, Surface: {{elements per side: 4}}}}}}\n", "list", "Time/scheme=bs3")
+        for name in ("velocity_x1", "drag_x1", "centroid_x1"):
+            check(abs(series("particle", name) - series("list", f"ball/{name}")).max() == 0, f"{motion}, {name}")
+        check(abs(series("particle", "disturbed_pressure_drop") - series("list", "disturbed_pressure_drop")).max() == 0, motion)
+
+
 def a_held_flow_rate_and_the_pressure_drop_that_gives_it_do_the_same():
     """8 mu V/R^2 along the empty tube: the empty tube of the same pressure drop is faster by Delta p^D/(8 L)."""
     for ratio in (1, 4):

@@ -14,13 +14,13 @@ constexpr double sharpness = 1e-2;  // tolerance relative to other layers
 }
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-                         const std::string& wall_solver)
+                         const WallSolver& solver)
     : DuctFlow(surface::Channel(options).tube(surface::Channel(options).start()), viscosity, mean_velocity),
       channel_(std::make_shared<const surface::Channel>(options)),
       surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
       options_(options),
       quadrature_(quadrature),
-      wall_solver_(wall_solver) {
+      solver_(solver) {
   if (channel_->repeats()) return;
   ends_.push_back(section(channel_->start(), 1));
   ends_.push_back(section(channel_->end(), -1));
@@ -39,7 +39,7 @@ stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
 }
 
 std::shared_ptr<Wall> ChannelFlow::wall(Phases* phases) const {
-  if (!wall_) wall_ = std::make_shared<Wall>(*surface_, quadrature_, phases, surface::Symmetry(), wall_solver_);
+  if (!wall_) wall_ = std::make_shared<Wall>(*surface_, quadrature_, phases, surface::Symmetry(), solver_);
   return wall_;
 }
 
@@ -49,7 +49,7 @@ std::shared_ptr<Wall> ChannelFlow::wall(Phases& phases, const surface::Symmetry&
   std::vector<surface::Image> images;
   for (const surface::Image& image : particle.images()) images.push_back(surface::image(surface_->space, net, image.signs).value());
   const surface::Symmetry symmetry = images.empty() ? surface::Symmetry() : surface::Symmetry(images, surface_->net);
-  wall_ = std::make_shared<Wall>(*surface_, quadrature_, &phases, symmetry, wall_solver_);
+  wall_ = std::make_shared<Wall>(*surface_, quadrature_, &phases, symmetry, solver_);
   return wall_;
 }
 

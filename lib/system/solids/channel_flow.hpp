@@ -28,9 +28,8 @@ namespace tanktread::coupling {
 /// of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
-  /// `wall_solver`: as for Wall.
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
-              const std::string& wall_solver = "factored");
+              const WallSolver& solver = {});
 
   /// Returns the velocities at x, accurate up to the wall. At points outside they are undefined. The values at the latest points are cached.
   /// Collective.
@@ -73,7 +72,7 @@ class ChannelFlow : public stokes::DuctFlow {
   std::shared_ptr<const surface::TubeWall> surface_;
   surface::TubeOptions options_;
   quadrature::Options quadrature_;
-  std::string wall_solver_;
+  WallSolver solver_;
   std::vector<stokes::DuctEnd> ends_;
   mutable std::shared_ptr<stokes::Layer> layer_;  // single layer of the wall, with a smaller tolerance than in Wall, because large
                                                   // pressures at the ends amplify errors of the velocity

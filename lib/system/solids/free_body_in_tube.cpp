@@ -28,11 +28,14 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
 }
 
 double FreeBodyInTube::pressure_drop(const Net& place) const {
-  const Net f = solution(place).density;
   Tube* const tube = body_.tube();
   if (!tube) return 0;
-  const Net between = flow_.duct() ? flow_.velocities(body_.between().values * surface(place)) : Net();
-  return (flow_.duct() ? tube->lacking_pressure(body_.between(), between, flow_.amplitude(), f, 0) : 0) - tube->pressure_of(f);
+  const auto& [motion, f, stresslet] = solution(place);
+  const double pressure = -tube->pressure_of(f);
+  if (!flow_.duct()) return pressure;
+  const Net x = surface(place);
+  const bool free = driven_.force.isZero(0) && driven_.torque.isZero(0);
+  return pressure + body_.lacking_pressure(x, f, rigid_velocity(x, motion, centre_of(place)), flow_, free);
 }
 
 /// Solves for the force density f and the motion U, Omega. The unknowns are scaled to velocities: f R_C/mu, U and Omega R_C. The force balance is

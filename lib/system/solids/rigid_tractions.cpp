@@ -220,6 +220,16 @@ void RigidTractions::solve(const Net& x, std::span<const Vec3> centres, std::spa
   }
 }
 
+double RigidTractions::lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work) {
+  const Net between = flow.velocities(residual_.points().values * x);
+  double work = 0;
+  if (by_work) {
+    left_ = flat(residual_.integrated(x, load(f), v, between, walls_));
+    work = lacks(f, -flat(f))[0];  // the density that v_inf requires on free bodies is -f
+  }
+  return walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, work);
+}
+
 Net RigidTractions::density(const Net& velocities) { return as_net(densities(flat(velocities))); }
 
 SolvedBody RigidTractions::integrals(std::size_t p, const Net& f) {

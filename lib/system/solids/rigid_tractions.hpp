@@ -87,14 +87,18 @@ class RigidTractions {
   /// and without corrections. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
+  /// Returns the collocation-error correction of the pressure drop (2.7) for a force density f on freely moving bodies at the net x, with the control
+  /// values v of the bodies' velocity. `flow` must be a duct flow. If `by_work` is false, forces or torques act on the bodies, and only the interpolation
+  /// error of v_inf is corrected. All particles must be bodies. Collective.
+  double lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
+
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
   SolvedBody integrals(std::size_t p, const Net& f);
 
   /// Returns the collocation sites of all particles at the latest net.
   const Net& sites() const { return at_; }
 
-  BodyLayer& layer() { return layer_; }                                   ///< returns the single layer at the latest net
-  const BetweenSites& between() const { return residual_.points(); }      ///< returns the Gauss points on the bodies
+  BodyLayer& layer() { return layer_; }  ///< returns the single layer at the latest net
 
   /// Returns whether the bodies with the net x are inside the tube and in front of the plane wall. If there is a tube, it must have been set to x.
   bool inside(const Net& x) const;

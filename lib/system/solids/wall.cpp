@@ -77,7 +77,6 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-constexpr double residual = 1e-2;        // tolerance of the iterative solve divided by the quadrature tolerance
 constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints, for harmonics of the
                                         // error that decrease as k^-5 with the wave number k (k^-4 from spline interpolation, k^-1 from the single
                                         // layer)
@@ -106,13 +105,13 @@ std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
 }  // namespace
 
 Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases,
-           const surface::Symmetry& symmetry, const std::string& solver)
+           const surface::Symmetry& symmetry, const WallSolver& solver)
     : surface_(wall),
       symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
       cell_(lattice(wall)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
       sites_(collocation_points(wall)),
-      tolerance_(residual * quadrature.tolerance) {
+      tolerance_(solver.tolerance) {
   const auto n = static_cast<int>(wall.sites.size());
   if (!cell_) inlet_.emplace(wall.outline, wall.start, sharper(quadrature).tolerance);
   own_ = ranks_.divide_in_order(symmetry_);
@@ -128,7 +127,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
   if (cell_) find_pressure();
-  if (!cell_ && iterates(solver, 3.0 * n / symmetry_.order())) {
+  if (!cell_ && solver.iterates(3.0 * n / symmetry_.order())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
     krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
   } else {

@@ -42,6 +42,15 @@ class WallPatches {
   std::vector<Patch> patches_;
 };
 
+/// How the linear system of a wall is solved.
+struct WallSolver {
+  std::string method = "factored";  ///< "factored", "iterative", or "auto", which is iterative if the factors take more than most_bytes
+  double tolerance = 1e-8;          ///< relative residual of the iterative solver
+
+  static constexpr double most_bytes = 4e9;
+  bool iterates(double unknowns) const { return method == "iterative" || (method == "auto" && 8 * unknowns * unknowns > most_bytes); }
+};
+
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
 /// wall's frame. The ranks share the assembly, but each rank stores all factors: 72 bytes per pair of control points.
 ///
@@ -60,14 +69,9 @@ class WallPatches {
 class Wall {
  public:
   /// Assembles and factors the operator. Collective. `phases`: if given, records the time of exchanges, also in `apply`; must outlive this object.
-  /// `solver`: "factored", "iterative", or "auto", which is iterative if the factors take more than `most_bytes`.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
-       const surface::Symmetry& symmetry = surface::Symmetry(), const std::string& solver = "factored");
+       const surface::Symmetry& symmetry = surface::Symmetry(), const WallSolver& solver = {});
 
-  static constexpr double most_bytes = 4e9;
-  static bool iterates(const std::string& solver, double unknowns) {
-    return solver == "iterative" || (solver == "auto" && 8 * unknowns * unknowns > most_bytes);
-  }
   bool iterates() const { return patches_of_rows_.has_value(); }
 
   const surface::TubeWall& surface() const { return surface_; }

@@ -65,7 +65,7 @@ void SolverOptions::declare(deck::Section& section) {
                   "with a Time/nonlinear solver other than `plain`");
   section.key("tolerance", tolerance, deck::between(1e-15, 1e-1), "1",
               "relative residual to which the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid "
-              "particles) are solved. Keep it well below Quadrature/tolerance");
+              "particles, Solvers/wall `iterative`) are solved. Keep it well below Quadrature/tolerance");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
               "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. "
               "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs "
@@ -85,7 +85,8 @@ void SolverOptions::declare(deck::Section& section) {
       "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
       "`first kind`: the tractions are the unknowns (2.40) of a dense matrix, which is factored for every configuration; far more "
       "accurate if gaps are small. `auto`: `first kind` if there are at least two rigid bodies, all with Adaptation/enabled and together "
-      "with at most 4500 unknowns at the start, and otherwise `second kind`");
+      "with at most 4500 unknowns at the start, or if the only particle in a Tube or Channel is a rigid body with at most 4500 unknowns; "
+      "otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
