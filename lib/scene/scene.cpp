@@ -277,9 +277,9 @@ void Scene::declare(deck::Section& root) {
 }
 
 std::vector<Scene> Scene::alone() const {
-  if (particles.empty()) return {*this};
   Scene common = *this;
   common.solvers.rigid_bodies = by_tractions() ? "first kind" : "second kind";
+  if (particles.empty()) return {common};
   std::vector<ParticleKind>().swap(common.particles);  // frees the memory, which clear() would keep in each copy
   std::vector<Scene> scenes(particles.size(), common);
   for (std::size_t p = 0; p < particles.size(); ++p) static_cast<ParticleKind&>(scenes[p]) = particles[p];
