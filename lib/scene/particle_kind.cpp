@@ -78,7 +78,7 @@ void ParticleOptions::declare(deck::Section& section) {
       "particle at the stagnation point of a flow that diverges in some direction, where rounding errors would grow into a drift, and "
       "`free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "method of computing force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the "
+              "method of computing force and torque on a single particle with Particle/motion `prescribed`. `integral`: integral of the "
               "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "
               "accurate; default with Quadrature/rule `adaptive`, the only rule that is accurate enough for it");
 }

@@ -58,9 +58,9 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
     all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
                    coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
   }
-  return coupling::SolidScene{std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
-                              scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(),
-                              pressure_gradient, scene.quadrature};
+  return coupling::SolidScene{
+      std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
+      scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 
 void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {

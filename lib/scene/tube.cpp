@@ -229,10 +229,11 @@ void check_spread(const Scene& scene, const surface::TubeWall& wall, const surfa
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // a tube radius R_T must remain between the particles and each end, because
                                                                          // the disturbance decays over about R_T
   if (wall.length() < needed)
-    throw RunFailure(formatted("%s, from x1 = %.4g to %.4g seen from the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
-                               "too short",
-                               scene.particles.empty() ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(),
-                               x1.maxCoeff(), wall.radius(), wall.length()));
+    throw RunFailure(
+        formatted("%s, from x1 = %.4g to %.4g seen from the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
+                  "too short",
+                  scene.particles.empty() ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(), x1.maxCoeff(),
+                  wall.radius(), wall.length()));
 }
 
 double least_way(const Scene& scene, const Body& body, const Columns& row) {

@@ -102,8 +102,8 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
 
 /// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
 /// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v. `load` and `unbounded`: see BlockSystem.
-Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
-                          const Net& b, const Net& c, const Net& rhs) {
+Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded,
+                          const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
   std::vector<spline::Block> constrained;
   for (const Particle& one : particles())

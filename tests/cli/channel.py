@@ -102,13 +102,16 @@ def a_file_says_what_the_constriction_does():
 
 def an_outline_from_a_file_is_scaled_at_the_inlet_too():
     turns = numpy.linspace(0, 2 * numpy.pi, 48, endpoint=False)
-    numpy.savetxt("circle.csv", numpy.column_stack([numpy.cos(turns), numpy.sin(turns)]), delimiter=",", header="x2,x3", comments="")
+    circle = numpy.column_stack([numpy.cos(turns), numpy.sin(turns)])
+    numpy.savetxt("circle.csv", circle, delimiter=",", header="x2,x3", comments="")
     pathlib.Path("narrows.csv").write_text("s,f\n-1,1.3\n1,1\n")
-    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: narrows.csv").replace("start: -3.4", "start: -3.9")
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: narrows.csv")
+    lines = lines.replace("start: -3.4", "start: -3.9")
     short = ["Time/scheme=bs3", "Time/fixed step=1e-6", "Time/final time=1e-6", "Time/end when past=2", "Surface/elements per side=3",
              "Channel/axial elements=12", "Quadrature/tolerance=1e-3", "Output/interval=1e-6"]
     run(deck(lines), *_words(short), "--output", "circle", "--quiet")
-    run(deck(lines), *_words(short + ["Channel/section=file", "Channel/outline=circle.csv", "Channel/flow elements=48"]), "--output", "outline", "--quiet")
+    outline = ["Channel/section=file", "Channel/outline=circle.csv", "Channel/flow elements=48"]
+    run(deck(lines), *_words(short + outline), "--output", "outline", "--quiet")
     for name in "channel_pressure_drop", "velocity_x1":
         one, other = (series(results, name)[0] for results in ("circle", "outline"))
         check(abs(other / one - 1) < 2e-3, f"{name}: {one} of a circle, {other} of its outline")

@@ -76,7 +76,8 @@ class Deforming : public ParticleSystem {
                     scene_.rate());
     motion::State own = fields_->of_shape(state);
     const stokes::AmbientFlow& flow = capsule_->flow();
-    const Mat3 deformed = flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // of the lattice, over the step (2.51)
+    const Mat3 deformed =
+        flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // of the lattice, over the step (2.51)
     coupling::Contacts contacts = contacts_;
     for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
     const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);
@@ -301,8 +302,8 @@ class Deforming : public ParticleSystem {
   RigidRow rigid_row(std::size_t p, coupling::Evaluation& here) {
     const Member& member = members_[p];
     const coupling::RigidParticles& rigid = here.rigid();
-    RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()), rigid.motion(p),
-                                        Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
+    RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()),
+                                        rigid.motion(p), Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }
@@ -311,7 +312,8 @@ class Deforming : public ParticleSystem {
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), tube->cell(), &tube->wall());
+    if (const coupling::Tube* tube = capsule_->tube())
+      widths = films(members_, p, tube->in_wall_frame(state.x), tube->cell(), &tube->wall());
     else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
                              fields_->values_at(p));

@@ -264,7 +264,8 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
     for (const Net& other : neighbours(members[p].own(x), members[q].own(x), q == p, reach, cell))
       placed.emplace_back(surface::BezierMap(members[q].body->space), other);
   if (wall)
-    for (const Net& net : neighbours(members[p].own(x), wall->net, false, reach, cell)) placed.emplace_back(surface::BezierMap(wall->space), net);
+    for (const Net& net : neighbours(members[p].own(x), wall->net, false, reach, cell))
+      placed.emplace_back(surface::BezierMap(wall->space), net);
   std::vector<const surface::Patches*> others;
   for (const surface::Patches& other : placed) others.push_back(&other);
   std::vector<double> widths = surface::film_widths(own, others, reach);

@@ -269,7 +269,8 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
 }
 
 RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
-                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
+                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+                   const coupling::Ranks& ranks) {
   RigidRow now;
   now.n_points = body.space.n_points;
   now.measures = geometry.measures(x);

@@ -88,7 +88,8 @@ double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, co
 /// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. `flow`: flow at the time of the row. Drag and torque are
 /// not set. Collective.
 RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
-                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
+                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+                   const coupling::Ranks& ranks);
 
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);

@@ -91,7 +91,7 @@ class Solids {
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
-  const std::array<Vec3, 2>& across() const { return across_; }  ///< range of coordinates, in the axes of the cell, that contains the solids
+  const std::array<Vec3, 2>& across() const { return across_; }  ///< range of the solids' coordinates, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
@@ -106,7 +106,8 @@ class Solids {
   Ranks ranks_;
   std::vector<int> own_;
   quadrature::Options quadrature_;
-  std::array<Vec3, 2> across_, reached_;  // lowest and highest coordinates, in the axes of the cell, of the solids and of the targets of `layer_`
+  std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
+  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets of `layer_`, in the axes of the cell
   std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dG

@@ -29,7 +29,7 @@ TEST(Adaptation, AllShapesOfAParticleAreOnItsNewMesh) {
   output::Checkpoint checkpoint;
   store(refined, checkpoint);
   EXPECT_TRUE(restore(checkpoint, resumed));
-  for (const Net Body::* net : {&Body::rest, &Body::initial, &Body::unstressed})
+  for (const Net Body::*net : {&Body::rest, &Body::initial, &Body::unstressed})
     EXPECT_EQ(((*resumed.front().body).*net).rows(), resumed.front().body->space.n_points);
 }
 

@@ -59,12 +59,11 @@ TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   const Solids::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
   const int rows[] = {0};
   for (const double height : {0.5, 2.7}) {  // inside and outside of the range at first, one period of length 2
-    Net at(1, 3), far(1, 3), by_fresh(1, 3), by_used(1, 3);
-    at << 0.4, 0.1, height, far << 0.4, 0.1, 9;
+    const Net at = Vec3(0.4, 0.1, height).transpose(), far = Vec3(0.4, 0.1, 9).transpose();
+    Net by_fresh(1, 3), by_used(1, 3);
     fresh.reach(at), used.reach(far), used.reach(at);
     fresh.velocity_at(at, rows, flow, by_fresh), used.velocity_at(at, rows, flow, by_used);
     EXPECT_EQ(by_fresh, by_used) << height;
-    EXPECT_GE(used.across()[1][2], 2);
   }
 }
 
