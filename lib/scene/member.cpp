@@ -199,7 +199,7 @@ bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members)
     another = true;
     lay_out(member.scene, stored_mesh(member.body->mesh, checkpoint, member.label("")), *member.body);
     member.body->unstressed = checkpoint.arrays.at(member.label("unstressed"));
-    member.body->rest = checkpoint.arrays.at(member.label("initial"));
+    member.body->rest = member.body->initial = checkpoint.arrays.at(member.label("initial"));
     member.body->refit_error = checkpoint.numbers.at(member.label("refit error"));
   }
   return another;

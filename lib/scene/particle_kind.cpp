@@ -24,6 +24,16 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
   to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body with prescribed motion does not become steady");
+  to.pair(forces && !told, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
+          "it is the method for the force on a body with prescribed motion");
+  to.pair(forces && told && scene.in_system(), "Particle/forces",
+          {!scene.name.empty()          ? "Particles"
+           : scene.domain.present       ? "Domain"
+           : scene.output.power_balance ? "Output/power balance"
+           : scene.flow.history         ? "Flow/history"
+                                        : "Output/series",
+           "Particles, Domain, Output/power balance, Output/series or Flow/history"},
+          "the force on a body in the coupled system follows from the solution of this system");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
   to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
   to.pair(rigid() && viscosity_ratio != 1, "Particle/viscosity ratio", stiff, "there is no fluid in a rigid particle");
@@ -68,7 +78,7 @@ void ParticleOptions::declare(deck::Section& section) {
       "particle at the stagnation point of a flow that diverges in some direction, where rounding errors would grow into a drift, and "
       "`free` otherwise");
   section.key("forces", forces, deck::Choice{"reciprocal", "integral"},
-              "method of computing force and torque on a particle with Particle/motion `prescribed`. `integral`: integral of the "
+              "method of computing force and torque on a single particle with Particle/motion `prescribed`. `integral`: integral of the "
               "traction, as by Maestre et al. (2017). `reciprocal`: this integral corrected by the reciprocal theorem, which is more "
               "accurate; default with Quadrature/rule `adaptive`, the only rule that is accurate enough for it");
 }

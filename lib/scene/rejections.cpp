@@ -28,10 +28,12 @@ void reject_registered(const Scene& scene, Rejections& to) {
 }  // namespace
 
 void Scene::reject_power(Rejections& to) const {
-  const bool asked = output.power_balance && name.empty();
+  const bool asked = output.power_balance && name.empty(), between_plates = wall.solid && wall.distance && !flow.user;
   const std::string word = "Output/power balance";
-  to.pair(asked && flow.type != "duct" && !tube.present && !wall.solid && !stokes::AmbientFlow(flow).affine(), word,
-          {flow.choice(), "Flow/type `parabolic`"}, "it is available in flows with a uniform gradient, in tubes and between plates");
+  to.pair(
+      asked && flow.type != "duct" && !tube.present && !between_plates && !stokes::AmbientFlow(flow).affine(), word,
+      {flow.choice(), "Flow/type `parabolic`"},
+      "it is available in flows with a uniform gradient, in tubes, and between two plates if the pressure gradient of the flow is known");
   to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
 

@@ -49,15 +49,18 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
   const stokes::PeriodicCell cell = *scene.domain.cell();
   const stokes::AmbientFlow flow(scene.flow);
   std::vector<Solids::Solid> all = plates(scene, cell, flow);
+  // Between plates the flow includes the pressure gradient, which is mu times the Laplacian of the velocity (2.20).
+  const Vec3 pressure_gradient = scene.wall.solid ? Vec3(2 * scene.flow.viscosity * flow.curvature().trace() * flow.direction())
+                                                  : scene.flow.pressure_gradient.value_or(Vec3::Zero());
   for (const Post& post : scene.posts) {
     const Vec3 period = period_of(post, cell);
     const Vec3 center = post.center - cell.shift(post.center);
     all.push_back({surface::cylinder(center, period, post.radius, post.around, elements_along(post, period)), Vec3::Zero(),
                    coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
   }
-  return coupling::SolidScene{std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
-                              scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(),
-                              scene.flow.pressure_gradient.value_or(Vec3::Zero()), scene.quadrature};
+  return coupling::SolidScene{
+      std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
+      scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 
 void check_outside_of_posts(const coupling::SolidScene& solids, const std::vector<Member>& members) {

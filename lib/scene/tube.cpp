@@ -88,8 +88,6 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
   to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
-  to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
-          "the system of all blocks does not include the load of a viscous membrane; give `schur`");
   to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined,
           "the wall of a straight tube is always factored; the key is for a Channel");
   to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
@@ -120,9 +118,12 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   if (!scene.tube.present) return {};
   if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
   const surface::Outline& outline = body.duct->outline();
-  const double centroid = surface::measures(body.space, body.rest).centroid[0];
-  const Eigen::VectorXd x1 = body.rest.col(0).array() - centroid;
-  const double length = x1.maxCoeff() - x1.minCoeff();
+  double first = 0, last = 0;  // extent of the particle along x1 from its centroid, at rest and at the start
+  for (const Net* net : {&body.rest, &body.initial}) {
+    const Eigen::ArrayXd x1 = net->col(0).array() - surface::measures(body.space, *net).centroid[0];
+    first = std::min(first, x1.minCoeff()), last = std::max(last, x1.maxCoeff());
+  }
+  const double length = last - first;
   surface::TubeOptions options = scene.tube;
   if (const double period = scene.tube.period; period > 0) {
     const int elements = surface::elements_per_period(options, outline.radius(), period, std::min(length, period) / 2);
@@ -134,7 +135,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   }
   const double along = surface::tube_length(scene.tube, outline.radius(), length);
   auto wall = std::make_shared<surface::TubeWall>(surface::tube_wall(outline, options, along, length / 2));
-  surface::check_length(*wall, x1.minCoeff(), x1.maxCoeff());
+  surface::check_length(*wall, first, last);
   return wall;
 }
 
@@ -223,14 +224,16 @@ TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, dou
 }
 
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x) {
-  if (wall.channel || wall.period > 0 || scene.particles.empty()) return;
+  if (wall.channel || wall.period > 0) return;
   const Eigen::VectorXd x1 = x.col(0).array() - geometry.measures(x).centroid[0];
   const double needed = 2 * (x1.cwiseAbs().maxCoeff() + wall.radius());  // a tube radius R_T must remain between the particles and each end, because
                                                                          // the disturbance decays over about R_T
   if (wall.length() < needed)
-    throw RunFailure(formatted("the particles have drawn apart, from x1 = %.4g to %.4g seen from their centroid: with less than R_T = %.4g left at "
-                               "an end, Tube/length = %.4g is too short",
-                               x1.minCoeff(), x1.maxCoeff(), wall.radius(), wall.length()));
+    throw RunFailure(
+        formatted("%s, from x1 = %.4g to %.4g seen from the centroid: with less than R_T = %.4g left at an end, Tube/length = %.4g is "
+                  "too short",
+                  scene.particles.empty() ? "the particle has become long" : "the particles have drawn apart", x1.minCoeff(), x1.maxCoeff(),
+                  wall.radius(), wall.length()));
 }
 
 double least_way(const Scene& scene, const Body& body, const Columns& row) {

@@ -289,7 +289,8 @@ class Capsule : public Dynamics {
   stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets);
   Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
   Blocks velocity_blocks() const;
-  Net solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs);
+  Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
+                   const Net& b, const Net& c, const Net& rhs);
   void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);

@@ -68,7 +68,7 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     rigid_.complete(v, bv);
     return bv;
   };
-  if (!schur()) return solve_blocks([&](const Net& v) { return without_wall(v, load_of(v)); }, f, b, c, rhs);
+  if (!schur()) return solve_blocks(load_of, without_wall, f, b, c, rhs);
   const auto project = [&](Net& v) {
     if (b.size() > 0) constrain(v, b, c);
   };
@@ -100,11 +100,15 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   return solution;
 }
 
-/// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multiplier (2.8) in one system. The right-hand
-/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v.
-Net Capsule::solve_blocks(const std::function<Net(const Net&)>& unbounded, const Net& f, const Net& b, const Net& c, const Net& rhs) {
+/// Solves for the velocity v, the wall traction f^D, the pressure drop dp (2.5)-(2.7) and the volume multipliers (2.8) in one system. The right-hand
+/// side rhs = v_inf - (1/mu) R^-1 A f is also the initial guess of v. `load` and `unbounded`: see BlockSystem.
+Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded,
+                          const Net& f, const Net& b, const Net& c, const Net& rhs) {
   const auto control_values = [&](const Net& at_sites) { return collocation_.solve(at_sites); };
-  const BlockSystem system{*tube_, unbounded, control_values, b, c, tube_->wall().radius() / parameters_.viscosity};
+  std::vector<spline::Block> constrained;
+  for (const Particle& one : particles())
+    if (b.size() > 0 && !one.rigid) constrained.push_back(one.block);
+  const BlockSystem system{*tube_, load, unbounded, control_values, b, c, constrained, tube_->wall().radius() / parameters_.viscosity};
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
   x.head(rhs.size()) = right.head(rhs.size());

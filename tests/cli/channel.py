@@ -100,6 +100,42 @@ def a_file_says_what_the_constriction_does():
     check(abs(one / other - 1) < 2e-3, f"{one} by file, {other} built in")
 
 
+def an_outline_from_a_file_is_scaled_at_the_inlet_too():
+    turns = numpy.linspace(0, 2 * numpy.pi, 48, endpoint=False)
+    circle = numpy.column_stack([numpy.cos(turns), numpy.sin(turns)])
+    numpy.savetxt("circle.csv", circle, delimiter=",", header="x2,x3", comments="")
+    pathlib.Path("narrows.csv").write_text("s,f\n-1,1.3\n1,1\n")
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: narrows.csv")
+    lines = lines.replace("start: -3.4", "start: -3.9")
+    short = ["Time/scheme=bs3", "Time/fixed step=1e-6", "Time/final time=1e-6", "Time/end when past=2", "Surface/elements per side=3",
+             "Channel/axial elements=12", "Quadrature/tolerance=1e-3", "Output/interval=1e-6"]
+    run(deck(lines), *_words(short), "--output", "circle", "--quiet")
+    outline = ["Channel/section=file", "Channel/outline=circle.csv", "Channel/flow elements=48"]
+    run(deck(lines), *_words(short + outline), "--output", "outline", "--quiet")
+    for name in "channel_pressure_drop", "velocity_x1":
+        one, other = (series(results, name)[0] for results in ("circle", "outline"))
+        check(abs(other / one - 1) < 2e-3, f"{name}: {one} of a circle, {other} of its outline")
+
+
+def films_are_found_in_every_period():
+    text = """
+Tanktread:
+  Flow: {type: duct}
+  Domain: {periodic: x1, side lengths: [6.8]}
+  Channel: {profile: constriction, depth: 0.3, half length: 1.0, azimuthal elements: 8, axial elements: 12}
+  Particle: {radius: 0.55, center: [0.0, 0.0, 0.05]}
+  Membrane: {law: neo-Hookean, capillary number: 0.05}
+  Surface: {elements per side: 3}
+  Adaptation: {enabled: true, levels: 1, film resolution: 0.6, surface tolerance: 0.1}
+  Time: {scheme: bs3, fixed step: 1.0e-5, final time: 1.0e-5}
+  Output: {interval: 1.0e-5}
+"""
+    for name, x1 in ("first", 0), ("third", 13.6):
+        run(deck(text), "--set", f"Particle/center=[{x1}, 0, 0.05]", "--output", name, "--quiet")
+    first, third = (series(name, "n_control_points") for name in ("first", "third"))
+    check(first[0] > 56 and (first == third).all(), f"control points in the modelled period {first}, two periods farther {third}")
+
+
 def the_pressure_drop_may_be_held():
     for held in "flow rate", "pressure drop":
         run(deck(DECK), *_words([f"Flow/held={held}"]), "--output", held.split()[0], "--quiet")

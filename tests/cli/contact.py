@@ -107,6 +107,25 @@ Tanktread:
     check(force[-1] > 0 and abs(gap[-1] - 0.3) < 3e-5 and gap.min() > 0.3 * (1 - 1e-4), gap, force)
 
 
+def images_are_let_go_when_the_flow_turns_back():
+    """After the reversal at time 0.2 the period along x3 grows in every step, and with it the gap to the image."""
+    deck("""
+Tanktread:
+  Flow: {type: planar hyperbolic, history: {times: [0.2, 0.2], amplitudes: [1.0, -1.0]}}
+  Domain: {side lengths: [5.0, 5.0, 2.4]}
+  Particles:
+    defaults: {Surface: {elements per side: 3}}
+    one: {Membrane: {capillary number: 0.3}}
+  Contact: {limit: 0.37, limiter: true}
+  Time: {scheme: bs3, fixed step: 0.02, final time: 0.3}
+  Output: {interval: 0.3}
+""")
+    run("deck.yaml", "--output", "reversed", "--quiet")
+    gap, force = series("reversed", "smallest_gap"), series("reversed", "contact_force")
+    held = gap < 0.37 * (1 + 1e-4)
+    check(held.any() and not held[-1] and (held == (force > 0)).all(), "there is a force just where the gap is the limit", gap, force)
+
+
 def mistakes_are_named():
     deck(SPHERES)
     refused(["Contact/limit", "-0.1"], "deck.yaml", "--set", "Contact/limit=-0.1")

@@ -91,6 +91,25 @@ def the_large_pressure_in_a_drop_counts_for_nothing():
     check(lacks.max() < 1e-3, "the quadrature of a uniform pressure counts as power", lacks)
 
 
+def a_parabolic_flow_between_plates_is_the_flow_of_its_pressure_gradient():
+    text = """
+Tanktread:
+  Flow: {type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]}
+  Domain: {periodic: x1 x2, side lengths: [5.0, 4.0, 1.0]}
+  Wall: {point: [0.0, 0.0, -1.5], distance: 3.0, elements per period: 8}
+  Particle: {radius: 0.8, center: [2.3, 0.1, 0.3], viscosity ratio: 2.0}
+  Membrane: {law: neo-Hookean, shear modulus: 5.0}
+  Surface: {elements per side: 3}
+  Output: {power balance: true}
+  Time: {scheme: bs3, fixed step: 1.0e-3, final time: 1.0e-3}
+"""
+    parabola = "type: parabolic, profile: plane, half width: 1.5, maximum velocity: 1.125"  # 1.5^2/2
+    for name, flow in ("gradient", "type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]"), ("parabola", parabola):
+        run(deck(text.replace("type: quiescent, pressure gradient: [-1.0, 0.0, 0.0]", flow)), "--output", name, "--quiet")
+    power = series("gradient", "flow_power")
+    check(power.min() > 0.1 and abs(series("parabola", "flow_power") - power).max() < 1e-9, series("parabola", "flow_power"), power)
+
+
 SPINDLE = """
 Tanktread:
   Flow: {type: planar hyperbolic}

@@ -61,6 +61,7 @@ def a_particle_that_does_not_fit_is_refused_with_its_numbers():
     _refused(["Particle/center", "outside of the tube", "0.5"], "Particle/center=[0.0, 0.0, 1.5]")
     _refused(["too close", "gap is 0.00995", "0.02"], "Particle/center=[0.0, 0.0, 0.39]")
     _refused(["Tube/length", "4.6", "3"], "Tube/length=3.0")
+    _refused(["Tube/length", "at least 5.5", "is 5"], "Tube/length=5.0", "Particle/initial shape/stretch=[1.8, 0.8, 0.7]")
 
 
 def a_wrong_outline_is_refused_with_its_numbers():
@@ -101,6 +102,51 @@ def every_form_of_the_block_system_gives_the_same_run():
             run(deck(DECK), *_words(fixed + more), "--output", "blocks", "--overwrite", "--quiet")
             check(summary("blocks")["counts"]["velocity_iterations"] > 0, "nothing was solved")
             _compare("schur", "blocks", 1e-6)  # a stage errs by 2e-9, its stresslet by a hundred times as much
+
+
+BESIDE_OTHERS = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, azimuthal elements: 8, axial elements: 8}
+  Particles:
+    defaults: {radius: 0.4, Surface: {elements per side: 3}}
+    body: {motion: prescribed, center: [-0.6, 0.0, 0.2], velocity: [0.5, 0.0, 0.0]}
+    drop: {center: [0.6, 0.1, 0.0], viscosity ratio: 3.0, Membrane: {law: surface tension, capillary number: 0.2}}
+    capsule: {center: [1.8, 0.0, -0.1], Membrane: {capillary number: 0.2, pre-inflation: 0.05}}
+  Solvers: {tolerance: 1.0e-10, rigid bodies: second kind}
+  Time: {scheme: bs3, fixed step: 1.0e-3, final time: 1.0e-3}
+"""
+
+
+def the_block_system_has_the_loads_that_depend_on_the_velocity_and_keeps_every_volume():
+    """A prescribed body beside others, in a tube with ends and in a periodic one, and a viscous membrane."""
+    viscous = DECK.replace("pre-inflation: 0.02", "pre-inflation: 0.02, shear viscosity: 1.0")
+    viscous = viscous.replace("final time: 0.3", "fixed step: 1.0e-3, final time: 1.0e-3")
+    periodic = BESIDE_OTHERS.replace("axial elements: 8}", "axial elements: 8, periodic length: 5.0}")
+    for name, text, of in ("ends", BESIDE_OTHERS, "capsule/"), ("period", periodic, "capsule/"), ("viscous", viscous, ""):
+        found = {}
+        for form in "schur", "block triangular":
+            settings = [f"Solvers/tube={form}", "Solvers/tolerance=1e-10", "Solvers/Belos/Maximum Iterations=2000",
+                        "Solvers/Belos/Num Blocks=500"]
+            run(deck(text, f"{name}.yaml"), *_words(settings), "--output", f"{name} {form}", "--quiet")
+            names = f"{of}velocity_x1", f"{of}velocity_x3", "disturbed_pressure_drop"
+            found[form] = [series(f"{name} {form}", key)[0] for key in names]
+        off = max(abs(a - b) for a, b in zip(*found.values()))
+        check(off < 1e-6, f"{name}: {found}")
+
+
+def a_run_ends_where_its_only_particle_gets_too_long_for_the_tube():
+    needle = """
+Tanktread:
+  Flow: {type: duct}
+  Tube: {section: circle, azimuthal elements: 8, axial elements: 8, length: 3.72}
+  Particle: {motion: prescribed, shape: spheroid, semi-axes: [0.15, 0.15, 0.9], angular velocity: [0, 7.853981633974483, 0]}
+  Surface: {elements per side: 3}
+  Time: {scheme: bs3, fixed step: 0.1, final time: 0.2}
+  Output: {interval: 0.2, power balance: true}
+"""
+    said = run(deck(needle), "--output", "out", "--quiet", code=3).stderr
+    check("Tube/length = 3.72 is too short" in said and "the particle has become" in said, said)
 
 
 def a_run_goes_on_in_the_tube_to_the_same_last_bit():

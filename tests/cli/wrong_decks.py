@@ -103,6 +103,12 @@ SETTINGS = [
     (["Particle/motion=free"], ["Membrane", "Particle/motion", "free", "contradict", "rigid"]),
     (["Particle/motion=prescribed"], ["Membrane", "Particle/motion", "prescribed", "contradict", "rigid"]),
     (["Particle/velocity=[1, 0, 0]"], ["Particle/velocity", "prescribed", "deforming"]),
+    (["Particle/forces=integral"], ["Particle/forces", "deforming", "prescribed motion"]),
+    (["Particle/forces=integral", "Particle/motion=prescribed", "Output/power balance=true"],
+     ["Particle/forces", "Output/power balance", "coupled system"], 2),  # and Membrane
+    (["Output/power balance=true", "Flow/type=parabolic", "Flow/profile=plane", "Flow/maximum velocity=1", "Flow/half width=5",
+      "Wall/point=[0, 0, -5]", "Domain/periodic=x1 x2", "Domain/side lengths=[4, 4, 1]"],
+     ["Output/power balance", "parabolic", "between two plates"]),
     (["Particle/motion=falling"], ["Particle/motion", "deforming", "prescribed", "free", "falling"]),
     (["Membrane/shear modulus=1"], ["Membrane/capillary number", "Membrane/shear modulus", "contradict"]),
     (["Interface/surfactant/elasticity number=0.2", "Time/scheme=rkc2"], ["Interface/surfactant", "neo-Hookean", "drop"]),

@@ -75,7 +75,13 @@ class Deforming : public ParticleSystem {
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
                     scene_.rate());
     motion::State own = fields_->of_shape(state);
-    const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts_);
+    const stokes::AmbientFlow& flow = capsule_->flow();
+    const Mat3 deformed =
+        flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // of the lattice, over the step (2.51)
+    coupling::Contacts contacts = contacts_;
+    for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
+    const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);
+    if (holds) contacts_ = std::move(contacts);
     if (holds && own.x != fields_->shape(state.x)) {
       state.x = fields_->with_shape(state.x, own.x);
       state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
@@ -259,7 +265,7 @@ class Deforming : public ParticleSystem {
     now.stresslet = here.stresslet(p);
     now.energy += here.load_energy(p);
     if (member.scene.viscous_membrane()) now.dissipation = here.membrane_dissipation(p);
-    now.intrinsic_viscosity = intrinsic_viscosity(*member.body, scene_.flow.viscosity, now);
+    now.intrinsic_viscosity = intrinsic_viscosity(capsule_->flow(), scene_.flow.viscosity, now);
     fields_->add_to(p, y, now, to);
     return std::make_unique<DeformingRow>(now);
   }
@@ -296,8 +302,8 @@ class Deforming : public ParticleSystem {
   RigidRow rigid_row(std::size_t p, coupling::Evaluation& here) {
     const Member& member = members_[p];
     const coupling::RigidParticles& rigid = here.rigid();
-    RigidRow now = tanktread::rigid_row(member.scene, *member.body, geometry(member), member.own(here.x()), rigid.motion(p),
-                                        Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
+    RigidRow now = tanktread::rigid_row(member.scene, *member.body, capsule_->flow(), geometry(member), member.own(here.x()),
+                                        rigid.motion(p), Eigen::Quaterniond(rigid.turn(p)), here.stresslet(p), ranks_);
     now.drag = -rigid.force(p), now.torque = -rigid.torque(p);
     return now;
   }
@@ -306,7 +312,8 @@ class Deforming : public ParticleSystem {
   void adapt(std::size_t p, const Net& load, motion::State& state, RunTotals& totals) {
     Member& member = members_[p];
     std::vector<double> widths;
-    if (const coupling::Tube* tube = capsule_->tube()) widths = films(members_, p, tube->in_wall_frame(state.x), {}, &tube->wall());
+    if (const coupling::Tube* tube = capsule_->tube())
+      widths = films(members_, p, tube->in_wall_frame(state.x), tube->cell(), &tube->wall());
     else if (scene_.has_gaps() || scene_.wall.present) widths = films(members_, p, state.x, capsule_->cell());
     Adapted change = adapted(member.scene, *member.body, member.block, state, load, load_measure(member.scene) == stokes::Measure::reference, widths,
                              fields_->values_at(p));

@@ -57,7 +57,8 @@ class Free : public ParticleSystem {
 
   Columns row(const motion::State& state, ProgressRow progress) override {
     const Eigen::Quaterniond turn(state.x(2, 0), state.x(1, 0), state.x(1, 1), state.x(1, 2));
-    RigidRow now = rigid_row(scene_, body_, geometry_, free_->surface(state.x), free_->motion(state.x), turn, free_->stresslet(state.x), ranks_);
+    RigidRow now = rigid_row(scene_, body_, free_->flow(), geometry_, free_->surface(state.x), free_->motion(state.x), turn,
+                             free_->stresslet(state.x), ranks_);
     now.centre = coupling::centre_of(state.x);
     Columns row;
     if (tube_) {

@@ -263,7 +263,9 @@ std::vector<double> films(const std::vector<Member>& members, std::size_t p, con
   for (std::size_t q = 0; q < members.size(); ++q)
     for (const Net& other : neighbours(members[p].own(x), members[q].own(x), q == p, reach, cell))
       placed.emplace_back(surface::BezierMap(members[q].body->space), other);
-  if (wall) placed.emplace_back(surface::BezierMap(wall->space), wall->net);
+  if (wall)
+    for (const Net& net : neighbours(members[p].own(x), wall->net, false, reach, cell))
+      placed.emplace_back(surface::BezierMap(wall->space), net);
   std::vector<const surface::Patches*> others;
   for (const surface::Patches& other : placed) others.push_back(&other);
   std::vector<double> widths = surface::film_widths(own, others, reach);

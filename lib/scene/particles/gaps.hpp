@@ -43,8 +43,8 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
 /// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the width exceeds a limit that every element of
-/// the current mesh resolves. `cell`: cell of the lattice; films to images of particles count, too. `wall`: wall of the tube around the particle, or
-/// null; x is given in the coordinates of the wall.
+/// the current mesh resolves. `cell`: cell of the lattice; films to images of particles and of the wall count, too. `wall`: wall of the tube around
+/// the particle, or null; x is given in the coordinates of the wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

@@ -106,7 +106,8 @@ void ParticleRow::add_moving(const Scene& one, Columns& to) const {
   if (to.when(strains(one)))
     to.add(intrinsic_viscosity, {"intrinsic_viscosity", "1",
                                  "intrinsic viscosity S:E/(2 mu V E:E), with the stresslet S (6.7), the particle's volume V, the outer "
-                                 "viscosity mu and the rate of strain E of the flow; 5/2 for a rigid sphere"});
+                                 "viscosity mu and the rate of strain E of the flow at this time; 5/2 for a rigid sphere",
+                                 "the rate of strain of the flow is zero at this time"});
 }
 
 void ParticleRow::add_turning(const Scene& one, Columns& to) const {
@@ -260,14 +261,16 @@ spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& fr
   return best;
 }
 
-double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now) {
-  if (!body.flow.affine()) return 0;
-  const Mat3 gradient = body.flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
+double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, const ParticleRow& now) {
+  if (!flow.affine()) return 0;
+  const Mat3 gradient = flow.gradient(now.centre), strain = (gradient + gradient.transpose()) / 2;
+  if (strain.isZero(0)) return std::numeric_limits<double>::quiet_NaN();
   return now.stresslet.cwiseProduct(strain).sum() / (2 * viscosity * now.measures.volume * strain.squaredNorm());
 }
 
-RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
-                   const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks) {
+RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
+                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+                   const coupling::Ranks& ranks) {
   RigidRow now;
   now.n_points = body.space.n_points;
   now.measures = geometry.measures(x);
@@ -277,7 +280,7 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry
   now.centre = now.measures.centroid;
   now.velocity = motion.velocity, now.angular_velocity = motion.angular_velocity;
   now.quaternion << turn.w(), turn.vec();
-  now.intrinsic_viscosity = intrinsic_viscosity(body, scene.flow.viscosity, now);
+  now.intrinsic_viscosity = intrinsic_viscosity(flow, scene.flow.viscosity, now);
   if (!scene.time.steady_tolerance) return now;
   const std::vector<int> elements = indices(geometry.bezier().n_elements());
   const Net v = coupling::rigid_velocity(x, motion, now.centre);

@@ -81,12 +81,15 @@ void add_treading(const Scene& scene, const Body& body, const surface::Geometry&
 surface::Deformation deformation(const surface::Geometry& geometry, const FlowPlane& plane, const Net& x, surface::Measures measures,
                                  const coupling::Ranks& ranks);
 
-/// Returns S:E/(2 mu V E:E), where S is the stresslet of the row and E the symmetric part of the flow's gradient; 0 if the flow is not affine.
-double intrinsic_viscosity(const Body& body, double viscosity, const ParticleRow& now);
+/// Returns S:E/(2 mu V E:E), where S is the stresslet of the row and E the symmetric part of the flow's gradient; 0 if the flow is not affine, and
+/// NaN if E is zero. `flow`: flow at the time of the row.
+double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, const ParticleRow& now);
 
-/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. Drag and torque are not set. Collective.
-RigidRow rigid_row(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const coupling::RigidMotion& motion,
-                   const Eigen::Quaterniond& turn, const Mat3& stresslet, const coupling::Ranks& ranks);
+/// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. `flow`: flow at the time of the row. Drag and torque are
+/// not set. Collective.
+RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Net& x,
+                   const coupling::RigidMotion& motion, const Eigen::Quaterniond& turn, const Mat3& stresslet,
+                   const coupling::Ranks& ranks);
 
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);

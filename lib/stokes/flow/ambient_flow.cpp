@@ -46,7 +46,10 @@ AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
 void AmbientFlow::fit_to_plates(const FlowOptions& options, Field& field) {
   const Plates& plates = *options.plates;
   const Vec3& n = plates.normal;
-  const auto at = [&](const Vec3& x) -> Vec3 { return field.velocity + field.gradient * x + x.dot(field.curvature * x) * field.direction; };
+  const auto at = [&](const Vec3& x) -> Vec3 {
+    if (options.user) return options.user->velocity(x);
+    return field.velocity + field.gradient * x + x.dot(field.curvature * x) * field.direction;
+  };
   const auto missing = [&](const std::optional<Vec3>& velocity, const Vec3& x) -> Vec3 { return velocity ? Vec3(*velocity - at(x)) : Vec3::Zero(); };
   const Vec3 first = missing(plates.velocity, plates.point);
   if (!plates.distance) {
@@ -85,7 +88,7 @@ double AmbientFlow::next_kink(double time) const { return history_ ? history_->n
 
 Mat3 AmbientFlow::deformation(double time) const {
   if (!affine()) return Mat3::Identity();
-  const Mat3 steady = user_ ? user_->gradient(Vec3::Zero()) : steady_.gradient;
+  const Mat3 steady = user_ ? Mat3(user_->gradient(Vec3::Zero()) + steady_.gradient) : steady_.gradient;
   return history_ ? history_->deformation(steady, time) : exponential(time * steady);
 }
 
@@ -107,15 +110,16 @@ AmbientFlow AmbientFlow::turned(const Mat3& q, double a) const {
 
 Vec3 AmbientFlow::velocity(const Vec3& x) const {
   if (duct_) return moment_.amplitude * duct_->velocity(x);
-  if (user_) return moment_.amplitude * moment_.turn * user_->velocity(moment_.turn.transpose() * x);
-  const Vec3 v = field_.velocity + field_.gradient * x;
-  return affine() ? v : Vec3(v + x.dot(field_.curvature * x) * field_.direction);
+  Vec3 v = field_.velocity + field_.gradient * x;
+  if (user_) v += moment_.amplitude * moment_.turn * user_->velocity(moment_.turn.transpose() * x);
+  return field_.direction.isZero(0) ? v : Vec3(v + x.dot(field_.curvature * x) * field_.direction);
 }
 
 Mat3 AmbientFlow::gradient(const Vec3& x) const {
   if (duct_) return moment_.amplitude * duct_->gradient(x);
-  if (user_) return moment_.amplitude * moment_.turn * user_->gradient(moment_.turn.transpose() * x) * moment_.turn.transpose();
-  return affine() ? field_.gradient : Mat3(field_.gradient + 2 * field_.direction * (field_.curvature * x).transpose());
+  Mat3 gradient = field_.gradient;
+  if (user_) gradient += moment_.amplitude * moment_.turn * user_->gradient(moment_.turn.transpose() * x) * moment_.turn.transpose();
+  return field_.direction.isZero(0) ? gradient : Mat3(gradient + 2 * field_.direction * (field_.curvature * x).transpose());
 }
 
 Net AmbientFlow::velocities(const Net& x) const {

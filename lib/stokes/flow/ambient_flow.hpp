@@ -51,7 +51,7 @@ class AmbientFlow {
   std::vector<Mat3> gradients(const Net& x) const;
 
   /// Returns whether the velocity gradient is uniform in space.
-  bool affine() const { return user_ ? user_->affine() : !duct_ && steady_.direction.isZero(0); }
+  bool affine() const { return !duct_ && steady_.direction.isZero(0) && (!user_ || user_->affine()); }
 
   /// Returns the mean gradient over a periodic cell, units 1/time: the uniform gradient, or 0 for a flow that is the same in all cells.
   Mat3 cell_gradient() const { return affine() ? gradient(Vec3::Zero()) : Mat3(Mat3::Zero()); }
@@ -60,7 +60,8 @@ class AmbientFlow {
   /// the gradient `cell_gradient` (2.51).
   Mat3 deformation(double time) const;
 
-  /// Return d and H of the quadratic part of the flow (2.20). They are 0 for an affine flow and for a registered flow, which need not be quadratic.
+  /// Return d and H of the quadratic part of the flow (2.20). They are 0 for an affine flow. They do not include a registered flow, which need not be
+  /// quadratic.
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
@@ -84,7 +85,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // registered flow, which is evaluated instead of field_; null for the other types
+  std::shared_ptr<const UserFlow> user_;  // registered flow, to which field_, 0 except between plates, is added; null for the other types
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;

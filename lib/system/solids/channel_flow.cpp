@@ -11,11 +11,17 @@ namespace tanktread::coupling {
 namespace {
 constexpr Eigen::Index few = 64;    // largest number of points for which each rank evaluates all points instead of a share
 constexpr double sharpness = 1e-2;  // tolerance relative to other layers
+
+/// Returns the fully developed flow in the cross-section at the start of the channel.
+stokes::DuctFlow at_inlet(const surface::Channel& channel, double viscosity, double mean_velocity) {
+  const surface::Outline outline = channel.outline(channel.start());
+  return {outline, stokes::duct_profile(channel.tube(channel.start()), outline), viscosity, mean_velocity};
 }
+}  // namespace
 
 ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,
                          const WallSolver& solver)
-    : DuctFlow(surface::Channel(options).tube(surface::Channel(options).start()), viscosity, mean_velocity),
+    : DuctFlow(at_inlet(surface::Channel(options), viscosity, mean_velocity)),
       channel_(std::make_shared<const surface::Channel>(options)),
       surface_(std::make_shared<const surface::TubeWall>(surface::channel_wall(channel_, options.azimuthal_elements))),
       options_(options),

@@ -51,14 +51,15 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
-  reached_ = cell_.range(surface_.net);
+  across_ = cell_.range(surface_.net);
   if (solids.size() == 1 && cell_.n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
     const double period = cell_.vectors().col(0).norm();
-    reached_[0][2] -= period, reached_[1][2] += period;
+    across_[0][2] -= period, across_[1][2] += period;
   }
+  reached_ = across_;
   make_layer();
   stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, for_assembly(quadrature));
-  on_itself.repeat(cell_, {.assembled = true, .across = reached_});
+  on_itself.repeat(cell_, {.assembled = true, .across = across_});
   on_itself.place(surface_.net);
   const bool only_plates = std::ranges::all_of(solids, [&](const Solid& one) {
     return one.surface.grid[0] > 0 && one.surface.grid == solids.front().surface.grid;
@@ -86,12 +87,17 @@ void Solids::make_layer() {
   layer_->place(surface_.net);
 }
 
+/// The range depends on x only, so that a resumed run computes the same velocities. It grows in steps, so that a moving particle seldom needs a new
+/// layer.
 void Solids::reach(const Net& x) {
   if (cell_.n() == 3) return;
   const auto [low, high] = cell_.range(x);
-  if (low[2] >= reached_[0][2] && high[2] <= reached_[1][2]) return;
-  const double more = (high[2] - low[2]) / 2;
-  reached_[0][2] = std::min(reached_[0][2], low[2] - more), reached_[1][2] = std::max(reached_[1][2], high[2] + more);
+  const double step = (across_[1][2] - across_[0][2]) / 4;
+  const auto rounded = [&](double length) { return step * std::ceil(std::max(0., length) / step); };
+  std::array<Vec3, 2> range = across_;
+  range[0][2] -= rounded(across_[0][2] - low[2]), range[1][2] += rounded(high[2] - across_[1][2]);
+  if (range == reached_) return;
+  reached_ = range;
   make_layer();
 }
 

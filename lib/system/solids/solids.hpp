@@ -59,8 +59,8 @@ class Solids {
     Flow operator+(const Flow& other) const { return {force + other.force, drift + other.drift}; }
   };
 
-  /// Extends the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that it contains the points x. Must be called
-  /// before `velocity_at` and `layer`. Collective.
+  /// Sets the range of heights above a plate in which `velocity_at` and `layer` are accurate, so that it contains the solids and the points x. Must
+  /// be called before `velocity_at` and `layer`. Collective.
   void reach(const Net& x);
 
   /// Returns whether points are outside of all cylinders.
@@ -91,8 +91,7 @@ class Solids {
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
-  const std::array<Vec3, 2>& across() const { return reached_; }  ///< range of coordinates, in the axes of the cell, that contains the solids and,
-                                                                  ///< in directions without a period, the points passed to reach()
+  const std::array<Vec3, 2>& across() const { return across_; }  ///< range of the solids' coordinates, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:
@@ -107,7 +106,8 @@ class Solids {
   Ranks ranks_;
   std::vector<int> own_;
   quadrature::Options quadrature_;
-  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets, in the axes of the cell
+  std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
+  std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets of `layer_`, in the axes of the cell
   std::unique_ptr<stokes::Layer> layer_;  // at points off the solids
   Net sites_, velocities_;
   Eigen::VectorXd areas_;   // int N_A dG

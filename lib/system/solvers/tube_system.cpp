@@ -7,12 +7,13 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Access to the four blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and volume multiplier.
+/// Access to the blocks of an array of unknowns or residuals: velocity v, wall traction f^D, pressure drop dp and volume multipliers, one for each
+/// particle of BlockSystem::constrained.
 template <class Number>
 struct Parts {
   using Rows = Eigen::Map<std::conditional_t<std::is_const_v<Number>, const Net, Net>>;
   Rows velocity, wall_traction;
-  Number &pressure_drop, &multiplier;
+  Number &pressure_drop, *multipliers;
 
   Parts(const BlockSystem& system, Number* numbers)
       : Parts(numbers, system.tube.inlet_on_particle().rows(), static_cast<Eigen::Index>(system.tube.wall().sites.size())) {}
@@ -20,36 +21,50 @@ struct Parts {
       : velocity(numbers, particle, 3),
         wall_traction(numbers + 3 * particle, wall, 3),
         pressure_drop(numbers[3 * (particle + wall)]),
-        multiplier(numbers[3 * (particle + wall) + 1]) {}
+        multipliers(numbers + 3 * (particle + wall) + 1) {}
 };
 using In = Parts<const double>;
 using Out = Parts<double>;
+
+/// Returns b.v / (b.n) of one particle (2.8).
+double flux_of(const BlockSystem& s, const spline::Block& block, const Net& v) {
+  const auto product = [&](const Net& field) { return dot(block.rows(s.flux), block.rows(field)); };
+  return product(v) / product(s.normal);
+}
+
+/// Adds `factor` times the field n of one particle to v.
+void add_normal(const BlockSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
+  v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.normal);
+}
 
 /// Computes the product of the block matrix (2.5) to (2.8) with x.
 void product(const BlockSystem& s, const In& x, Out r) {
   Tube& tube = s.tube;
   const Net v = x.velocity, traction = x.wall_traction / s.unit;
   const double drop = x.pressure_drop / s.unit;
+  const Net load = s.load(v);
   Net answer = tube.wall_on_particle(traction) + drop * tube.inlet_on_particle();
-  if (tube.cell()) answer += tube.images_on_particle({}, v);
-  r.velocity = s.viscous(v) - s.control_values(answer);
+  if (tube.cell()) answer += tube.images_on_particle(load, v);
+  r.velocity = s.unbounded(v, load) - s.control_values(answer);
   r.wall_traction = tube.wall_on_wall(traction) - drop * tube.inlet_on_wall() - tube.velocity_on_wall(v);
-  r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of({}, v);
-  r.multiplier = x.multiplier;
-  if (s.flux.size() == 0) return;
-  r.velocity += x.multiplier * s.normal;
-  r.multiplier = dot(s.flux, v) / dot(s.flux, s.normal);
+  if (load.size() > 0) r.wall_traction -= tube.load_on_wall(load);
+  r.pressure_drop = x.pressure_drop - s.unit * tube.pressure_of(load, v);
+  for (std::size_t k = 0; k < s.constrained.size(); ++k) {
+    const spline::Block& block = s.constrained[k];
+    add_normal(s, block, x.multipliers[k], r.velocity);
+    r.multipliers[k] = flux_of(s, block, v);
+  }
 }
 
-/// Applies the preconditioner, in which the identity replaces the operator B of (2.5). Solves for the velocity and the multiplier, then for the
+/// Applies the preconditioner, in which the identity replaces the operator B of (2.5). Solves for the velocity and the multipliers, then for the
 /// pressure drop, then for the wall traction. If `triangular`, the right-hand sides of the pressure drop and the traction include the contributions
 /// of the unknowns computed before.
 void precondition(const BlockSystem& s, const In& r, Out x, bool triangular) {
   x.velocity = r.velocity;
-  x.multiplier = r.multiplier;
-  if (s.flux.size() > 0) {
-    x.multiplier = dot(s.flux, r.velocity) / dot(s.flux, s.normal) - r.multiplier;
-    x.velocity -= x.multiplier * s.normal;
+  for (std::size_t k = 0; k < s.constrained.size(); ++k) {
+    const spline::Block& block = s.constrained[k];
+    x.multipliers[k] = flux_of(s, block, r.velocity) - r.multipliers[k];
+    add_normal(s, block, -x.multipliers[k], x.velocity);
   }
   x.pressure_drop = r.pressure_drop;
   Net on_wall = r.wall_traction;
@@ -67,7 +82,7 @@ LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& prec
   LinearSystem system{std::move(velocity), {}, {}};
   system.blocks.push_back({"wall traction", 3 * static_cast<int>(tube.wall().sites.size())});
   system.blocks.push_back({"pressure drop", 1});
-  system.blocks.push_back({"multiplier of the volume", 1});
+  if (!constrained.empty()) system.blocks.push_back({"multipliers of the volumes", static_cast<int>(constrained.size())});
   system.product = [this](const double* in, double* out) { product(*this, In(*this, in), Out(*this, out)); };
   const bool triangular = preconditioner == "block triangular";
   if (triangular || preconditioner == "block diagonal")
@@ -78,13 +93,13 @@ LinearSystem BlockSystem::linear_system(Blocks velocity, const std::string& prec
 }
 
 Eigen::VectorXd BlockSystem::right_hand_side(const Net& velocity, const Net& f) const {
-  Eigen::VectorXd all(3 * (velocity.rows() + static_cast<Eigen::Index>(tube.wall().sites.size())) + 2);
+  const std::size_t nodes = tube.wall().sites.size() + static_cast<std::size_t>(velocity.rows());
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * nodes + 1 + constrained.size()));
   Out rows(*this, all.data());
   rows.velocity = velocity;
   if (tube.cell()) rows.velocity += control_values(tube.images_on_particle(f));
   rows.wall_traction = tube.load_on_wall(f);
   rows.pressure_drop = unit * tube.pressure_of(f);
-  rows.multiplier = 0;
   return all;
 }
 

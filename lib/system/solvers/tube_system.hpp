@@ -1,35 +1,40 @@
 #pragma once
-// Velocity, wall traction, pressure drop and the multiplier of the volume constraint as one linear system.
+// Velocity, wall traction, pressure drop and the multipliers of the volume constraints as one linear system.
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/types.hpp"
+#include "spline/space.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
 
-/// Linear system for particles in a tube. The unknowns are the velocity v (control values), the wall traction f^D, the pressure drop dp and the
-/// Lagrange multiplier pi of the constraint (2.8). The equations are
+/// Linear system for particles in a tube. The unknowns are the velocity v (control values), the wall traction f^D, the pressure drop dp and, for
+/// each particle, the Lagrange multiplier pi of the constraint (2.8). The equations are
 ///
 ///   B v + R^-1 [(1/mu) G_W f^D - dp c] + pi n = r_v,   B = 1 - (1 - lambda) R^-1 H        at the particle                (2.5)
 ///   (1/mu) G_W f^D - dp c - (1 - lambda) (1 / 8 pi) int T v n dG = r_W                    at the wall                    (2.6)
 ///   dp + (1/Q) (1 - lambda) int f_inf.v dG = r_p                                                                         (2.7)
-///   b.v / (b.n) = 0                                                                                                      (2.8)
+///   b.v / (b.n) = 0                                                                       for each particle              (2.8)
 ///
+/// A load that depends on v, such as the load of a body with prescribed motion, contributes to (2.5), (2.6) and (2.7) like f to the right-hand sides.
 /// G_W, f^D and c are defined at Tube, H is the double layer of the particle, b = dV/dx, and n = M0^-1 b. In the blocks of the system f^D, dp and the
 /// row of dp are multiplied by `unit`, so that all unknowns are velocities.
 struct BlockSystem {
   Tube& tube;
-  std::function<Net(const Net&)> viscous;          ///< B v
-  std::function<Net(const Net&)> control_values;   ///< applies R^-1
-  const Net& flux;                                 ///< flux vector b = dV/dx; empty if the volume is not constrained, so that the multiplier pi is 0
-  const Net& normal;                               ///< n = M0^-1 b
-  double unit = 1;                                 ///< tube radius divided by mu: converts f^D and dp to velocities
+  std::function<Net(const Net& v)> load;                        ///< load that depends on v; empty if there is none
+  std::function<Net(const Net& v, const Net& load)> unbounded;  ///< B v, minus the velocity due to the load in unbounded fluid
+  std::function<Net(const Net&)> control_values;                ///< applies R^-1
+  const Net& flux;                                              ///< flux vector b = dV/dx
+  const Net& normal;                                            ///< n = M0^-1 b
+  std::vector<spline::Block> constrained;                       ///< particles whose volume is constrained
+  double unit = 1;                                              ///< tube radius divided by mu: converts f^D and dp to velocities
 
   /// Returns the system with the named preconditioner. `block triangular` approximates the operator B by the identity and solves for the velocity v
-  /// and the multiplier pi, then for the pressure drop dp, then for the wall traction f^D (by the LU factors of the wall). Each right-hand side
+  /// and the multipliers pi, then for the pressure drop dp, then for the wall traction f^D (by the LU factors of the wall). Each right-hand side
   /// includes the unknowns found before. `block diagonal` omits these contributions. `block` uses no preconditioner. The result refers to this
   /// object.
   LinearSystem linear_system(Blocks velocity, const std::string& preconditioner) const;

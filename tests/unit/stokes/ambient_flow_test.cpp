@@ -150,6 +150,37 @@ TEST(AmbientFlow, OfAnotherProgramIsTakenAsItIs) {
   EXPECT_FALSE(f.affine());
 }
 
+/// Simple shear about x3 = 1.
+struct Shear : UserFlow {
+  Vec3 velocity(const Vec3& at) const override { return Vec3(at[2] - 1, 0, 0); }
+  Mat3 gradient(const Vec3&) const override { return Vec3::UnitX() * Vec3::UnitZ().transpose(); }
+  double rate() const override { return 1; }
+  bool affine() const override { return true; }
+};
+
+TEST(AmbientFlow, OfAnotherProgramIsFittedToPlates) {
+  FlowOptions options = flow("shear", 1);
+  options.user = std::make_shared<Shear>();
+  options.viscosity = 0.7;
+  const Vec3 first(0.5, 0.2, 0), second(-1, 0.4, 0), bottom(0, 0, -1), top(0.3, -0.6, 2), middle(0.1, 0.2, 0.5);
+  options.plates = Plates{bottom, Vec3::UnitZ(), 3., first, second};
+  const AmbientFlow couette(options);
+  EXPECT_TRUE(couette.affine());
+  EXPECT_LT((couette.gradient(x) - (second - first) / 3 * Vec3::UnitZ().transpose()).norm(), 1e-15);
+  EXPECT_LT((couette.deformation(0.5) - Mat3::Identity() - couette.gradient(x) / 2).norm(), 1e-15);
+  options.pressure_gradient = Vec3(-2, 0.3, 0);
+  const AmbientFlow f(options);
+  EXPECT_FALSE(f.affine());
+  EXPECT_LT((f.velocity(bottom) - first).norm() + (f.velocity(top) - second).norm(), 1e-14);
+  EXPECT_LT((f.velocity(middle) - (first + second) / 2 + *options.pressure_gradient * 9 / (8 * 0.7)).norm(), 1e-14);
+  const Net points = (Net(2, 3) << x.transpose(), top.transpose()).finished();
+  EXPECT_EQ(f.velocities(points).row(0), f.velocity(x).transpose());
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 step = 1e-3 * Vec3::Unit(k);  // central differences of a quadratic are exact
+    EXPECT_LT(((f.velocity(x + step) - f.velocity(x - step)) / 2e-3 - f.gradient(x).col(k)).norm(), 1e-12);
+  }
+}
+
 TEST(FlowHistory, MakesAnyFlowTheSameOneTurnedAndMoreOrLess) {
   FlowOptions uniform = flow("uniform"), roll = flow("four-roll");
   uniform.velocity = Vec3(1, 2, 3);

@@ -49,6 +49,24 @@ TEST(Solids, PlatesThatMoveFeelUniformForces) {
   for (int i = 0; i < 2; ++i) EXPECT_LT((u.row(i).transpose() - (lower + (upper - lower) * at(i, 2) / d)).norm(), 1e-6);
 }
 
+TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
+  Phases phases;
+  const std::vector<Solids::Solid> plate{plates(1, Vec3::Zero(), Vec3::Zero()).front()};
+  const std::vector<Vec3> along{Vec3::UnitX(), Vec3::UnitY()};
+  Solids fresh(plate, slab(), along, 1, fine(), phases), used(plate, slab(), along, 1, fine(), phases);
+  Net u = Net::Zero(fresh.sites().rows(), 3);
+  u.row(5) << 0.3, -0.1, 0.2;
+  const Solids::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
+  const int rows[] = {0};
+  for (const double height : {0.5, 2.7}) {  // inside and outside of the range at first, one period of length 2
+    const Net at = Vec3(0.4, 0.1, height).transpose(), far = Vec3(0.4, 0.1, 9).transpose();
+    Net by_fresh(1, 3), by_used(1, 3);
+    fresh.reach(at), used.reach(far), used.reach(at);
+    fresh.velocity_at(at, rows, flow, by_fresh), used.velocity_at(at, rows, flow, by_used);
+    EXPECT_EQ(by_fresh, by_used) << height;
+  }
+}
+
 TEST(Solids, ForcesBalanceThePressureGradient) {
   Phases phases;
   const stokes::PeriodicCell cell(Mat3(Vec3(1, 1.2, 0.8).asDiagonal()), 3);
