@@ -90,8 +90,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
           "its identities hold for closed surfaces, and the wall is not closed");
   to.pair(scene.viscous_membrane() && tube && all_blocks, "Membrane viscosity", system,
           "the system of all blocks does not include the load of a viscous membrane; give `schur`");
-  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined,
-          "the wall of a straight tube is always factored; the key is for a Channel");
+  to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
   to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
           "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,
