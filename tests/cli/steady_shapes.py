@@ -125,6 +125,17 @@ def a_branch_that_is_stopped_keeps_its_points():
     check("stopped at the wall-clock limit before there was anything to keep" in said, said)
 
 
+def a_branch_coarsens_its_mesh_at_every_point():
+    """From a drawn-out drop on a refined mesh to a sphere, for which the first mesh suffices."""
+    run(deck(DECK), "--set", "Steady/tolerance=1e-5", "--set", "Membrane/capillary number=0.1", "--set",
+        "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.0005", "--set", "Continuation/step=0.01", "--set",
+        "Continuation/largest change=0.055", "--set", "Adaptation/enabled=true", "--set", "Adaptation/coarsen=true", "--set",
+        "Adaptation/surface tolerance=4e-5", "--set", "Adaptation/coarsening tolerance=0.01", "--set", "Adaptation/levels=2", "--output", "coarser",
+        "--quiet")
+    points = series("coarser", "n_control_points")
+    check(points.max() > 300 and points[-1] == points[0] == 56, points)
+
+
 def a_branch_without_a_fold_says_so():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.09", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[2]", "--output", "no_fold", "--quiet",
