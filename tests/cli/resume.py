@@ -206,7 +206,6 @@ def the_final_time_may_change_and_the_membrane_may_not():
 
 def what_the_series_depend_on_may_not_change():
     deck(DECK)
-    run("deck.yaml", "--output", "short", "--set", "Time/final time=0.25", "--quiet")
     for setting in "Output/power balance=true", "Contact/limiter=true":
         more = ["--set", "Contact/limit=0.01"] if "Contact" in setting else []
         lattice = ["--set", "Domain/periodic=x1 x2 x3", "--set", "Domain/side lengths=[5, 5, 5]"] if more else []
