@@ -96,8 +96,8 @@ void state(CLI::App& app, Arguments& arguments) {
       "An expectation (Expect) belongs to the deck that states it. If an overlay or --set changes a key that results depend on and does not\n"
       "state the expectation again, a miss is reported and does not fail the run.\n"
       "Exit codes: 0 done, and all binding expectations are met; 1 an expectation is missed; 2 a mistake in the deck or the command line; "
-      "3 the run failed; 4 the run was stopped by a signal or at its wall-clock limit, and --resume continues it. For any code but 0, Open "
-      "MPI's mpirun prints a page and waits for seconds; `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
+      "3 the run failed; 4 the run was stopped by a signal or at its wall-clock limit, and --resume continues it if it is a run in time. For any "
+      "code but 0, Open MPI's mpirun prints a page and waits for seconds; `mpirun -q --mca odls_base_sigkill_timeout 0` does not.");
   app.add_option("deck", arguments.decks, "the deck, and overlays that are laid over it key by key");
   app.add_option("--set", arguments.settings, "'Section/key=value': one key, after all decks (repeatable)")->allow_extra_args(false);
   app.add_option("--accuracy", arguments.accuracy,
@@ -365,7 +365,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {
-    return report("stopped by a signal before there was anything to keep", stopped);
+    return report((spoken(reason_of_stop()) + " before there was anything to keep").c_str(), stopped);
   } catch (const UserErrors& errors) {
     for (const std::string& sentence : errors.all) report(sentence.c_str(), mistake);
     message = one_line(errors.what());

@@ -6,7 +6,7 @@
 
 namespace tanktread {
 
-/// Exit code of a run that was stopped and can be resumed.
+/// Exit code of a run that was stopped. A run in time can be resumed.
 constexpr int stopped = 4;
 
 /// Runs the scene to its end: the run in time, or one of the functions below if the deck requests a steady shape, a spectrum or a prescribed motion.

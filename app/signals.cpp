@@ -37,4 +37,11 @@ void stop_where_told() {
   if (coupling::any_told_to_stop(told_to_stop())) throw motion::Stopped();
 }
 
+std::string reason_of_stop() { return coupling::any_told_to_stop(told_to_stop()) ? by_signal : by_clock; }
+
+std::string spoken(std::string status) {
+  std::erase(status, ':');
+  return status;
+}
+
 }  // namespace tanktread

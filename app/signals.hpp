@@ -1,5 +1,7 @@
 #pragma once
-// Handling of stop signals.
+// Handling of stop signals, and reasons for which runs are stopped.
+
+#include <string>
 
 namespace tanktread {
 
@@ -13,5 +15,14 @@ bool told_to_stop();
 
 /// Throws motion::Stopped on every rank if any rank has received a stop signal. Collective.
 void stop_where_told();
+
+/// Reasons for which a run is stopped, as written to `status` of the summary.
+inline const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit";
+
+/// Returns the reason for which all ranks have thrown motion::Stopped: the wall-clock limit if no rank has received a stop signal. Collective.
+std::string reason_of_stop();
+
+/// Returns a status without its colon, for use within a message.
+std::string spoken(std::string status);
 
 }  // namespace tanktread

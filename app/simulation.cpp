@@ -27,14 +27,13 @@ namespace tanktread {
 
 namespace {
 
-/// Reasons for which a run ends before its final time, as written to `status` of the summary.
-const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit", steady = "steady", past = "past";
+/// Further reasons for which a run ends before its final time, as written to `status` of the summary.
+const std::string steady = "steady", past = "past";
 
 /// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so
 /// that each snapshot has its own step.
 motion::TimeOptions time_options(const Scene& scene) {
-  motion::TimeOptions time = scene.time;
-  time.unit = 1 / scene.rate();
+  motion::TimeOptions time = scene.time_options();
   if (!scene.lands_on_snapshots() && !time.fixed_step)
     time.maximum_step = std::min(scene.snapshot_interval(), time.maximum_step.value_or(scene.snapshot_interval()));
   return time;
@@ -349,12 +348,6 @@ class Run {
     if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return last.whole ? code : stopped;
-  }
-
-  /// Removes the colon from a status, so that it can be used within a message.
-  static std::string spoken(std::string status) {
-    std::erase(status, ':');
-    return status;
   }
 
   const Scene& scene_;

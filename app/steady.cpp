@@ -4,11 +4,13 @@
 #include <complex>
 #include <cstdio>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <utility>
 
 #include "app/runs.hpp"
 #include "app/signals.hpp"
+#include "app/steady_system.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/document.hpp"
@@ -22,6 +24,7 @@
 #include "scene/particles/particle_system.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
+#include "system/agreement.hpp"
 
 namespace tanktread {
 
@@ -36,31 +39,11 @@ coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
   return a;
 }
 
-/// A scene and the motion of its particles. A branch of steady shapes has one system per value of its parameters.
-struct System {
-  System(Scene of, coupling::Ranks& ranks, Phases& phases) : scene(std::move(of)), particle(deforming(scene, ranks, phases)) {
-    begin(particle->start());
-  }
-
-  /// Sets up the equations on the current mesh of the particle. `x` is a shape on this mesh.
-  void begin(const Net& x) {
-    motion.emplace(particle->dynamics(), told_to_stop);
-    motion->at(0, 0);
-    const Body& body = particle->body();
-    equations.emplace(*motion, free_motions(scene, body.flow, body.radius, particle->capsule()->particles()), steady_step(scene), x);
-  }
-
-  Scene scene;
-  std::unique_ptr<ParticleSystem> particle;
-  std::optional<motion::GuardedDynamics> motion;
-  std::optional<motion::SteadyEquations> equations;
-};
-
 /// A run that computes shapes one after another and records the results of each.
 class SteadyRun {
  public:
   SteadyRun(const Scene& scene, const RunRequest& request)
-      : scene_(scene), request_(request), system_(std::make_shared<System>(scene, ranks_, phases_)),
+      : scene_(scene), request_(request), system_(std::make_shared<System>(scene, ranks_, phases_, told_)),
         chosen_(plan(scene, system_->particle->body(), ranks_.size())),
         results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
     ranks_.measure(phases_);
@@ -71,7 +54,12 @@ class SteadyRun {
     stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
     clock_.emplace(phases_, "steady shape");
-    failure_ = coupling::failure_of_any([this] { scene_.continuation.present ? follow() : look(); });
+    try {
+      failure_ = coupling::failure_of_any([this] { scene_.continuation.present ? follow() : look(); });
+    } catch (const motion::Stopped&) {
+      if (results_.last_saved() < 0) throw;
+      stopped_ = reason_of_stop();
+    }
     if (!failure_.empty() && results_.last_saved() < 0) throw RunFailure(failure_);
     clock_.reset();
     return close();
@@ -115,7 +103,7 @@ class SteadyRun {
       Scene weaker = of->scene;
       weaker.flow.history = stokes::FlowHistory{.times = std::vector<double>{0}, .amplitudes = std::vector<double>{amplitude}};
       if (latest) count_out(*latest);
-      latest = std::make_shared<System>(std::move(weaker), ranks_, phases_);
+      latest = std::make_shared<System>(std::move(weaker), ranks_, phases_, told_);
       carry_to(*latest, mesh);
       return {latest, &*latest->equations};
     }, scene_.steady, scene_.solvers, reached);
@@ -129,10 +117,10 @@ class SteadyRun {
   /// Computes a shape that repeats after a period.
   void shoot() {
     const motion::PeriodicOptions& options = scene_.periodic;
-    state_.x = motion::after_periods(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+    state_.x = motion::after_periods(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
     motion::PeriodicReport found;
     do {
-      returns_.emplace(*system_->motion, scene_.time, scene_.solvers.nox, options, state_.x);
+      returns_.emplace(*system_->motion, time_, scene_.solvers.nox, options, state_.x);
       found = motion::find_periodic(*returns_, scene_.solvers.nox, state_.x);
     } while (found.converged && adapt());
     report_.iterations = found.iterations, report_.error = found.rest;
@@ -142,10 +130,10 @@ class SteadyRun {
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
   }
 
-  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening, because refinement and coarsening could
-  /// alternate forever.
+  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening at the same point of a branch, because
+  /// refinement and coarsening could alternate forever.
   bool adapt() {
-    if (totals_.coarsenings > 0 || !system_->particle->adapt(state_, totals_)) return false;
+    if (totals_.coarsenings > earlier_coarsenings_ || !system_->particle->adapt(state_, totals_)) return false;
     results_.remesh(system_->particle->body(), system_->particle->bezier());
     system_->begin(state_.x);
     return true;
@@ -183,6 +171,7 @@ class SteadyRun {
       report_.iterations = point->iterations, report_.error = point->rest;
       found_.point = *point;
       write();
+      earlier_coarsenings_ = totals_.coarsenings;
       if (ranks_.rank() == 0 && !request_.quiet) tell(k, *point);
     }
   }
@@ -206,7 +195,7 @@ class SteadyRun {
       return systems_.front().second;
     }
     const auto clock = phases_.time("set-up");
-    auto made = std::make_shared<System>(request_.changed(settings_of(scene_.continuation, parameters)), ranks_, phases_);
+    auto made = std::make_shared<System>(request_.changed(settings_of(scene_.continuation, parameters)), ranks_, phases_, told_);
     if (mesh_) carry_to(*made, *mesh_);
     const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
     if (points != expected)
@@ -275,7 +264,7 @@ class SteadyRun {
                                 options.number));
     if (returns_) {
       std::optional<motion::ReturnMap> of_parity;
-      if (system != system_) of_parity.emplace(*system->motion, scene_.time, scene_.solvers.nox, scene_.periodic, state_.x);
+      if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
       found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs keep the volume
     } else {
@@ -307,7 +296,7 @@ class SteadyRun {
       throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
     Scene scene = system_->scene;
     scene.symmetry.use = "none";
-    auto made = std::make_shared<System>(std::move(scene), ranks, phases_);
+    auto made = std::make_shared<System>(std::move(scene), ranks, phases_, told_);
     output::Checkpoint mesh;
     system_->particle->store(mesh);
     carry_to(*made, mesh);
@@ -361,16 +350,26 @@ class SteadyRun {
     count();
     account.counts = counts(totals_);
     if (!failure_.empty()) account.status = "failed: " + failure_, account.whole = false;
+    if (!stopped_.empty()) {
+      account.status = stopped_, account.whole = false;
+      account.remark = spoken(stopped_) + "; what was reached is in " + results_.directory().string();
+    }
     int k = 0;
     for (const motion::Mode& mode : found_.modes) account.modes.emplace_back(std::to_string(++k), motion::name(mode.kind));
     const int code = results_.close(account, phases_);
     if (!failure_.empty()) throw RunFailure(failure_ + "; what was reached is in " + results_.directory().string());
-    return code;
+    return stopped_.empty() ? code : stopped;
   }
 
   const Scene& scene_;
   const RunRequest& request_;
   const Clock::time_point start_ = Clock::now();
+  // Returns whether this rank has received a stop signal or has passed the wall-clock limit.
+  const std::function<bool()> told_ = [this] {
+    const auto limit = scene_.output.wall_clock_limit;
+    return told_to_stop() || (limit && std::chrono::duration<double>(Clock::now() - start_).count() > *limit);
+  };
+  const motion::TimeOptions time_ = scene_.time_options();
   Phases phases_ = started();
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
@@ -382,11 +381,12 @@ class SteadyRun {
   motion::State state_;
   motion::StepReport report_;
   RunTotals totals_;
+  int earlier_coarsenings_ = 0;  // coarsenings up to the last recorded point of a branch
   coupling::Work work_;         // operation counts of systems that were deleted
   stokes::Evaluations kernel_;  // kernel evaluations of systems that were deleted
   std::optional<motion::ReturnMap> returns_;
   SteadyRow found_;
-  std::string failure_;
+  std::string failure_, stopped_;  // reasons for which the search failed or was stopped
 };
 
 }  // namespace

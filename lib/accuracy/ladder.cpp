@@ -11,6 +11,7 @@
 #include "base/formatted.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
+#include "motion/guarded.hpp"
 #include "record/files/file.hpp"
 #include "system/agreement.hpp"
 #include "system/ranks.hpp"
@@ -65,6 +66,8 @@ class Ladder {
   }
 
   void prepare() {
+    if (task_.resume && !fs::exists(task_.directory / ladder_file))
+      throw UserError("Accuracy cannot be added to a run that continues: run the deck again with another --output.");
     occupation_ = std::make_unique<output::Occupation>(task_.directory);
     if (!task_.resume) {
       if (!task_.overwrite) output::check_vacant(task_.directory);
@@ -168,6 +171,8 @@ class Ladder {
       const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
       try {
         if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
+      } catch (const motion::Stopped&) {
+        return stopped;
       } catch (const RunFailure& failure) {
         fail(name, failure.what());
         if (!task_.runs_in_time)

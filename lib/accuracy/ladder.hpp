@@ -19,7 +19,7 @@ struct Program {
   std::function<std::string(const std::vector<std::string>& settings)> deck;
 
   /// Runs this deck into a directory, or resumes the run there, and stops after `limit` seconds if given. Returns the exit code: 0, or `stopped` if
-  /// the run can be resumed. Throws RunFailure.
+  /// the run can be resumed. Throws RunFailure, and motion::Stopped if the run is stopped before it can be resumed.
   std::function<int(const std::string& deck, const std::filesystem::path& directory, bool resume, std::optional<double> limit)> run;
 };
 

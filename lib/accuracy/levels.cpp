@@ -8,6 +8,7 @@
 
 #include "base/errors.hpp"
 #include "deck/words.hpp"
+#include "motion/adaptation.hpp"
 #include "surface/options.hpp"
 
 namespace tanktread::accuracy {
@@ -22,6 +23,10 @@ class Setter {
  public:
   explicit Setter(const Values& deck) : deck_(deck) {}
 
+  bool has_section(const std::string& name) const {
+    const auto first = deck_.lower_bound(name + "/");
+    return first != deck_.end() && first->first.starts_with(name + "/");
+  }
   bool has(const std::string& path) const { return deck_.contains(path) && !deck_.at(path).empty(); }
   double number(const std::string& path, double otherwise) const { return has(path) ? std::strtod(deck_.at(path).c_str(), nullptr) : otherwise; }
   std::string text(const std::string& path) const {
@@ -70,12 +75,9 @@ std::vector<std::string> particles(const Values& deck) {
 std::string of_particle(const std::string& prefix, const std::string& key) { return (prefix.empty() ? "Particle/" : prefix) + key; }
 
 bool is_post(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "cylinder"; }
-bool from_file(const Setter& deck, const std::string& prefix) { return deck.text(of_particle(prefix, "shape")) == "file"; }
 
-/// Returns the number of elements per side in the deck; for a polar mesh, half the number of elements from pole to pole. Returns 0 if the mesh is
-/// given by a file.
+/// Returns the number of elements per side in the deck; for a polar mesh, half the number of elements from pole to pole.
 double side_of(const Setter& deck, const std::string& prefix) {
-  if (from_file(deck, prefix)) return 0;
   if (deck.text(prefix + "Surface/mesh") == "polar") return deck.number(prefix + "Surface/meridional elements", 16) / 2;
   return deck.number(prefix + "Surface/elements per side", 6);
 }
@@ -86,14 +88,16 @@ void set_adaptation(Setter& to, const std::string& list, double length) {
   to.scale(list + "load tolerance", error);
   to.scale(list + "coarsening tolerance", error);
   to.scale(list + "reference length", length);
-  to.scale(list + "film resolution", length);
+  if (to.has(list + "film resolution"))
+    to.scale(list + "film resolution", length);
+  else if (std::ranges::any_of(std::array{"Tube", "Channel", "Wall", "Domain"}, [&](const char* section) { return to.has_section(section); }))
+    to.set(list + "film resolution", motion::AdaptationOptions::default_film_resolution * length);
   to.scale(list + "minimum length", std::min(1., length));
 }
 
 void set_mesh(Setter& to, const std::string& prefix, double ratio, int level) {
   const double n = std::max(3., std::round(ratio * elements_per_side(level)));
   const double deck_n = side_of(to, prefix);
-  if (deck_n == 0) return;
   const std::string surface = prefix + "Surface/";
   if (to.text(surface + "mesh") == "polar") {
     const double around = to.number(surface + "azimuthal elements", 32) / to.number(surface + "meridional elements", 16);
@@ -158,7 +162,7 @@ Level balanced(int k, double time, double quadrature) {
   const auto level = [&](double share, double ratio) {
     const double part = share * std::pow(ratio, 2 - k);
     const double looser = part > 0 ? std::floor(std::log(whole / (4 * part)) / std::log(ratio) + 1e-9) : 2;
-    return std::max(0, k - static_cast<int>(std::clamp(looser, -2., 2.)));
+    return std::max(2, k - static_cast<int>(std::clamp(looser, -2., 2.)));
   };
   return {k, level(time, time_ratio), level(quadrature, quadrature_ratio)};
 }
@@ -171,8 +175,7 @@ std::vector<std::string> settings(const Values& deck, const Level& level) {
   all.erase(posts.begin(), posts.end());
   double finest = 0;
   for (const std::string& prefix : all) finest = std::max(finest, side_of(to, prefix));
-  for (const std::string& prefix : all)
-    if (finest > 0) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
+  for (const std::string& prefix : all) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
   for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
   to.scale_whole("Wall/elements per period", elements_per_side(level.mesh) / 6., 4, 200);
   set_time(to, level.time);
@@ -187,7 +190,7 @@ void check_levels(const Values& deck) {
     throw UserError("Accuracy needs Wall/elements per period, because the levels refine the walls of a Domain in proportion to it.");
   for (const std::string& prefix : particles(deck))
     for (const char* key : {"initial shape/file", "initial shape/run"})
-      if (reads.has(of_particle(prefix, key)) && !from_file(reads, prefix))
+      if (reads.has(of_particle(prefix, key)))
         throw UserError("Accuracy and " + of_particle(prefix, key) +
                         " contradict each other: the shape is given on one mesh, and the errors are estimated from several meshes.");
 }

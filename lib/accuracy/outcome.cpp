@@ -91,6 +91,8 @@ bool is_of_several(const output::RunRecord& record) {
 
 }  // namespace
 
+bool is_branch(const output::RunRecord& record) { return holds(record, "fold"); }
+
 bool resumes(const std::string& one, const std::string& other) {
   const auto kept = [](const std::string& deck) {
     std::istringstream lines(without_section(deck, "Output"));
@@ -118,7 +120,7 @@ std::optional<Outcome> finished(const std::filesystem::path& directory, const Le
 Curve curve(const output::RunRecord& record, const std::string& series) {
   if (!holds(record, series)) return {};
   const std::vector<double>& values = record.values(series);
-  if (!holds(record, "fold")) return {record.values("time"), values};
+  if (!is_branch(record)) return {record.values("time"), values};
   const std::vector<double>& fold = record.values("fold");
   Curve found;
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -174,7 +176,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
-      std::vector<double> at = holds(finest, "fold") ? std::vector<double>() : finest.values("time");
+      std::vector<double> at = is_branch(finest) ? std::vector<double>() : finest.values("time");
       // On a branch of steady shapes, errors are estimated only at folds and at the end. Each row has the error of the next fold, or of the end of
       // the branch if no fold follows.
       if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())

@@ -28,6 +28,9 @@ bool resumes(const std::string& one, const std::string& other);
 /// Returns the finished run in a directory; nothing if the directory has no run, its run has not reached its end, or its deck is not `deck`.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
+/// Returns whether a run is a branch of steady shapes. Only its folds and its last point correspond to points of other levels.
+bool is_branch(const output::RunRecord& record);
+
 /// Returns a series as a function of time. For a branch of steady shapes, returns the values at its folds and its last point as a function of their
 /// index, because all other points differ between levels. A run of one row gives one point.
 Curve curve(const output::RunRecord& record, const std::string& series);

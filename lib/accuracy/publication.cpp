@@ -100,7 +100,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   const Outcome& finest = levels.back();
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
-  if (levels.size() > 1) {
+  if (levels.size() > 1 && !is_branch(finest.record)) {
     const Outcome& before = levels[levels.size() - 2];
     const double fine = expected_error(finest.level), coarse = expected_error(before.level);
     write_position_errors(finest.directory, before.directory, task.directory, safety * fine / (coarse - fine));

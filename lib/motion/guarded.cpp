@@ -94,6 +94,10 @@ void GuardedDynamics::improve_start(Net& y, const Net& before, double shift) {
   });
 }
 
+double GuardedDynamics::distance(const Net& from, const Net& to) const {
+  return coupling::decided([&] { return std::vector{motion_.distance(from, to)}; }).front();
+}
+
 double GuardedDynamics::norm(const Net& displacement) const {
   return coupling::decided([&] { return std::vector{motion_.norm(displacement)}; }).front();
 }

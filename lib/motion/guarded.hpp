@@ -8,7 +8,7 @@
 
 namespace tanktread::motion {
 
-/// Thrown by a velocity evaluation after a stop signal. It does not derive from std::exception, so no scheme treats it as an error.
+/// Thrown by a velocity evaluation after a stop signal or a time limit. It does not derive from std::exception, so no scheme treats it as an error.
 struct Stopped {};
 
 /// Wraps another motion for the integrators. An evaluation at a trial shape may fail on some ranks, because a solver does not converge, the surface
@@ -16,7 +16,8 @@ struct Stopped {};
 /// ranks throw RunFailure. Decisions of a scheme depend on norms; every rank uses the norms of the first rank. Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
-  /// `told`: function that returns whether this rank has received a stop signal. If so, the next velocity evaluation throws Stopped on every rank.
+  /// `told`: function that returns whether this rank is to stop, because of a signal or a limit. If so, the next velocity evaluation throws Stopped
+  /// on every rank.
   GuardedDynamics(coupling::Dynamics& motion, std::function<bool()> told) : motion_(motion), told_(std::move(told)) {}
 
   void at(double time, double start) override { motion_.at(time, start); }
@@ -38,7 +39,7 @@ class GuardedDynamics : public coupling::Dynamics {
   Net turned(const Net& x, const Mat3& rotation) const override { return motion_.turned(x, rotation); }
   Net moved(const Net& x, const coupling::RigidMotion& motion) const override { return motion_.moved(x, motion); }
   Net symmetric(Net rate) const override { return motion_.symmetric(std::move(rate)); }
-  double distance(const Net& from, const Net& to) const override { return motion_.distance(from, to); }
+  double distance(const Net& from, const Net& to) const override;
   double norm(const Net& displacement) const override;
 
   /// Returns the reason of the latest failed evaluation; empty if none has failed.

@@ -57,8 +57,10 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
   begin(dynamics, state);
   if (!state.x.allFinite() || !state.history.front().allFinite())
     throw RunFailure("the evaluation of the velocity failed in the search for a periodic motion");
-  state.step = time.initial_step.value_or(first_step(dynamics, state, time));
-  const std::unique_ptr<Integrator> scheme = integrator(time, nox);
+  TimeOptions until_most = time;
+  until_most.final_time = most;
+  state.step = time.initial_step.value_or(first_step(dynamics, state, until_most));
+  const std::unique_ptr<Integrator> scheme = integrator(until_most, nox);
   while (state.time < most * (1 - 1e-12)) {
     const State before = state;
     scheme->advance(dynamics, state, most);

@@ -1,6 +1,7 @@
 #pragma once
 // The schemes of `Time/scheme`, and the step control that they share.
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -39,7 +40,8 @@ double step_share(double tolerance, int order);
 class Attempts {
  public:
   Attempts(const TimeOptions& options, State& state, double limit)
-      : options_(options), state_(state), limit_(limit), proposed_(options.fixed_step.value_or(state.step)) {}
+      : options_(options), state_(state), limit_(limit),
+        proposed_(options.fixed_step.value_or(std::min(state.step, options.maximum_step.value_or(1e300)))) {}
 
   /// Returns the size of the next attempt, at most `longest`. Throws RunFailure if the controller requests a step below `Time/minimum step`, unless
   /// this step reaches the limit.

@@ -23,7 +23,8 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(!scene.runs_in_time() && told, scene.sought(), moved, "a body with prescribed motion has no unknown position or orientation");
   to.pair(scene.tube.repulsion && told, {scene.tube.list() + "/repulsion", "Tube/repulsion"}, moved, forced);
   to.pair(density_difference && told, "Particle/density difference", moved, forced);
-  to.pair(told && scene.time.steady_tolerance, "Time/steady tolerance", moved, "a body with prescribed motion does not become steady");
+  to.pair(told && scene.name.empty() && scene.time.steady_tolerance, "Time/steady tolerance", moved,
+          "a single body with prescribed motion has no shape or rotation that could become steady");
   to.pair(forces && !told, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
   to.pair(forces && told && scene.in_system(), "Particle/forces",
@@ -31,8 +32,9 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
            : scene.domain.present       ? "Domain"
            : scene.output.power_balance ? "Output/power balance"
            : scene.flow.history         ? "Flow/history"
+           : scene.series.empty()       ? "Flow/type"
                                         : "Output/series",
-           "Particles, Domain, Output/power balance, Output/series or Flow/history"},
+           "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");
   to.pair(rigid() && scene.volume_given, "Volume", stiff, "a rigid particle keeps its volume");
@@ -139,7 +141,7 @@ void ParticleKind::declare_lists(deck::Section& section) {
   InterfaceList list{*this};
   section.section("Interface", list, "the interface of a drop: motion of the mesh along the interface, and surfactant");
   if (!section.documenting() && particle.shape.sized()) adaptation.radius = particle.shape.equivalent_radius();
-  if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : 0.7;
+  if (!name.empty()) adaptation.film_resolution = particle.rigid() ? 0.5 : motion::AdaptationOptions::default_film_resolution;
   section.section("Adaptation", adaptation, "refinement and coarsening of the particle's surface mesh");
 }
 
@@ -150,6 +152,8 @@ void ParticleKind::reject(const Scene& scene, Rejections& to) const {
   const Chosen law("Membrane/law `" + membrane.law + "`", "Membrane/law of an elastic membrane");
   to.pair(adaptation.enabled && particle.shape.imported, "Adaptation/enabled", "Particle/shape `file`",
           "a spline space from a file has no mesh to refine");
+  to.pair(scene.accuracy.present && particle.shape.imported, "Accuracy", "Particle/shape `file`",
+          "the mesh of a file is not refined, so that its error cannot be estimated");
   to.pair(scene.volume.constraint == "none" && !strong && membrane.load_measure == "reference", "Volume/constraint `none`",
           "Membrane/load measure `reference`", "the load per reference area (3.7) needs `flux` or `exact`");
   to.pair(!drop && strong && degenerate, "Membrane/load `strong`", plain, "the load is not defined at the pole of a degenerate element");

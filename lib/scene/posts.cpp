@@ -77,7 +77,8 @@ void take_posts(Scene& scene) {
   scene.wall.solid = scene.wall.present && scene.domain.present && !scene.tube.present;
   scene.flow.plates = scene.wall.plates();
   const bool films = scene.wall.present || scene.tube.present || scene.domain.present;
-  if (films && scene.name.empty() && !scene.adaptation.film_resolution) scene.adaptation.film_resolution = 0.7;
+  if (films && scene.name.empty() && !scene.adaptation.film_resolution)
+    scene.adaptation.film_resolution = motion::AdaptationOptions::default_film_resolution;
   if (is_post(scene)) {
     scene.posts.push_back(post_of(scene));
     scene.only_solids = true;

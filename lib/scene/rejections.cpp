@@ -12,17 +12,12 @@ namespace tanktread {
 
 namespace {
 
-/// Adds the choices that exclude user-defined loads, fields, series and flows.
+/// Adds the choices that exclude user-defined loads and fields.
 void reject_registered(const Scene& scene, Rejections& to) {
-  const Chosen flow(scene.flow.choice(), "Flow/type of an added flow"), motion(scene.particle.choice(), "Particle/motion `prescribed` or `free`");
-  const bool alone = !scene.in_system();
   to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
           "loads are included by virtual work, in the form `weak` only");
-  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields", motion, "only deformable particles have surface fields");
-  to.pair(alone && !scene.series.empty(), "Output/series", motion,
-          "a single rigid body has its own series; give it in a section Particles");
-  to.pair(alone && scene.flow.user && !scene.flow.user->affine(), flow, motion,
-          "a single rigid body is computed in flows of at most the second degree in x; give it in a section Particles");
+  to.pair(!scene.fields.empty() && scene.particle.rigid(), "Interface/fields",
+          {scene.particle.choice(), "Particle/motion `prescribed` or `free`"}, "only deformable particles have surface fields");
 }
 
 }  // namespace

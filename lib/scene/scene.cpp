@@ -333,9 +333,7 @@ void Scene::check() const {
   reject(found);
   found.throw_if_any();
   modulus();
-  motion::TimeOptions in_its_unit = time;
-  in_its_unit.unit = 1 / rate();
-  in_its_unit.check();
+  time_options().check();
   check_adaptation(*this);
   check_size(*this);
   check_vectors(*this, "Solvers", solvers.belos);
@@ -393,6 +391,7 @@ bool may_change_on_resume(const std::string& path) {
     const bool of_fields = of_particle.starts_with("Interface/fields/") || of_particle.starts_with("Interface/surfactant/");
     return (of_particle.starts_with("Interface/") && !of_fields) || of_particle.starts_with("Adaptation/");
   }
+  if (path == "Output/power balance" || path == "Contact/limiter") return false;  // the series depend on them
   for (const char* fixed :
        {"Flow", "Domain", "Particle", "Membrane", "Surface", "Volume", "Tube", "Channel", "Wall", "Interface/fields", "Interface/surfactant",
         "Output/series"})

@@ -140,11 +140,12 @@ struct Scene : ParticleKind {
   bool load_is_strong() const { return membrane.load == "strong"; }
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body. Such a
-  /// scene does not support the power balance, searches, repulsion by a wall, registered series, or prescribed motion in a time-dependent flow.
+  /// scene does not support the power balance, searches, repulsion by a wall, registered series, registered flows that are not affine, or prescribed
+  /// motion in a time-dependent flow.
   bool in_system() const {
     if (only_solids) return false;
     return !particles.empty() || !name.empty() || !particle.rigid() || domain.present || output.power_balance || !runs_in_time() ||
-           tube.repulsion || !series.empty() || (flow.history && particle.motion == Motion::prescribed);
+           tube.repulsion || !series.empty() || (flow.user && !flow.user->affine()) || (flow.history && particle.motion == Motion::prescribed);
   }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
   bool has_gaps() const { return particles.size() > 1 || domain.present; }
@@ -153,6 +154,12 @@ struct Scene : ParticleKind {
   std::vector<Scene> alone() const;
   bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions, the integral equation of the first kind (2.40)
 
+  /// Returns the options of the time integration, with the unit of time of the scene.
+  motion::TimeOptions time_options() const {
+    motion::TimeOptions in_its_unit = time;
+    in_its_unit.unit = 1 / rate();
+    return in_its_unit;
+  }
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
   double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided

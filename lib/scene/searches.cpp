@@ -63,6 +63,8 @@ void reject_searches(const Scene& scene, Rejections& to) {
           "mesh points that move along the interface with the fluid do not become steady; give `normal` or `relaxed`");
   to.pair(steady && scene.elastic() && unstressed != "sphere" && turns(scene), scene.sought(), scene.flow_choice(),
           "the flow rotates, and a membrane whose unstressed shape is not a sphere swings or tumbles while it tank-treads; use Periodic");
+  to.pair(scene.spectrum.near && scene.spectrum.method == "krylov", "Spectrum/near", "Spectrum/method `krylov`",
+          "that method finds the modes nearest to Spectrum/shift; give that key, or `dense`");
   to.pair(scene.maxwell_membrane() && steady && turns(scene), "Steady with Membrane/relaxation time", scene.flow_choice(),
           "the membrane tank-treads around its steady shape, so that the strain of its material points is not steady");
 }

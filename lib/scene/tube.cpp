@@ -88,8 +88,7 @@ void reject_with_tube(const Scene& scene, Rejections& to) {
   to.pair(straight && scene.domain.present && scene.tube.length, "Tube/length", "Domain", "the length of a periodic tube is its period");
   to.pair(tube && scene.quadrature.rule == "desingularised", "Quadrature/rule `desingularised`", confined,
           "its identities hold for closed surfaces, and the wall is not closed");
-  to.pair(solvers.wall != "auto" && straight, "Solvers/wall", confined,
-          "the wall of a straight tube is always factored; the key is for a Channel");
+  to.pair(solvers.wall == "iterative" && straight, "Solvers/wall `iterative`", "Tube", "the wall of a straight tube is always factored");
   to.pair(solvers.wall == "iterative" && all_blocks, "Solvers/wall `iterative`", system,
           "that system needs the factored wall; give `schur`");
   to.pair(flow.held != "flow rate" && all_blocks, "Flow/held `pressure drop`", system,

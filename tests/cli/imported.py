@@ -2,7 +2,7 @@
 # A surface from a file: what was written is taken up again, and a file that is no closed surface is one sentence.
 import pathlib
 
-from harness import check, close, deck, main, run, series
+from harness import check, close, deck, main, refused, run, series
 
 START = """
 Tanktread:
@@ -33,6 +33,10 @@ def a_written_surface_is_the_next_run_s_start():
     close(series("second", "volume")[0], series("first", "volume")[-1], 1e-13, "volume")
     close(series("second", "taylor_inertia")[0], series("first", "taylor_inertia")[-1], 1e-13, "D")
     check(series("second", "n_control_points")[0] == 98, "control points")
+
+
+def the_error_of_a_mesh_from_a_file_cannot_be_estimated():
+    refused(["Accuracy", "Particle/shape `file`", "not refined"], deck(IMPORT % _written()), "--accuracy", "taylor_inertia=1%")
 
 
 def _refused(name, lines, *words):

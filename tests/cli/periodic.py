@@ -24,6 +24,13 @@ def its_period_is_that_of_the_flow():
     refused(["Periodic/period", "multiple", "Flow/history"], deck(DRIVEN % ("simple shear", "", "Periodic: {period: 3.1}")), "--check")
 
 
+def its_unit_of_time_is_that_of_the_deck():
+    fast = DRIVEN.replace("type: %s,", "type: %s, shear rate: 1.0e+11,").replace("frequency: 0.5", "frequency: 0.5e+11")
+    run(deck(DRIVEN % ("simple shear", "", SEARCH)), "--output", "slow", "--quiet")
+    run(deck(fast % ("simple shear", "", SEARCH.replace("period: 2,", "period: 2.0e-11,"))), "--output", "fast", "--quiet")
+    close(series("fast", "taylor_inertia")[-1], series("slow", "taylor_inertia")[-1], 1e-6, "D")
+
+
 def its_exponents_are_decay_rates_where_the_flow_is_weak():
     """Those of the sphere at rest, of the parity of the motion and of another."""
     weak = DRIVEN.replace("amplitude: 1,", "amplitude: 1.0e-3,")

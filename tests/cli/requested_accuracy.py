@@ -20,6 +20,13 @@ DROP = """Tanktread:
   Time: {final time: 1.0}
   Output: {interval: 0.1}
 """
+BRANCH = """Tanktread:
+  Flow: {type: uniaxial extension}
+  Membrane: {law: surface tension, capillary number: 0.04}
+  Surface: {elements per side: 3}
+  Steady: {tolerance: 1.0e-6}
+  Continuation: {parameter: Membrane/capillary number, to: 0.08, step: 0.01}
+"""
 
 
 def _run_file(results):
@@ -98,6 +105,37 @@ def what_is_not_met_is_said():
     lines = result.stderr.splitlines()
     check(len(lines) == 1 and "not reached" in lines[0] and "taylor_inertia=1e-12: estimated error" in lines[0], result.stderr)
     check(not summary("few")["accuracy"]["met"], "said to be met")
+
+
+def points_of_a_branch_have_no_error_of_position():
+    """Point k of two levels lies at two values of the parameter."""
+    import tanktread
+
+    deck(BRANCH)
+    run("deck.yaml", "--accuracy", "taylor_surface@end=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "branch")
+    check(summary("branch")["accuracy"]["met"], summary("branch")["accuracy"])
+    for shot in tanktread.run("branch").snapshots():
+        check("position error" not in shot.fields, sorted(shot.fields))
+
+
+def a_signal_in_a_search_stops_the_levels_and_the_finished_ones_are_published():
+    deck(BRANCH)
+    process = start("deck.yaml", "--accuracy", "taylor_surface@end=1e-9", "--quiet", "--output", "levels")
+    while not list(pathlib.Path("levels").glob("level_2/snapshot_*")) and process.poll() is None:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGTERM)
+    said = process.communicate()[1]
+    check(process.returncode == 4 and "was stopped; --resume levels continues" in said, process.returncode, said)
+    check(len(summary("levels")["accuracy"]["levels"]) >= 2, summary("levels")["accuracy"])
+
+
+def a_plain_run_does_not_become_a_ladder():
+    deck(DROP)
+    run("deck.yaml", "--set", "Time/final time=0.1", "--quiet", "--output", "plain")
+    before = sorted(pathlib.Path("plain").iterdir())
+    said = run("--resume", "plain", "--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", code=2).stderr
+    check("another --output" in said, said)
+    check(sorted(pathlib.Path("plain").iterdir()) == before, "results were deleted")
 
 
 def the_wall_clock_limit_is_honoured_and_said():

@@ -204,6 +204,16 @@ def the_final_time_may_change_and_the_membrane_may_not():
     check("Membrane/capillary number" in result.stderr, result.stderr)
 
 
+def what_the_series_depend_on_may_not_change():
+    deck(DECK)
+    for setting in "Output/power balance=true", "Contact/limiter=true":
+        more = ["--set", "Contact/limit=0.01"] if "Contact" in setting else []
+        lattice = ["--set", "Domain/periodic=x1 x2 x3", "--set", "Domain/side lengths=[5, 5, 5]"] if more else []
+        run("deck.yaml", *lattice, "--output", "short", "--overwrite", "--set", "Time/final time=0.1", "--set", "Output/interval=0.1", "--quiet")
+        result = run("--resume", "short", "--set", "Time/final time=0.2", "--set", setting, *more, code=2)
+        check(f"{setting.split('=')[0]} cannot change when a run continues" in result.stderr, result.stderr)
+
+
 def a_directory_without_a_checkpoint_is_a_mistake():
     pathlib.Path("empty").mkdir()
     for directory in "empty", "absent":

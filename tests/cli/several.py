@@ -397,4 +397,17 @@ def mistakes_are_named():
     check(re.search("drop/taylor", error), error)
 
 
+def a_body_at_rest_does_not_keep_a_drop_from_becoming_steady():
+    run(deck("""Tanktread:
+  Flow: {type: uniaxial extension}
+  Particles:
+    defaults: {Surface: {elements per side: 3}}
+    drop: {center: [0, 1.5, 0], Membrane: {law: surface tension, capillary number: 0.1}}
+    ball: {motion: prescribed, center: [0, -1.5, 0], radius: 0.5}
+  Time: {final time: 1, steady tolerance: 0.44}
+"""), "--output", "steady", "--quiet")
+    check(summary("steady")["status"] == "steady", summary("steady")["status"])
+    check(abs(series("steady", "ball/shape_velocity")).max() < 1e-10, series("steady", "ball/shape_velocity"))
+
+
 main()

@@ -43,6 +43,15 @@ def steps_of_a_fixed_size_keep_it_and_pictures_are_of_the_times_asked_for():
         check(worst < 2e-3, f"at {time} the surface is off by {worst}")  # steps of 0.1, not the pictures: 5e-4 of them at their ends
 
 
+def the_first_step_is_no_longer_than_the_time_between_two_pictures():
+    deck(DECK.replace("interval: 0.25", "interval: 0.05, between steps: interpolate"))
+    run("deck.yaml", "--output", "long", "--quiet", "--set", "Time/initial step=0.22", "--set", "Time/final time=0.5")
+    times = [time for time, _ in _pictures("long")]
+    check(numpy.allclose(times, numpy.linspace(0, 0.5, 11)), times)
+    run("deck.yaml", "--output", "least", "--quiet", "--set", "Time/initial step=0.2", "--set", "Time/maximum step=0.04", "--set", "Time/final time=0.2")
+    check(_series("least", "time_step").max() < 0.0401, _series("least", "time_step"))
+
+
 def a_run_with_pictures_between_steps_goes_on_to_the_same_end():
     deck(DECK.replace("interval: 0.25", "interval: 0.15, between steps: interpolate"))
     run("deck.yaml", "--output", "whole", "--quiet")

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 # Steady shapes, spectra and branches in place of a run in time: what they write, and what they say where there is nothing to find.
 import itertools
+import pathlib
+import time
 
 import numpy
 
-from harness import check, close, deck, main, run, series, summary
+from harness import check, close, deck, main, run, series, start, summary
 
 DECK = """
 Tanktread:
@@ -99,6 +101,39 @@ def a_fold_goes_on_in_a_second_parameter_to_where_a_branch_of_its_own_has_it():
     check(list(ratio[fold > 0]) == [1, 1.4, 2] and list(fold[-3:]) == [1, 1, 1], ratio, fold)
     close(parameter[-1], series("own", "parameter")[series("own", "fold").argmax()], 1e-6)
     check((abs(rate[-3:]) < 1e-3).all(), rate)
+
+
+def a_branch_that_is_stopped_keeps_its_points():
+    """By the wall-clock limit and by a signal."""
+    words = [deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.02", "--set",
+             "Continuation/step=1e-5", "--set", "Continuation/largest change=1e-5", "--set", "Continuation/points=10000", "--quiet"]
+    said = {}
+    for limit in 0.5, 4, 32:  # the first point takes seconds on a busy machine
+        said["clock"] = run(*words, "--set", f"Output/wall-clock limit={limit}", "--output", "clock", "--overwrite", code=4).stderr
+        if pathlib.Path("clock/summary.yaml").exists():
+            break
+    process = start(*words, "--output", "signal")
+    while len(list(pathlib.Path("signal").glob("snapshot_*"))) < 3 and process.poll() is None:
+        time.sleep(0.002)
+    process.terminate()
+    said["signal"] = process.communicate()[1]
+    check(process.returncode == 4, process.returncode, said)
+    for name, reason in ("clock", "stopped: at the wall-clock limit"), ("signal", "stopped: by a signal"):
+        check(summary(name)["status"] == reason and f"what was reached is in {name}" in said[name], summary(name)["status"], said[name])
+        check(series(name, "parameter")[-1] > 0.02, series(name, "parameter"))
+    said = run(words[0], "--set", "Output/wall-clock limit=1e-9", "--output", "none", "--quiet", code=4).stderr
+    check("stopped at the wall-clock limit before there was anything to keep" in said, said)
+
+
+def a_branch_coarsens_its_mesh_at_every_point():
+    """From a drawn-out drop on a refined mesh to a sphere, for which the first mesh suffices."""
+    run(deck(DECK), "--set", "Steady/tolerance=1e-5", "--set", "Membrane/capillary number=0.1", "--set",
+        "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.0005", "--set", "Continuation/step=0.01", "--set",
+        "Continuation/largest change=0.055", "--set", "Adaptation/enabled=true", "--set", "Adaptation/coarsen=true", "--set",
+        "Adaptation/surface tolerance=4e-5", "--set", "Adaptation/coarsening tolerance=0.01", "--set", "Adaptation/levels=2", "--output", "coarser",
+        "--quiet")
+    points = series("coarser", "n_control_points")
+    check(points.max() > 300 and points[-1] == points[0] == 56, points)
 
 
 def a_branch_without_a_fold_says_so():

@@ -37,6 +37,7 @@ SETTINGS = [
     (["Steady/method=bisection"], ["Steady/method", "anderson", "bisection"]),
     (["Spectrum/number=4", "Particle/motion=prescribed"], ["Spectrum", "Particle/motion", "prescribed motion"], 2),  # and Membrane
     (["Spectrum/number=4", "Volume/constraint=flux"], ["Spectrum", "Volume/constraint", "flux"]),
+    (["Spectrum/near=-1", "Spectrum/method=krylov"], ["Spectrum/near", "Spectrum/method `krylov`", "Spectrum/shift"]),
     (["Spectrum/number=0"], ["Spectrum/number", "0"]),
     (["Flow/gravity=[0, -1]"], ["Flow/gravity", "three numbers"]),
     (["Particle/density=1.1"], ["Particle/density", "density difference"]),

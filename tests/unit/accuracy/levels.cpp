@@ -58,6 +58,14 @@ TEST(Levels, ScaleTheTolerancesOfAdaptiveMeshesAsTheErrorOfAMesh) {
   EXPECT_FALSE(sets(plain, {5, 5, 5}, "Adaptation/surface tolerance=2.5e-05"));
 }
 
+TEST(Levels, ScaleTheResolutionOfFilmsThatTheDeckDoesNotGive) {
+  const Values adaptive = with(plain, {{"Adaptation/enabled", "true"}}), in_tube = with(adaptive, {{"Tube/section", "circle"}});
+  EXPECT_TRUE(sets(in_tube, {5, 5, 5}, "Adaptation/film resolution=0.35"));
+  EXPECT_TRUE(sets(with(in_tube, {{"Adaptation/film resolution", "0.5"}}), {5, 5, 5}, "Adaptation/film resolution=0.25"));
+  const std::vector<std::string> unbounded = settings(adaptive, {5, 5, 5});
+  EXPECT_TRUE(std::ranges::none_of(unbounded, [](const std::string& one) { return one.starts_with("Adaptation/film resolution"); }));
+}
+
 TEST(Levels, RefineWalls) {
   const Values deck = with(plain, {{"Tube/azimuthal elements", "24"}});
   EXPECT_TRUE(sets(deck, {5, 5, 5}, "Tube/azimuthal elements=48"));
@@ -83,11 +91,6 @@ TEST(Levels, HalveFixedSteps) {
   EXPECT_FALSE(sets(deck, {3, 3, 3}, "Time/tolerance=3.125e-05"));
 }
 
-TEST(Levels, KeepMeshesOfFiles) {
-  const Values deck = with(plain, {{"Particle/shape", "file"}});
-  EXPECT_FALSE(sets(deck, {5, 5, 5}, "Surface/elements per side=12"));
-}
-
 TEST(Levels, RefuseShapesOfOneMesh) {
   EXPECT_NO_THROW(check_levels(plain));
   EXPECT_THROW(check_levels(with(plain, {{"Particle/initial shape/run", "results/a"}})), UserError);
@@ -95,7 +98,8 @@ TEST(Levels, RefuseShapesOfOneMesh) {
 
 TEST(Levels, AreBalancedByTheSharesOfTheirParts) {
   EXPECT_EQ(balanced(2, 0.25, 0.25), (Level{2, 2, 2}));
-  EXPECT_EQ(balanced(2, 0.25 / time_ratio, 0.25 / quadrature_ratio), (Level{2, 1, 1}));
+  EXPECT_EQ(balanced(3, 0, 0), (Level{3, 2, 2}));  // no looser than level 2
+  EXPECT_EQ(balanced(4, 0.03, 0.03), (Level{4, 3, 3}));
   EXPECT_EQ(balanced(4, 0, 1e-6), (Level{4, 2, 2}));
   EXPECT_EQ(balanced(4, 1, 1), (Level{4, 6, 5}));  // the error of time falls more slowly than that of the mesh
 }

@@ -2,6 +2,7 @@
 
 #include "motion/guarded.hpp"
 
+#include <cmath>
 #include <functional>
 #include <new>
 #include <stdexcept>
@@ -112,6 +113,7 @@ TEST(GuardedDynamics, DecisionsOfAStepAreTheFirstRanks) {
     for (int k = 0; k < 4; ++k) integrate->advance(motion, state, 4);
     EXPECT_EQ(state.time, ranks.first(state.time)) << scheme;
     EXPECT_EQ(state.step, ranks.first(state.step)) << scheme;
+    EXPECT_EQ(motion.distance(Net::Zero(1, 3), Net::Ones(1, 3)), std::sqrt(3.)) << scheme;
   }
 }
 

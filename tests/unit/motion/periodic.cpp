@@ -1,6 +1,7 @@
 // Tests of return maps of a motion with a known limit cycle: shape, period, multipliers.
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -62,6 +63,24 @@ TEST_P(Periodic, ACycleIsFoundWithItsPeriodAndItsMultipliers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Turns, Periodic, testing::Values(0., 180.));
+
+TEST(Periodic, AMotionThatStartsAtRestNeedsNoFinalTime) {
+  class Driven : public ExplicitMotion {
+   public:
+    void at(double time, double) override { time_ = time; }
+    Net velocity(const Net&) override { return Net::Constant(1, 3, std::sin(time_)); }
+    double norm(const Net& d) const override { return d.norm(); }
+
+   private:
+    double time_ = 0;
+  } motion;
+  TimeOptions time = explicit_steps();
+  time.final_time = std::numeric_limits<double>::quiet_NaN();  // not in the deck of a search
+  PeriodicOptions options;
+  options.driven = true, options.period = 2 * std::numbers::pi;
+  const Net x = Net::Constant(1, 3, 0.5);
+  EXPECT_LT((after_periods(motion, time, nullptr, options, x) - x).norm(), 1e-7);
+}
 
 TEST(Periodic, WhatDoesNotComeBackSaysSo) {
   Cycle motion;

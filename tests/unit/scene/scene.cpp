@@ -9,6 +9,7 @@
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/document.hpp"
+#include "deck/section.hpp"
 #include "scene/member.hpp"
 #include "system/ranks.hpp"
 
@@ -244,10 +245,33 @@ TEST(Members, HaveTheMeshAndTheShapeThatTheyHaveAlone) {
   }
 }
 
+TEST(Scenes, PutASingleRigidBodyInAFlowOfAnyDegreeIntoTheSystem) {
+  struct Keys {
+    void declare(deck::Section&) {}
+  };
+  struct Cubic : stokes::UserFlow {
+    Vec3 velocity(const Vec3& x) const override { return {x[2] * (x[2] * x[2] - 3 * x[1] * x[1]), 0, 0}; }
+    Mat3 gradient(const Vec3& x) const override {
+      Mat3 all = Mat3::Zero();
+      all.row(0) << 0, -6 * x[1] * x[2], 3 * (x[2] * x[2] - x[1] * x[1]);
+      return all;
+    }
+    double rate() const override { return 1; }
+  };
+  Registry registry;
+  registry.flows.add<Keys>("cubic", "a flow of third degree", [](const Keys&) { return std::make_shared<Cubic>(); });
+  for (const char* motion : {"free", "prescribed"}) {
+    Scene cubic(registry);
+    deck::read_text(std::string("Tanktread: {Flow: {type: cubic}, Particle: {motion: ") + motion + "}, Time: {final time: 1}}").declare(cubic);
+    EXPECT_NO_THROW(cubic.check()) << motion;
+    EXPECT_TRUE(cubic.in_system()) << motion;
+  }
+}
+
 TEST(Resuming, MayChangeHowTheRunGoesOnButNotWhatItIs) {
   for (const char* path : {"Time/final time", "Output/interval", "Expect/volume/value", "Solvers/Belos", "Quadrature/tolerance"})
     EXPECT_TRUE(may_change_on_resume(path)) << path;
-  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side"})
+  for (const char* path : {"Flow/type", "Particle/radius", "Membrane/law", "Surface/elements per side", "Output/power balance", "Contact/limiter"})
     EXPECT_FALSE(may_change_on_resume(path)) << path;
 }
 
