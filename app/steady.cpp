@@ -142,7 +142,7 @@ class SteadyRun {
   /// Adapts the mesh at a point of a branch to the last of `shapes`, and transfers all `shapes` to the new mesh. Returns whether the mesh has
   /// changed.
   bool adapt_at(const Parameters& parameters, std::vector<Net>& shapes) {
-    system_ = system_at(parameters);
+    use(system_at(parameters));
     state_.history.clear(), state_.places.clear();
     for (Net& shape : shapes) state_.places.push_back({state_.time, std::move(shape)});
     state_.x = state_.places.back().x;
@@ -165,8 +165,7 @@ class SteadyRun {
     branch.search([&](Net& x, const motion::SteadyReport& failed) { return approach(system_, Net(state_.x), x, failed); });
     for (int k = 0; const auto point = branch.next(); ++k) {
       stop_where_told();
-      system_ = system_at({point->parameter, point->second});
-      results_.remesh(system_->particle->body(), system_->particle->bezier());
+      use(system_at({point->parameter, point->second}));
       state_.x = point->x, state_.time = k, totals_.step = k;
       report_.iterations = point->iterations, report_.error = point->rest;
       found_.point = *point;
@@ -185,6 +184,12 @@ class SteadyRun {
     const std::optional<std::string>& second = scene_.continuation.second_parameter;
     return formatted("%s %.8g", scene_.continuation.parameter.c_str(), parameters[0]) +
            (second ? formatted(", %s %.8g", second->c_str(), parameters[1]) : "");
+  }
+
+  /// Makes this system the current one. The results refer to its mesh, and not to the mesh of the one before, which may be deleted.
+  void use(std::shared_ptr<System> system) {
+    system_ = std::move(system);
+    results_.remesh(system_->particle->body(), system_->particle->bezier());
   }
 
   /// Returns the system at these parameters. Keeps the systems used latest, with the returned one in front.

@@ -27,7 +27,7 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
           "a single body with prescribed motion has no shape or rotation that could become steady");
   to.pair(forces && !told, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
-  to.pair(forces && told && scene.in_system(), "Particle/forces",
+  to.pair(forces && told && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
           {!scene.name.empty()          ? "Particles"
            : scene.domain.present       ? "Domain"
            : scene.output.power_balance ? "Output/power balance"

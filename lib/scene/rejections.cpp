@@ -23,7 +23,7 @@ void reject_registered(const Scene& scene, Rejections& to) {
 }  // namespace
 
 void Scene::reject_power(Rejections& to) const {
-  const bool asked = output.power_balance && name.empty(), between_plates = wall.solid && wall.distance && !flow.user;
+  const bool asked = output.power_balance && name.empty(), between_plates = wall.solid && wall.distance && (!flow.user || flow.user->affine());
   const std::string word = "Output/power balance";
   to.pair(
       asked && flow.type != "duct" && !tube.present && !between_plates && !stokes::AmbientFlow(flow).affine(), word,

@@ -251,6 +251,7 @@ Tanktread:
   Tube: {section: circle}
   %s
   Quadrature: {tolerance: 1.0e-6}
+  Solvers: {rigid bodies: second kind}
   Time: {final time: 0.01, fixed step: 0.01, scheme: bs3}
 """ % ("Particles: {ball: " + words % ", Surface: {elements per side: 6}" + "}"), "second.yaml")
     deck(pathlib.Path("second.yaml").read_text().replace("Particles: {ball: " + words % ", Surface: {elements per side: 6}" + "}",

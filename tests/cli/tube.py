@@ -63,7 +63,7 @@ def a_particle_that_does_not_fit_is_refused_with_its_numbers():
     _refused(["Particle/center", "outside of the tube", "0.5"], "Particle/center=[0.0, 0.0, 1.5]")
     _refused(["too close", "gap is 0.00995", "0.02"], "Particle/center=[0.0, 0.0, 0.39]")
     _refused(["Tube/length", "4.6", "3"], "Tube/length=3.0")
-    _refused(["Tube/length", "at least 5.5", "is 5"], "Tube/length=5.0", "Particle/initial shape/stretch=[1.8, 0.8, 0.7]")
+    _refused(["Tube/length", "at least 5.6", "is 5"], "Tube/length=5.0", "Particle/initial shape/stretch=[1.8, 0.8, 0.7]")
 
 
 def a_wrong_outline_is_refused_with_its_numbers():

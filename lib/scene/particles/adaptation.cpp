@@ -255,7 +255,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
     only[0].body = std::make_unique<Body>(std::move(body));
     only[0].block = {.n_points = only[0].body->space.n_points, .n_elements = static_cast<int>(only[0].body->space.elements.size())};
     std::vector<double> widths;
-    if (only[0].body->wall || scene.wall.present) widths = films(only, 0, x, scene.domain.cell(), only[0].body->wall.get());
+    if (only[0].body->wall || scene.wall.present) widths = films(only, 0, x, {}, only[0].body->wall.get());
     motion::State state;
     state.x = only[0].body->rest;
     Adapted change = adapted(scene, *only[0].body, only[0].block, state, load, false, widths);

@@ -81,7 +81,10 @@ class Deforming : public ParticleSystem {
     coupling::Contacts contacts = contacts_;
     for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
     const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);
-    if (holds) contacts_ = std::move(contacts);
+    if (holds)
+      contacts_ = std::move(contacts);
+    else
+      press();
     if (holds && own.x != fields_->shape(state.x)) {
       state.x = fields_->with_shape(state.x, own.x);
       state.history = {fields_->empty() ? own.history.front() : dynamics().velocity(state.x)};
