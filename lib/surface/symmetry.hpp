@@ -66,6 +66,7 @@ class Symmetry {
   /// Completes a symmetric field of vectors (control values, or values at the collocation points) from its rows at the fundamental points. A
   /// component becomes zero if an image maps the point onto itself and changes its sign.
   void complete(Net& field) const;
+  Net completed(Net field) const { complete(field); return field; }  ///< returns the completed field
 
   /// Returns the description, for example "mirror x2 and point symmetry", or "none".
   const std::string& description() const { return description_; }

@@ -5,71 +5,25 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "base/timing.hpp"
-#include "base/types.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "system/capsule_jacobian.hpp"
+#include "system/capsule_parameters.hpp"
 #include "system/dynamics.hpp"
 #include "system/evaluation.hpp"
 #include "system/interface_motion.hpp"
-#include "system/particle.hpp"
-#include "system/ranks.hpp"
+#include "system/layout.hpp"
+#include "system/membranes.hpp"
+#include "system/particle_layers.hpp"
 #include "system/solids/one_body.hpp"
-#include "system/solids/rigid_particles.hpp"
 #include "system/solids/solid_response.hpp"
-#include "system/solids/tube.hpp"
-#include "system/solvers/frozen_operator.hpp"
-#include "system/solvers/krylov.hpp"
-#include "system/solvers/nodal_operator.hpp"
-#include "system/solvers/options.hpp"
-#include "system/velocity_projection.hpp"
-#include "membrane/area_constraint.hpp"
-#include "membrane/field.hpp"
-#include "membrane/mass_solver.hpp"
-#include "membrane/mass.hpp"
-#include "membrane/membrane.hpp"
-#include "membrane/options.hpp"
-#include "membrane/symmetric_solver.hpp"
-#include "quadrature/options.hpp"
-#include "spline/space.hpp"
-#include "stokes/flow/ambient_flow.hpp"
-#include "stokes/layer.hpp"
-#include "surface/geometry.hpp"
-#include "surface/partition.hpp"
-#include "surface/symmetry.hpp"
+#include "system/solvers/frozen_layers.hpp"
+#include "system/volumes.hpp"
 
 namespace tanktread::coupling {
 
 class RigidTractions;
-
-/// Counts of operations, as a measure of cost that does not depend on the machine.
-struct Work {
-  long evaluations = 0;        ///< velocity evaluations (4.2)
-  long assemblies = 0;         ///< assemblies of the frozen layer operators (4.3)
-  long tangents = 0;           ///< evaluations of the membrane tangent
-  long solves = 0;             ///< linear solves of the implicit step
-  long solver_iterations = 0;  ///< iterations of these solves
-  long velocity_iterations = 0;  ///< iterations of the linear systems for velocities or tractions
-  long velocity_solves = 0;      ///< solves of these systems
-  long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
-};
-
-/// Particles, medium and solver options of a Capsule.
-struct CapsuleParameters {
-  double viscosity = 1;                                          ///< mu of the outer fluid
-  std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
-  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the
-                                                                 ///< collocation sites, false: from virtual work (3.5)
-  VolumeOptions volume;
-  SolverOptions solvers;
-  quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, which the flow deforms, except in a duct; empty if the scene is not
-                                             ///< periodic
-  std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
-  std::optional<SolidScene> solids;          ///< plates and posts in the cell
-  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points if there is no symmetry
-};
 
 /// Computes dx/dt = v(x) for the stacked control nets x of all particles.
 ///
@@ -129,11 +83,11 @@ class Capsule : public Dynamics {
 
   double next_kink(double time) const override { return flow_.next_kink(time); }
   void freeze(const Net& x) override;
-  double frozen_bytes() const override;
+  double frozen_bytes() const override { return frozen_.bytes(); }
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;
   Net defect(const Net& x, const Net& u) override;
-  bool defect_spares_system() const override { return defect_without_system(); }
+  bool defect_spares_system() const override;
   Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) override;
   Net missed(const Net& change, const Net& delta, double shift) override;
   Net derivative(const Net& x, const Net& v, const Net& delta) override;
@@ -143,7 +97,7 @@ class Capsule : public Dynamics {
   std::vector<Net> relabellings(const Net& x) override;
   double distance(const Net& from, const Net& to) const override;
   double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
-  Net symmetric(Net field) const override;
+  Net symmetric(Net field) const override { return parameters_.symmetry.completed(std::move(field)); }
 
   /// Sets the virtual work of additional forces for all later calls, one row per control point; an empty net removes the forces. `contacts`: contact
   /// forces, which keep their directions and material points. `fields`: loads due to the fields on surfaces, given as minus their contribution to
@@ -156,33 +110,15 @@ class Capsule : public Dynamics {
 
   Eigen::Index n_points() const { return space_.n_points; }
 
-  /// Changes due to a displacement dx and to additional loads of virtual work `work`, linearised about the shape of the last linearisation. `rate`:
-  /// change of the velocity of the control points; rate_change() returns it multiplied by the operator B. `slip`: change of the fluid velocity minus
-  /// the velocity of the control points; empty if no control points slide.
-  struct RateChange {
-    Net rate, slip;
-  };
-  RateChange rate_change(const Net& dx, const Net& work);      ///< `rate` is B J dx (4.3) with the operator B and the Jacobian J, or J dx if control
-                                                               ///< points slide. Collective
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns a RateChange whose `rate` is J dx, with the Jacobian J of the velocity.
-                                                               ///< Collective
-  /// Returns B v of (4.2) with frozen layer operators, or v if control points slide along an interface. Collective.
-  Net left(const Net& v) { return interface_ ? v : frozen_viscous(v); }
-  void prepare_step(double shift);  ///< prepares step_preconditioner
-  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the system that `solve`
-                                                                                       ///< solves
-
-  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. `rhs` may have any number of rows.
-  /// Collective.
-  Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
-  bool has_frozen() const { return !frozen_.empty() || !nodal_.empty(); }
+  CapsuleJacobian& jacobian() { return jacobian_; }
+  bool has_frozen() const { return !frozen_.empty(); }
   const surface::Symmetry& symmetry() const { return parameters_.symmetry; }
 
   /// Returns whether control points slide along an interface, so that their velocity differs from the fluid velocity.
-  bool slides() const { return interface_.has_value(); }
+  bool slides() const { return interface_ != nullptr; }
 
   /// Returns whether a membrane or interface is viscous, so that the load depends on the velocity.
-  bool viscous() const { return viscous_.has_value(); }
+  bool viscous() const { return membranes_.viscous(); }
 
   /// Returns whether the shape evaluated last is within `distance` of x (in `norm`).
   bool evaluated_about(const Net& x, double distance) const { return latest_ && norm(x - latest_->x()) <= distance; }
@@ -194,10 +130,10 @@ class Capsule : public Dynamics {
     return rigid;
   }
 
-  const Loads& loads() const { return loads_; }
-
+  const Membranes& membranes() const { return membranes_; }
+  const membrane::Membrane& membrane() const { return membranes_.membrane(); }
   const std::vector<Particle>& particles() const { return parameters_.particles; }
-  double volume_error(double volume, std::size_t p = 0) const { return volume / volume0_[p] - 1; }  ///< V/V0 - 1 of particle p
+  double volume_error(double volume, std::size_t p = 0) const { return volumes_.error(volume, p); }  ///< V/V0 - 1 of particle p
   Tube* tube() { return tube_.get(); }      ///< null if there is no tube
   SolidResponse* solids() { return lattice_.solids.get(); }  ///< null if there are no plates or posts
   const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set by `at`
@@ -211,14 +147,11 @@ class Capsule : public Dynamics {
   /// whose flow is periodic.
   Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.cell_gradient() * shift); }
 
-  const membrane::Membrane& membrane() const { return membrane_; }
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
-  const VelocityProjection* projection() const { return projection_ ? &*projection_ : nullptr; }  ///< null if velocities are collocated
-  const surface::Geometry& geometry() const { return geometry_; }
-  const Phases& layer_phases() const { return layer_.phases(); }  ///< run time of the parts of the single layer
-  stokes::Measure measure() const { return coupling::measure(particles()); }  ///< measure of the loads
-  /// Returns the net whose area defines the loads (force per area): for each particle, its rows of x or of the unstressed net.
-  Net measured_net(const Net& x) const { return coupling::measured_net(particles(), unstressed_, x); }
+  const VelocityProjection* projection() const { return targets_.projection(); }  ///< null if velocities are collocated
+  const surface::Geometry& geometry() const { return volumes_.geometry(); }
+  const Phases& layer_phases() const { return layers_.single_layer().phases(); }  ///< run time of the parts of the single layer
+  stokes::Measure measure() const { return membranes_.measure(); }  ///< measure of the loads
   void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
   const Work& work() const { return work_; }
   Work& work() { return work_; }
@@ -237,124 +170,59 @@ class Capsule : public Dynamics {
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  bool repeats() const { return lattice_.cell && !tube_; }  // true if the layers are periodic; in a duct the tube's response contains the images
   bool by_sites() const { return tube_ || parameters_.solids || !flow_.affine(); }
+  bool schur() const { return !tube_ || tractions_ || parameters_.solvers.tube == "schur"; }
+  bool has_velocity_system() const { return layers_.has_double() || viscous() || !schur(); }
+  bool unknowns_follow() const { return !interface_ && rigid_.empty(); }  // true if the unknowns are velocities of control points
+  bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
+  bool deform_cell(double time);
+  Vec3 cell_origin(const Net& x) const;
+  void place(const Net& x);
   void place_among_solids(const Net& x);
   void put_among_solids();
-  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
-  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
-  std::vector<Mat3> gradients_at(const Net& x) const;
-  Net in_cell(Evaluation& e, const Net& guess);
-  Net solve(Evaluation& e, Net x, const Net& guess);
-  Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
-  Mat3 moment_by_traction(Evaluation& at, std::size_t p);
-  void assemble_layers(const Net& x);
-  Net layers_of(const Net& x, const Net& v, const Net& f);
-  bool deform_cell(double time);
-  Net single_layer_of(const Net& x, const Net& f);
-  Net double_layer_of(const Net& v);
-  Net membrane_load(Evaluation& e, const Net& x, Net* other);
-  void place(const Net& x);
-  Vec3 cell_origin(const Net& x) const;
-  Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
-  Net defect_here(const Net& x, const Net& u);
-  void own(const surface::Share& share);
-  void make_layers();
-  void replicate(Net& net);
-  void replicate_sums(Net& net);
-  void gather(bool shared, Net& net);
-  void gather_targets(bool shared, Net& net);
-  const std::vector<int>& own_targets() const { return projection_ ? projection_->own() : own_points_; }
-  Net zero_at_targets() const { return Net::Zero(projection_ ? projection_->values().rows() : space_.n_points, 3); }
-  Net control_values(Net at_targets);
-  Net serial_control_values(const Net& u) const { return projection_ ? projection_->control_values(u) : collocation_.solve(u); }
-  void solve(const membrane::SymmetricSolver& a, std::span<Net* const> fields);
-  Net solved(const membrane::SymmetricSolver& a, Net field);
-  Net work_of_loads(const Net& x, std::vector<Net>& sums);
-  std::vector<Net> complete_work(const Net& x, Net& work);
-  void push_bodies(const Net& x);
-  bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
-  Net flux_vector(const Net& x);
-  void constrain(Net& v, const Net& b, const Net& c) const;
-  Net energy_part(const Net& delta, const Net& work = {});
-  Net without_flux(Net rate) const;
-  Net inflation(const Net& c);
-  Net frozen_single_layer(const Net& f);
-  Net measured_load(const Net& x, Net d);
-  // Returns the load due to the viscosity of membranes at the velocity v. Requires that viscous_ was updated at x.
-  Net viscous_load(const Net& x, const Net& v) { return measured_load(x, viscous_work(*viscous_, v)); }
-  Net viscous_work(const membrane::ViscousLoad& c, const Net& v);
-  Net frozen_viscous(const Net& v);
-  Net fluid_velocity_change(const Net& delta, const Net& work = {});
-  stokes::Rows<double> double_rows_of(const Net& x, std::span<const int> targets);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
-  Blocks velocity_blocks() const;
-  Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
-                   const Net& b, const Net& c, const Net& rhs);
-  void note(const SolveReport& report, const Eigen::VectorXd& v);
   bool enter_tube(const Net& x);
   bool in_front_of_wall(const Net& x);
-  bool flows_by_system() const;
-  bool unknowns_follow() const { return !interface_ && rigid_.empty(); }  // true if the unknowns are velocities of control
-                                                                                         // points
-  bool defect_without_system() const;
-  Net stiff_system(double shift, const Net& rhs, double tolerance, const Secants& secants);
-  bool has_velocity_system() const { return double_layer_ || viscous_ || !schur(); }
-  bool schur() const { return !tube_ || tractions_ || parameters_.solvers.tube == "schur"; }
+  Net velocity_by_walls(const Net& x, const Net& f, const Net& v);
+  void add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u);
+  Net in_cell(Evaluation& e, const Net& guess);
+  Net solve(Evaluation& e, Net x, const Net& guess);
+  Net work_of_loads(const Net& x, std::vector<Net>& sums);
+  Net membrane_load(Evaluation& e, const Net& x, Net* other);
+  void push_bodies(const Net& x);
+  Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
+  Net defect_here(const Net& x, const Net& u);
+  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
+  Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
+                   const Net& b, const Net& c, const Net& rhs);
+  Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
+  Mat3 moment_by_traction(Evaluation& at, std::size_t p);
+  void note(const SolveReport& report, const Eigen::VectorXd& v);
 
   const spline::Space& space_;
-  Net unstressed_, rest_;
+  Net rest_;
   stokes::AmbientFlow flow_;
   CapsuleParameters parameters_;
-  Ranks& ranks_;
   Phases& phases_;
-  std::vector<int> own_points_;
-  std::vector<int> own_elements_;  // elements that contribute to the integrals for the rank-owned points
-  bool folded_ = false;            // true if own_elements_ contain one element of each symmetry orbit; fold() then adds the integrals at image points
-                                   // to fundamental points
-  surface::Geometry geometry_;
-  membrane::MassMatrix mass_matrix_;
-  membrane::Membrane membrane_;
-  membrane::Tangent tangent_;
-  std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
-  Loads loads_;  // viscous operator C (3.10), of the latest evaluation (viscous_) and of the Jacobian (linearised_viscous_); set if a membrane is
-                 // viscous
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // viscous operator C (3.10) of the latest evaluation, and of the
-                                                                       // Jacobian; set if a membrane is viscous
-  std::optional<VelocityProjection> projection_;  // least-squares projection; not set if velocities are collocated
-  stokes::Layer layer_;                           // single layer at the targets, where velocities are evaluated
-  std::optional<stokes::Layer> double_layer_;     // double layer with the factors 1 - lambda, -1 for rigid bodies; not set if all factors
-                                                  // vanish
-  std::optional<stokes::Layer> site_layer_, site_double_layer_;  // layers at the collocation sites for the Jacobian; set if velocities are
-                                                                 // evaluated at other targets
-  membrane::SymmetricSolver collocation_;
-  membrane::MassSolver mass_;
-  Krylov velocity_solver_, step_solver_, inner_solver_;
-  NodalOperator nodal_;                     // frozen single layer; the options select either nodal_ or frozen_
-  FrozenOperator frozen_, frozen_double_;  // frozen layers; empty until the first call of `freeze`
-  Net frozen_at_;                          // shape at which the frozen operators were assembled
-  Corotation corotation_;                  // rotations of the particles from `frozen_at_` to the shape of the latest linearisation
+  Work work_;
+  Layout layout_;
+  Targets targets_;
+  Membranes membranes_;
+  Volumes volumes_;
+  ParticleLayers layers_;
+  FrozenLayers frozen_;
+  std::unique_ptr<Tube> tube_;
+  TubePlace tube_place_;
+  double inner_radius_ = 0;  // radius of the largest circle in the section of a straight tube about its centroid
+  Lattice lattice_;
   RigidParticles rigid_;
   std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies whose unknowns are their tractions
   std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first
                                           // use
-  std::optional<InterfaceMotion> interface_;  // set if any control points slide along an interface
-  stokes::Rows<double> double_rows_, single_rows_;
-  std::unique_ptr<Tube> tube_;
-  Eigen::SparseMatrix<double> sites_;   // collocation matrix R (4.2); set if there is a tube, a solid or a wall, or if the flow is not affine;
-                                        // otherwise empty
-  Lattice lattice_;
-  double inner_radius_ = 0;             // radius of the largest circle in the section of a straight tube about its centroid
-  double latest_shift_ = 0;             // shift gamma dt of the implicit system solved last
-  Net flux_, flux_response_;            // velocity gradients of the ambient flow at the collocation sites, for the shape linearised last; set if
-                                        // there is a tube or a solid, or if the flow is not affine
-  std::vector<Mat3> gradients_;         // velocity gradients of the ambient flow at the collocation sites, for the shape linearised last; only in a
-                                        // tube or if the flow is not affine
-  std::vector<double> volume0_;         // volume V0 of each particle
-  Work work_;
+  std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
+  Krylov velocity_solver_;
+  CapsuleJacobian jacobian_;
   std::shared_ptr<Evaluation> latest_;
   std::array<Net, 2> forces_;  // virtual work of contact forces, then of loads due to fields; empty nets if there are none
-  TubePlace tube_place_;
 };
 
 }  // namespace tanktread::coupling

@@ -17,8 +17,7 @@ bool Capsule::deform_cell(double time) {
   const stokes::PeriodicCell now(flow_.deformation(time) * parameters_.cell->vectors(), parameters_.cell->n());
   if (lattice_.cell && *lattice_.cell == now) return false;
   lattice_.cell = now;
-  layer_.repeat(now);
-  if (double_layer_) double_layer_->repeat(now);
+  layers_.repeat(now);
   if (tractions_) tractions_->repeat(now);
   return true;
 }
@@ -56,31 +55,31 @@ void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with
   place_among_solids(x);
   Solids::Flow flow = lattice_.solids->respond(f, moves);
   if (with_empty) flow = flow + lattice_.solids->empty();
-  Net part = zero_at_targets();
+  Net part = targets_.zero();
   lattice_.solids->velocities(flow, part);
-  gather_targets(false, part);
+  targets_.gather(false, part);
   u += part;
 }
 
 /// Returns the control values of the velocity by which a tube or solids respond to a load f and a velocity v.
 Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
-  if (tube_) return collocation_.solve(tube_->respond(f, v).velocity);
-  Net u = zero_at_targets();
+  if (tube_) return targets_.collocation().solve(tube_->respond(f, v).velocity);
+  Net u = targets_.zero();
   add_solids(x, f, v, false, u);
-  return serial_control_values(u);
+  return targets_.serial_control_values(u);
 }
 
 /// Constructs the response of plates and posts, if there are any.
 void Capsule::put_among_solids() {
   if (!parameters_.solids) return;
   lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_);
-  lattice_.solids->set_reference(unstressed_, measure(), measured_on_present(particles()));
+  lattice_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
   if (tractions_) tractions_->put_among(*lattice_.solids);
   lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {
-  lattice_.solids->place(x, (projection_ ? projection_->values() : sites_) * x, own_targets());
+  lattice_.solids->place(x, targets_.values() * x, targets_.own());
 }
 
 /// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell, and transfers the velocities back.

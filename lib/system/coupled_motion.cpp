@@ -127,7 +127,7 @@ void CoupledMotion::linearise(const Net& y) {
 }
 
 /// Multiplies the change of shape in delta by the operator B of (4.2). Changes of the fields are unchanged.
-Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.left(shape(delta))); }
+Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.jacobian().left(shape(delta))); }
 
 /// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the rate of change
 /// of the shape is multiplied by B (4.2), so that no linear system with B needs to be solved.
@@ -140,7 +140,8 @@ Net CoupledMotion::right(const Net& delta, bool solved) {
     values.push_back(block.on.field->value_change(block.rows.rows(dx), coefficients(delta, k)));
     block.rows.rows(load) += block.on.field->load_change(block.rows.rows(dx), values.back());
   }
-  const Capsule::RateChange change = solved ? capsule_.velocity_change(dx, load) : capsule_.rate_change(dx, load);
+  CapsuleJacobian& jacobian = capsule_.jacobian();
+  const CapsuleJacobian::RateChange change = solved ? jacobian.velocity_change(dx, load) : jacobian.rate_change(dx, load);
   Net result = with_shape(Net::Zero(rows_, 3), change.rate);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
@@ -151,14 +152,14 @@ Net CoupledMotion::right(const Net& delta, bool solved) {
 
 /// Solves (left - shift (right + secants)) delta = rhs for the change of state delta, with the operators left() and right().
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
-  capsule_.prepare_step(shift);
+  capsule_.jacobian().prepare_step(shift);
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, rows_, 3);
     Eigen::Map<Net>(out, rows_, 3) = left(delta) - shift * (right(delta) + secants(delta));
   };
   const auto precondition = [&](const double* in, double* out) {
     Net delta = Eigen::Map<const Net>(in, rows_, 3);
-    delta = with_shape(std::move(delta), capsule_.step_preconditioner(shape(delta)));
+    delta = with_shape(std::move(delta), capsule_.jacobian().step_preconditioner(shape(delta)));
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
       const Block& block = blocks_[k];
       membrane::Field& field = *block.on.field;
@@ -171,7 +172,7 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
     }
     Eigen::Map<Net>(out, rows_, 3) = delta;
   };
-  Net delta = capsule_.solve_step(apply, precondition, rhs, tolerance);
+  Net delta = capsule_.jacobian().solve_step(apply, precondition, rhs, tolerance);
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     Eigen::VectorXd q = coefficients(delta, k);
     blocks_[k].on.field->conserve(coefficients(rhs, k), q);

@@ -41,7 +41,7 @@ const Net& Evaluation::work() {
 }
 
 const std::vector<Net>& Evaluation::load_sums() {
-  if (system_->loads_.n_sums() > 0) work();
+  if (system_->membranes_.loads().n_sums() > 0) work();
   return load_sums_;
 }
 
@@ -65,7 +65,7 @@ void Evaluation::find_unknowns() {
   if (solved_) return;
   unknowns_ = known_;
   load_ = system_->membrane_load(*this, x_, nullptr);
-  if (system_->viscous()) load_ += system_->measured_load(x_, viscous_work());
+  if (system_->viscous()) load_ += system_->membranes_.load(x_, viscous_work());
 }
 
 const Tube::Response& Evaluation::response() {
@@ -97,8 +97,8 @@ Tube::Checks Evaluation::checks() {
 
 const Net& Evaluation::viscous_work() {
   if (viscous_work_.size() == 0) {
-    system_->viscous_->update(x_, system_->own_elements_);
-    viscous_work_ = system_->viscous_work(*system_->viscous_, moving());
+    system_->membranes_.place_viscous(x_);
+    viscous_work_ = system_->membranes_.viscous_work(moving());
   }
   return viscous_work_;
 }
@@ -120,7 +120,7 @@ Mat3 Evaluation::stresslet(std::size_t p) {
   if (const double contrast = viscosity_contrast(particle); contrast != 0) {
     const Net v = particle.rigid ? rigid().density(p) : Net(own(moving()));
     Net flux;
-    system.geometry_.volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
+    system.geometry().volume_gradient(x_, indices(particle.block.n_elements, particle.block.first_element), flux);
     moment -= 2 * contrast * system.parameters_.viscosity * v.transpose() * own(flux);
   }
   return 0.5 * (moment + moment.transpose()) - moment.trace() / 3 * Mat3::Identity();
@@ -132,6 +132,6 @@ double Evaluation::membrane_dissipation(std::size_t p) {
   return block.rows(moving()).cwiseProduct(block.rows(viscous_work())).sum();
 }
 
-double Evaluation::load_energy(std::size_t p) { return system_->loads_.energy(x_, load_sums(), p); }
+double Evaluation::load_energy(std::size_t p) { return system_->membranes_.loads().energy(x_, load_sums(), p); }
 
 }  // namespace tanktread::coupling

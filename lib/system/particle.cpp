@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/formatted.hpp"
 #include "base/indices.hpp"
 
 namespace tanktread::coupling {
@@ -61,6 +62,19 @@ std::vector<double> viscosity_contrasts(std::span<const Particle> particles) {
   if (std::ranges::all_of(particles, [](const Particle& particle) { return viscosity_contrast(particle) == 0; })) return result;
   for (const Particle& particle : particles) result.insert(result.end(), particle.block.n_elements, viscosity_contrast(particle));
   return result;
+}
+
+Blocks velocity_blocks(std::span<const Particle> particles) {
+  if (particles.size() == 1) return {{"velocity", 3 * particles.front().block.n_points}};
+  Blocks blocks;
+  for (const Particle& particle : particles)
+    blocks.push_back({formatted("velocity of particle %d", static_cast<int>(blocks.size()) + 1), 3 * particle.block.n_points});
+  return blocks;
+}
+
+void clear_rigid(std::span<const Particle> particles, Net& net) {
+  for (const Particle& one : particles)
+    if (one.rigid) one.block.rows(net).setZero();
 }
 
 namespace {

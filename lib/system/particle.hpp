@@ -13,6 +13,7 @@
 #include "spline/space.hpp"
 #include "stokes/layer.hpp"
 #include "system/solids/rigid_motion.hpp"
+#include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
 
@@ -67,6 +68,12 @@ Eigen::VectorXd viscosity_contrasts_of_points(std::span<const Particle> particle
 
 /// Returns the viscosity contrast of each element of all particles; empty if all are 0.
 std::vector<double> viscosity_contrasts(std::span<const Particle> particles);
+
+/// Returns the blocks of unknown velocities in linear systems, one block per particle.
+Blocks velocity_blocks(std::span<const Particle> particles);
+
+/// Sets the rows of rigid bodies to 0.
+void clear_rigid(std::span<const Particle> particles, Net& net);
 
 /// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). A load that depends
 /// on integrals over the whole surface (such as the area) returns the part of this rank in nets (sum nets), which the caller sums over ranks and

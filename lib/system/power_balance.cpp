@@ -61,14 +61,14 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
   if (capsule_.slides() || capsule_.viscous()) e->solve();
   const Net load = e->load(), v = e->fluid_velocity();
   const RigidParticles rigid = capsule_.rigid_at(x);
-  const Net measured = capsule_.measured_net(x);
+  const Net measured = capsule_.membranes().measured_net(x);
   const Net work = mass_.update(measured) * load, inside = density(v, rigid);
   Powers powers;
   powers.flow = of_flow(*e, work, inside);
   Net stored = Net::Zero(x.rows(), 3);
   const std::vector<int> all = indices(space_.elements.size());
   capsule_.membrane().load(x, all, stored);
-  capsule_.loads().add_stored_work(x, stored);
+  capsule_.membranes().loads().add_stored_work(x, stored);
   for (std::size_t p = 0; p < capsule_.particles().size(); ++p) {
     const Particle& particle = capsule_.particles()[p];
     if (particle.rigid) continue;

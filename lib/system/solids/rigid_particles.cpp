@@ -244,10 +244,6 @@ void RigidParticles::move(std::size_t p, const RigidMotion& motion, const Vec3& 
   body.block.rows(v) = body.field(motion);
 }
 
-void RigidParticles::clear(Net& net) const {
-  for (const Body& body : bodies_) body.block.rows(net).setZero();
-}
-
 Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   const Body& of = body(p);
   const Motions row = of.inertia.inverse().row(k).transpose();

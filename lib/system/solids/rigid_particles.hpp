@@ -79,7 +79,6 @@ class RigidParticles {
   /// centre and `faster` to the velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
-  void clear(Net& net) const;                ///< sets all rows of bodies to 0
 
   /// Returns whether particle p is a rigid body. The members below refer to the latest evaluated velocities.
   bool holds(std::size_t p) const { return of_particle_[p] >= 0; }

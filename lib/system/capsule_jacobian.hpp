@@ -1,0 +1,93 @@
+#pragma once
+// The Jacobian of Capsule, and the linear systems of an implicit step.
+
+#include <optional>
+#include <vector>
+
+#include "membrane/area_constraint.hpp"
+#include "stokes/flow/ambient_flow.hpp"
+#include "system/interface_motion.hpp"
+#include "system/membranes.hpp"
+#include "system/solids/tube.hpp"
+#include "system/solvers/frozen_layers.hpp"
+#include "system/solvers/secants.hpp"
+#include "system/volumes.hpp"
+
+namespace tanktread::coupling {
+
+/// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation, with frozen layers (4.3). B denotes the operator of (4.2)
+/// with frozen layers. The rows of rigid bodies are 0, because their motion is not stiff. Plates and posts are omitted. Calls are collective.
+class CapsuleJacobian {
+ public:
+  /// Changes due to a displacement dx and to additional loads of virtual work `work`. `rate`: change of the velocity of the control points, or its
+  /// product with B, see rate_change(). `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points
+  /// slide.
+  struct RateChange {
+    Net rate, slip;
+  };
+
+  /// `by_sites`: whether the ambient velocity is evaluated at the collocation sites. `tube`, `interface`: null if there is no tube or if no control
+  /// points slide. `work`: counts of operations, to which this object adds. References must outlive this object.
+  CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool by_sites, const Targets& targets, Membranes& membranes,
+                  const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface, Work& work);
+
+  /// Linearises at x. `sums`: surface integrals that Membranes::work computed at x.
+  void linearise(const Net& x, const std::vector<Net>& sums);
+
+  /// Returns whether all points move with the fluid and the velocity is the solution of a linear system. The Jacobian then includes the volume
+  /// projection P (2.8). The projection is needed because a step of TR-BDF2 adds a correction, e2 of (4.30), that is computed with the Jacobian.
+  bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
+
+  /// Returns B v, or v if control points slide along an interface.
+  Net left(const Net& v) { return interface_ ? v : viscous_product(v); }
+  RateChange rate_change(const Net& dx, const Net& work);      ///< `rate` is B J dx, or J dx if control points slide
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< `rate` is J dx
+
+  void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
+  Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the matrix of `solve`
+
+  /// Solves the linear system of an implicit step to the relative residual `tolerance`, and counts the solve. `rhs` may have any number of rows.
+  Net solve_step(const Apply& product, const Apply& precondition, const Net& rhs, double tolerance);
+
+  /// Solves the system of an implicit step for the displacement delta, with the secant correction E (4.13) of J. If all control points move with the
+  /// fluid, the system is (B - shift (B J + E)) delta = rhs (4.3), which does not require the inverse of B. If control points slide along an
+  /// interface, it is (1 - shift (N B^-1 B J + T W + E)) delta = rhs. Here N dv + T W delta is the change of the mesh velocity (4.6) due to a change
+  /// dv of the fluid velocity and the displacement delta.
+  Net solve(double shift, const Net& rhs, double tolerance, const Secants& secants);
+
+  /// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). If the membrane nearly conserves area, it
+  /// is the solution of an implicit step with the right-hand side c: c itself would change the area, and the resulting stress, proportional to the
+  /// large dilatation modulus, would affect the next step.
+  Net inflation(const Net& c);
+
+  /// Moves the start y of a stage so that membranes that nearly conserve area have the area of `before`.
+  void improve_start(Net& y, const Net& before, double shift);
+
+  void forget_recycled() const;  ///< discards the data of earlier solves that the preconditioner `recycled` keeps
+
+ private:
+  bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
+  std::vector<Mat3> gradients_at(const Net& x) const;
+  Net energy_part(const Net& dx, const Net& work);
+  Net viscous_product(const Net& v);
+  Net fluid_velocity_change(const Net& dx, const Net& work);
+  Net without_flux(Net rate) const;
+
+  const CapsuleParameters& parameters_;
+  const stokes::AmbientFlow& flow_;
+  const bool by_sites_;
+  const Targets& targets_;
+  Membranes& membranes_;
+  const Volumes& volumes_;
+  FrozenLayers& frozen_;
+  Tube* tube_;
+  InterfaceMotion* interface_;
+  Work& work_;
+  std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
+  Krylov step_solver_, inner_solver_;
+  double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
+  Net flux_, flux_response_;     // b = dV/dx and c of the projection P (2.8); no rows if J does not include P
+  std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `by_sites`
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,49 @@
+#pragma once
+// Parameters of a Capsule, and counts of its operations.
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "quadrature/options.hpp"
+#include "stokes/medium/periodic_images.hpp"
+#include "stokes/medium/plane_wall.hpp"
+#include "surface/symmetry.hpp"
+#include "system/particle.hpp"
+#include "system/solids/solid_response.hpp"
+#include "system/solvers/options.hpp"
+
+namespace tanktread::coupling {
+
+/// Counts of operations, as a measure of cost that does not depend on the machine.
+struct Work {
+  long evaluations = 0;        ///< velocity evaluations (4.2)
+  long assemblies = 0;         ///< assemblies of the frozen layer operators (4.3)
+  long tangents = 0;           ///< evaluations of the membrane tangent
+  long solves = 0;             ///< linear solves of the implicit step
+  long solver_iterations = 0;  ///< iterations of these solves
+  long velocity_iterations = 0;  ///< iterations of the linear systems for velocities or tractions
+  long velocity_solves = 0;      ///< solves of these systems
+  long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
+};
+
+/// Particles, medium and solver options of a Capsule.
+struct CapsuleParameters {
+  double viscosity = 1;                                          ///< mu of the outer fluid
+  std::vector<Particle> particles{1};                            ///< particles in stacking order; the space of a single particle need not be set
+  bool strong_load = false;                                      ///< true: membrane load from the pointwise equilibrium (P-3) at the
+                                                                 ///< collocation sites, false: from virtual work (3.5)
+  VolumeOptions volume;
+  SolverOptions solvers;
+  quadrature::Options quadrature;
+  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, which the flow deforms, except in a duct; empty if the scene is not
+                                             ///< periodic
+  std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
+  std::optional<SolidScene> solids;          ///< plates and posts in the cell
+  surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; without points if there is no symmetry
+
+  bool constrained() const { return volume.constraint != "none"; }  ///< true if velocities conserve the volumes (2.8)
+  bool any_rigid() const { return std::ranges::any_of(particles, [](const Particle& one) { return one.rigid.has_value(); }); }
+};
+
+}  // namespace tanktread::coupling

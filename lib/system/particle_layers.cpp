@@ -1,0 +1,130 @@
+#include "system/particle_layers.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "base/indices.hpp"
+#include "system/collocation.hpp"
+
+namespace tanktread::coupling {
+
+Targets::Targets(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout)
+    : space_(space), layout_(layout), at_sites_(collocation_matrix(space)), collocation_(parameters.solvers.direct, parameters.symmetry) {
+  collocation_.factor(at_sites_);
+  if (parameters.solvers.projection != "collocation")
+    projection_.emplace(space, unstressed, parameters.symmetry, parameters.solvers.direct, layout.ranks());
+}
+
+void Targets::gather(bool shared, Net& at_targets) const {
+  if (!projection_) return layout_.gather(shared, at_targets);
+  layout_.add({at_targets.data(), static_cast<std::size_t>(at_targets.size())});
+}
+
+Net Targets::control_values(Net at_targets) const {
+  return projection_ ? projection_->control_values(at_targets) : collocated(std::move(at_targets));
+}
+
+Net Targets::serial_control_values(const Net& at_targets) const {
+  return projection_ ? projection_->control_values(at_targets) : collocation_.solve(at_targets);
+}
+
+ParticleLayers::ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
+                               const Targets& targets, Phases& phases)
+    : parameters_(parameters), layout_(layout), targets_(targets), phases_(phases),
+      single_(stokes::Layer::Kernel::single_layer, space, targets.sites(), parameters.quadrature) {
+  single_.set_reference(unstressed, measured_on_present(parameters.particles));
+  single_.set_symmetry(parameters.symmetry);
+  if (const std::vector<double> contrasts = viscosity_contrasts(parameters.particles); !contrasts.empty())
+    double_.emplace(stokes::Layer::Kernel::double_layer, space, targets.sites(), parameters.quadrature, contrasts);
+  const std::vector<int> everybody = targets.projection() ? indices(targets.sites().size()) : parameters.symmetry.fundamental();
+  for (stokes::Layer* const layer : {&single_, double_layer()}) {
+    if (!layer) continue;
+    if (parameters.wall) layer->set_wall(*parameters.wall);
+    layer->share(layout.ranks().rank(), layout.ranks().size(), everybody);
+  }
+}
+
+void ParticleLayers::repeat(const stokes::PeriodicCell& cell) {
+  repeats_ = true;
+  single_.repeat(cell);
+  if (double_) double_->repeat(cell);
+}
+
+Net ParticleLayers::apply_single(const Net& x, const Net& f) {
+  Net u = targets_.zero();
+  if (f.isZero(0)) return u;
+  {
+    const auto clock = phases_.time("single layer");
+    single_.place(x, measure(parameters_.particles));
+    single_.apply(f, targets_.own(), u);
+  }
+  targets_.gather(single_.shared(), u);
+  return u;
+}
+
+void ParticleLayers::place_double(const Net& x) {
+  if (double_) double_->place(x);
+}
+
+Net ParticleLayers::apply_double(const Net& v) {
+  Net u = targets_.zero();
+  double_->apply(v, targets_.own(), u);
+  targets_.gather(double_->shared(), u);
+  return u;
+}
+
+void ParticleLayers::assemble(const Net& x, bool single) {
+  const auto n = static_cast<double>(x.rows());
+  constexpr double most_bytes = 1e9;
+  const auto assemble = [&](stokes::Layer& layer, bool by_clusters, stokes::Rows<double>& rows) {
+    if (!repeats_ && parameters_.solvers.assembled(by_clusters)) layer.assemble(targets_.own(), rows);
+    else rows.resize(0, 0);
+  };
+  // Thin films between rigid bodies take many iterations, for which it is faster to assemble the matrix (72 n^2 bytes).
+  const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;
+  if (double_) double_->place(x), assemble(*double_, double_->by_clusters() && !many_iterations, double_rows_);
+  if (single) single_.place(x, measure(parameters_.particles)), assemble(single_, single_.by_clusters(), single_rows_);
+}
+
+/// Returns the product of the assembled rows of all ranks with a field.
+Net ParticleLayers::product(const stokes::Rows<double>& rows, const Net& field) const {
+  Net at_targets = targets_.zero();
+  const Eigen::VectorXd own = rows * Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
+  for (Eigen::Index k = 0; const int i : targets_.own()) at_targets.row(i) = own.segment<3>(3 * k++).transpose();
+  targets_.gather(false, at_targets);
+  return at_targets;
+}
+
+Net ParticleLayers::apply(const Net& x, const Net& v, const Net& f) {
+  Net u = !double_ ? targets_.zero() : double_rows_.cols() > 0 ? product(double_rows_, v) : apply_double(v);
+  if (f.size() > 0) u -= (single_rows_.cols() > 0 ? product(single_rows_, f) : apply_single(x, f)) / parameters_.viscosity;
+  return u;
+}
+
+stokes::Rows<double> ParticleLayers::double_rows(std::span<const int> sites) {
+  const std::vector<int>& points = layout_.points();
+  const bool assembled = double_rows_.cols() > 0;
+  std::vector<int> own;
+  std::ranges::copy_if(sites, std::back_inserter(own), [&](int i) { return std::ranges::binary_search(points, i); });
+  stokes::Rows<double> made;
+  if (!assembled) double_->assemble(own, made);
+  stokes::Rows<double> rows = stokes::Rows<double>::Zero(3 * static_cast<Eigen::Index>(sites.size()), 3 * targets_.values().cols());
+  Eigen::Index next = 0;
+  for (std::size_t k = 0; k < sites.size(); ++k) {
+    const auto point = std::ranges::lower_bound(points, sites[k]);
+    if (point == points.end() || *point != sites[k]) continue;
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(k)) =
+        assembled ? double_rows_.middleRows<3>(3 * (point - points.begin())) : made.middleRows<3>(3 * next++);
+  }
+  layout_.add({rows.data(), static_cast<std::size_t>(rows.size())});
+  return rows;
+}
+
+stokes::Evaluations ParticleLayers::evaluations() const {
+  stokes::Evaluations sum = single_.evaluations();
+  if (double_) sum += double_->evaluations();
+  return sum;
+}
+
+}  // namespace tanktread::coupling

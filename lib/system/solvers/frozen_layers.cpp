@@ -1,0 +1,77 @@
+#include "system/solvers/frozen_layers.hpp"
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+namespace tanktread::coupling {
+
+FrozenLayers::FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
+                           const Targets& targets, const membrane::MassMatrix& mass, ParticleLayers& layers)
+    : unstressed_(unstressed), parameters_(parameters), layout_(layout), targets_(targets), mass_(mass), layers_(layers) {
+  using stokes::Layer;
+  nodal_.share(layout.ranks().rank(), layout.ranks().size(), parameters.symmetry.fundamental());
+  if (!targets.projection()) return;
+  site_single_.emplace(Layer::Kernel::single_layer, space, space.collocation, parameters.quadrature);
+  site_single_->set_reference(unstressed);
+  if (layers.has_double())
+    site_double_.emplace(Layer::Kernel::double_layer, space, space.collocation, parameters.quadrature, viscosity_contrasts(parameters.particles));
+}
+
+void FrozenLayers::assemble(const Net& at, const Net& x) {
+  at_ = at;
+  corotation_ = {};
+  const std::vector<int>& own = layout_.points();
+  const int n = static_cast<int>(x.rows());
+  stokes::Layer& single = site_single_ ? *site_single_ : layers_.single_layer();
+  const auto assemble = [&](std::span<const int> targets, auto&&... of) { single.assemble(targets, of...); };
+  single.place(x, stokes::Measure::reference);
+  if (nodal()) {
+    const Eigen::SparseMatrix<double>& sites = targets_.at_sites();
+    const NodalOperator::Surface surface{sites * x, sites, mass_.row_sums(unstressed_), mass_.row_sums(x), parameters_.symmetry};
+    nodal_.assemble(own, surface, 3, parameters_.quadrature.far_sum, assemble);
+  } else {
+    single_.assemble(own, n, assemble);
+  }
+  if (!has_double()) return;
+  stokes::Layer& layer = site_double_ ? *site_double_ : *layers_.double_layer();
+  layer.place(x);
+  double_.assemble(own, n, [&](std::span<const int> targets, stokes::Rows<float>& rows) { layer.assemble(targets, rows); });
+}
+
+void FrozenLayers::turn_to(const Net& x) {
+  if (at_.rows() == x.rows()) corotation_ = Corotation(parameters_.particles, at_, x);
+}
+
+Net FrozenLayers::single_layer(const Net& f) {
+  Net u = Net::Zero(f.rows(), 3);
+  if (nodal()) {
+    nodal_.apply(corotation_.back(f), u);
+    layout_.gather(nodal_.shared(), u);
+  } else {
+    single_.apply(corotation_.back(f), u);
+    layout_.replicate(u);
+  }
+  return corotation_.forth(u);
+}
+
+Net FrozenLayers::double_layer(const Net& v) const {
+  Net u = Net::Zero(v.rows(), 3);
+  double_.apply(corotation_.back(v), u);
+  layout_.replicate(u);
+  return corotation_.forth(u);
+}
+
+double FrozenLayers::bytes() const {
+  const double pairs = std::pow(static_cast<double>(unstressed_.rows()), 2);
+  return FrozenOperator::bytes_a_pair * ((nodal() ? 0 : 1) + has_double()) * pairs;
+}
+
+stokes::Evaluations FrozenLayers::evaluations() const {
+  stokes::Evaluations sum;
+  for (const auto* layer : {&site_single_, &site_double_})
+    if (*layer) sum += (*layer)->evaluations();
+  return sum;
+}
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,52 @@
+#pragma once
+// Layers of all particles that the Jacobian keeps frozen.
+
+#include <optional>
+
+#include "membrane/mass.hpp"
+#include "system/particle_layers.hpp"
+#include "system/solvers/frozen_operator.hpp"
+#include "system/solvers/nodal_operator.hpp"
+
+namespace tanktread::coupling {
+
+/// The single layer A and the double layer D of (4.2) at the collocation sites, assembled at one shape and used at later shapes with the rotations
+/// (4.29) of the particles. The option `frozen_operator` selects NodalOperator or FrozenOperator for A; D is a FrozenOperator. Calls are collective.
+class FrozenLayers {
+ public:
+  /// `layers`: the layers to be assembled, if their targets are the collocation sites; otherwise this object has its own layers. `mass`: mass matrix
+  /// of all particles. References must outlive this object.
+  FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
+               const membrane::MassMatrix& mass, ParticleLayers& layers);
+
+  /// Assembles the layers at the shape `at`. `x`: the same shape, on a lattice with the particles moved into the cell.
+  void assemble(const Net& at, const Net& x);
+
+  /// Computes the rotations of the particles from the assembled shape to x, if the layers are assembled.
+  void turn_to(const Net& x);
+
+  Net single_layer(const Net& f);        ///< returns A f
+  Net double_layer(const Net& v) const;  ///< returns D v
+
+  bool has_double() const { return layers_.has_double(); }
+  bool empty() const { return single_.empty() && nodal_.empty(); }  ///< true until the first call of assemble()
+  double bytes() const;                     ///< size, over all ranks, of the layers whose size grows with the square of the number of points
+  stokes::Evaluations evaluations() const;  ///< kernel evaluations of this object's own layers
+
+ private:
+  bool nodal() const { return parameters_.solvers.frozen_operator == "nodal"; }
+
+  const Net& unstressed_;
+  const CapsuleParameters& parameters_;
+  const Layout& layout_;
+  const Targets& targets_;
+  const membrane::MassMatrix& mass_;
+  ParticleLayers& layers_;
+  std::optional<stokes::Layer> site_single_, site_double_;  // layers at the collocation sites; set if these are not the targets
+  NodalOperator nodal_;                                     // A; the options select either nodal_ or single_
+  FrozenOperator single_, double_;
+  Net at_;                 // shape at which the layers were assembled
+  Corotation corotation_;  // rotations of the particles from `at_` to the shape of turn_to()
+};
+
+}  // namespace tanktread::coupling

@@ -1,0 +1,40 @@
+#pragma once
+// Volumes of all particles, and the projection of velocities that keeps them constant.
+
+#include <functional>
+#include <vector>
+
+#include "surface/geometry.hpp"
+#include "system/layout.hpp"
+#include "system/particle.hpp"
+
+namespace tanktread::coupling {
+
+/// The volumes V of all particles and the volumes V0 to be kept. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
+class Volumes {
+ public:
+  /// V0 is the volume of each particle in `initial`, unless the particle sets `kept_volume`. References, except `initial`, must outlive this object.
+  Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases);
+
+  const surface::Geometry& geometry() const { return geometry_; }
+  double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
+
+  /// Returns b = dV/dx, the gradient of the volume of each particle in its rows.
+  Net gradient(const Net& x) const;
+
+  /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change.
+  void constrain(Net& v, const Net& b, const Net& c) const;
+
+  /// Moves x onto the volumes V0 by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails. `along(b)`:
+  /// displacement, in the rows of each particle, that changes its volume.
+  void restore(Net& x, const std::function<Net(const Net& b)>& along) const;
+
+ private:
+  const std::vector<Particle>& particles_;
+  const Layout& layout_;
+  Phases& phases_;
+  surface::Geometry geometry_;
+  std::vector<double> kept_;  // V0 of each particle
+};
+
+}  // namespace tanktread::coupling
