@@ -46,6 +46,24 @@ def a_run_starts_from_the_end_of_another_and_goes_on_without_it():
     close(series("then", "time")[-1], 0.05, 0, "time")
 
 
+def copies_move_and_turn_a_shape_from_a_file_or_run():
+    run(deck(FIRST % ("0.05", "false")), "--output", "first", "--quiet", "--set", "Particle/center=[0.5, 0, 0]", "--set", "Particle/drift=held")
+    deck("0, 0, 0\n4, 1, 0, 0, 0, 90\n", "positions.csv")
+    for shape in "run: first", "file: first/surface.iga":
+        text = THEN % shape
+        body, rest = text[text.index("  Particle:"):text.index("  Surface")], text[text.index("  Surface"):]
+        keys = f"center: [0.5, 0, 0], initial shape: {{ {shape} }}, copies: {{ file: positions.csv }}"
+        mesh, rest = rest.split("\n", 1)
+        inner = ", ".join(line.strip() for line in (body.splitlines()[1], mesh))
+        run(deck(text[:text.index("  Particle:")] + f"  Particles: {{ many: {{ {keys}, {inner} }} }}\n" + rest), "--output", "then", "--quiet",
+            "--set", "Time/final time=0.001", "--set", "Time/fixed step=0.001", "--set", "Quadrature/tolerance=1e-3")
+        for copy, at, axes in (1, (0, 0, 0), "123"), (2, (4, 1, 0), "213"):
+            for k in 1, 2, 3:
+                close(series("then", f"many {copy}/centroid_x{k}")[0], (0.5, 0, 0)[k - 1] + at[k - 1], 1e-6, "centroid")
+                close(series("then", f"many {copy}/length_x{k}")[0], series("first", f"length_x{axes[k - 1]}")[-1], 1e-9, "length")
+        shutil.rmtree("then")
+
+
 def a_volume_of_its_own_is_kept_and_found_again():
     run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "own", "--quiet", "--set", "Time/final time=0.02")
     run("--resume", "own", "--quiet", "--set", "Time/final time=0.05")
