@@ -221,7 +221,8 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
     number = std::max(1.0, std::round(*how.volume_fraction * room / of_one));
   }
   if (number > most)
-    throw UserError(list + formatted(" may ask for at most %.0f copies, because more surfaces do not fit into memory, but asks for %.0f.", most, number));
+    throw UserError(list + formatted(" may ask for at most %.0f copies, because more surfaces do not fit into memory, but asks for %.0f.", most,
+                                     number));
   return static_cast<int>(number);
 }
 
@@ -341,7 +342,7 @@ std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, co
       ParticleKind& one = all.emplace_back(kind);
       one.name += formatted(" %zu", k + 1);
       if (std::ranges::any_of(kinds, [&](const ParticleKind& other) { return !other.copies.present && other.name == one.name; }))
-        throw UserError(formatted("Particles/%s has the name of copy %zu of Particles/%s, but results are stored by name: rename one of the particles.",
+        throw UserError(formatted("Particles/%s has the name of copy %zu of Particles/%s, but results are stored by name: rename one of them.",
                                   one.name.c_str(), k + 1, kind.name.c_str()));
       one.copies = {};
       surface::ParticleShape& shape = one.particle.shape;

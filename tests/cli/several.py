@@ -370,7 +370,7 @@ Tanktread:
 """), "--output", "kinds", "--quiet")
     apart = _centres("kinds", "many ") - _centres("kinds", "other ")
     distance = numpy.linalg.norm(apart - 40 * numpy.round(apart / 40), axis=1)
-    check(distance.mean() > 10, distance)
+    check(distance.mean() > 8, distance)
 
 
 def mistakes_of_copies_are_named():
