@@ -240,10 +240,16 @@ std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, c
   return std::vector<Copy>(static_cast<std::size_t>(number));
 }
 
+/// Returns the copies of a kind of particle and adds their circumscribed spheres to `taken`. Throws UserError if the size of the particle is unknown.
 std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::PeriodicCell>& cell, std::vector<PackedSphere>& taken) {
   const CopiesOptions& how = kind.copies;
   const surface::ParticleShape& shape = kind.particle.shape;
   const std::string list = "Particles/" + kind.name + "/copies";
+  try {
+    if (!shape.sized()) shape.check();
+  } catch (const UserError& error) {
+    throw UserError("Particles/" + kind.name + ": " + error.what());
+  }
   const double radius = shape.circumscribed_radius();
   if (!how.present) {
     taken.push_back({shape.center, radius, 0, true});

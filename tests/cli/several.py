@@ -401,6 +401,7 @@ def mistakes_are_named():
         ("Particles/small/center=[1.5, 0.0, -0.4]", ["Particles/small is inside of Particles/drop"]),
         ("Particles/small/like=drp", ["Particles/small/like", "drp"]),
         ("Particles/capsule/like=small", ["/like must be", "does not lead back"]),
+        ("Particles/capsule/shape=spheroid", ["Particles/capsule", "needs Particle/semi-axes"]),
         ("Particles/small/centre=[0, 0, 0]", ["Particles/small/centre", "Particles/small/center"]),
         ("Particles/small/motion=rigid", ["Particles/small/motion", "prescribed"]),
         ("Particles/ball/velocity=[1, 0, 0]", ["Particles/ball", "Particle/velocity", "prescribed"]),
