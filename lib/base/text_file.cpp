@@ -21,7 +21,10 @@ std::string text_of_file(const std::filesystem::path& file, const std::string& w
   if (fs::file_size(file, error) > most) throw UserError(what + " is larger than " + std::to_string(most / 1'000'000) + " MB.");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw UserError(what + " cannot be read.");
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors write this mark at the beginning of UTF-8 files
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  return text;
 }
 
 std::string trimmed(const std::string& text) {

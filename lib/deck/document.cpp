@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include <Teuchos_ParameterList.hpp>
 
 #include "deck/record.hpp"
 #include "deck/source.hpp"
+#include "deck/units.hpp"
 #include "deck/value.hpp"
 #include "deck/words.hpp"
 
@@ -40,6 +43,25 @@ void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterLis
   }
 }
 
+/// Returns the units of a deck. Returns nothing if the deck has no section Units, or a wrong one, which is an error when the deck is declared.
+std::optional<Units> units(const Teuchos::ParameterList& deck) try {
+  const Teuchos::ParameterList* given = sublist(&deck, "Units");
+  if (!given) return {};
+  UnitOptions options;
+  Document(std::make_shared<Teuchos::ParameterList>(*given)).declare(options);
+  return Units(options);
+} catch (const UserError&) {
+  return {};
+}
+
+/// Returns the time of an entry in the deck's unit of time, or nothing if the entry is no time.
+std::optional<double> time_of(const Teuchos::ParameterEntry& entry, const std::optional<Units>& units) try {
+  const auto text = units ? as_text(entry) : std::nullopt;
+  return text ? units->number(*text, "time") : as_number(entry);
+} catch (const std::invalid_argument&) {
+  return {};
+}
+
 /// The merged deck, and for each expectation the keys that were changed by files or settings after it was declared.
 struct Layers {
   std::shared_ptr<Teuchos::ParameterList> merged = std::make_shared<Teuchos::ParameterList>(root_name);
@@ -61,17 +83,19 @@ struct Layers {
 
   /// Returns whether the expectation is for a time `at` that is not later than Time/final time. A change of the final time does not affect such an
   /// expectation.
-  bool before_end(const Teuchos::ParameterList& expectation) const {
+  bool before_end(const Teuchos::ParameterList& expectation, const std::optional<Units>& units) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;
-    return at && end && as_number(*at) <= as_number(*end);
+    const auto from = at ? time_of(*at, units) : std::nullopt, to = end ? time_of(*end, units) : std::nullopt;
+    return from && to && *from <= *to;
   }
 
   void excuse(const std::string& all) {
+    const std::optional<Units> own = changed.empty() ? std::nullopt : units(*merged);
     for (auto& [name, keys] : changed) {
       if (!sublist(sublist(merged.get(), "Expect"), name)) continue;
       Teuchos::ParameterList& expectation = merged->sublist("Expect").sublist(name);
-      if (before_end(expectation)) std::erase(keys, "Time/final time");
+      if (before_end(expectation, own)) std::erase(keys, "Time/final time");
       std::ranges::sort(keys);
       keys.erase(std::ranges::unique(keys).begin(), keys.end());
       if (!all.empty())

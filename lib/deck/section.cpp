@@ -81,7 +81,8 @@ Value checked(const std::string& path, const Teuchos::ParameterEntry& entry, con
     numbers = as_numbers(entry).value_or(numbers);
   }
   bool good = !numbers.empty();
-  if constexpr (!is_single<Value> && !is_row<Value>) good = numbers.size() == Value::SizeAtCompileTime;
+  if constexpr (is_single<Value>) good = good && (as_number(entry) || as_text(entry));
+  else if constexpr (!is_row<Value>) good = numbers.size() == Value::SizeAtCompileTime;
   for (const double x : numbers)
     good = good && std::isfinite(x) && rule.holds(x) && (!is_whole<Value> || (x == std::floor(x) && std::abs(x) <= std::numeric_limits<int>::max()));
   if (!good) refuse(path, with_rule(kind<Value>() + (is_single<Value> ? "" : " in brackets"), rule, !is_single<Value>), unit, description(entry));

@@ -56,9 +56,7 @@ std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const 
 }
 
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
-  std::string text = text_of_file(file, "The deck " + shortened(file, 80), 1'000'000);
-  const std::string byte_order_mark = "\xEF\xBB\xBF";  // some editors write this mark at the beginning of UTF-8 files
-  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  const std::string text = text_of_file(file, "The deck " + shortened(file, 80), 1'000'000);
   return file.ends_with(".xml") ? xml_list(text, file) : yaml_list(text, file);
 }
 

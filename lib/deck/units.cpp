@@ -32,7 +32,7 @@ double ratio(const Unit& a, const Unit& b) {
   return cv_convert_double(converter.get(), 1);
 }
 
-/// Returns the text `kind` (`force/length`) with each word replaced by its unit, one word after the other.
+/// Returns the text `kind` (`force/length`) with each word replaced by its unit, one word after the other. A unit must not contain a later word.
 std::string replaced(std::string_view kind, const std::vector<std::pair<std::string_view, std::string>>& words) {
   std::string text(kind);
   for (const auto& [word, by] : words)
@@ -68,8 +68,8 @@ Units::Units(const UnitOptions& options) : options_(options) {
 
 std::string Units::scaled(std::string_view kind) const {
   return replaced(kind, {{" x ", " "}, {"Flow/gravity", "length/time^2"}, {"viscosity", "stress time"}, {"stress", "force/length^2"},
-                         {"pressure", "force/length^2"}, {"length", "(" + options_.length + ")"}, {"time", "(" + options_.time + ")"},
-                         {"force", "(" + options_.force + ")"}});
+                         {"pressure", "force/length^2"}, {"time", "(" + options_.time + ")"}, {"length", "(" + options_.length + ")"},
+                         {"force", "(" + options_.force + ")"}});  // a unit of length may contain "time": centimeter
 }
 
 double Units::number(const std::string& text, std::string_view kind) const {

@@ -169,7 +169,7 @@ struct MaxwellSpring {
     const Number zero = 0.0 * i2, square = i2 + 1.0, j = sqrt(square), inverse = 1.0 / j;
     const double g = shear_modulus, k = dilatation_modulus;
     return {zero + 0.5 * g, (-0.5 * g) * inverse + (0.25 * k) * (3.0 * j - 4.0 + inverse), zero, zero,
-            (0.5 * g + 0.25 * k * (3.0 * square - 1.0)) * (inverse * inverse * inverse)};
+            (0.25 * g + 0.125 * k * (3.0 * square - 1.0)) * (inverse * inverse * inverse)};
   }
   double modulus() const { return shear_modulus; }
   double area_modulus() const { return dilatation_modulus; }

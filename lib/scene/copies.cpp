@@ -208,16 +208,30 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   return copies;
 }
 
-int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell) {
-  if (how.number) return *how.number;
-  const double room = how.box ? how.box->prod() : how.ball ? 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3) : cell->volume();
-  return std::max(1, static_cast<int>(std::lround(*how.volume_fraction * room / of_one)));
+/// Returns the number of copies on the lattice or at random positions. Throws UserError if it is too large. `of_one`: volume of a particle.
+int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell, const std::string& list) {
+  constexpr double most = 1e6;
+  double number = 0;
+  if (how.lattice) {
+    number = how.lattice->prod();
+  } else if (how.number) {
+    number = *how.number;
+  } else {
+    const double room = how.box ? how.box->prod() : how.ball ? 4 * std::numbers::pi / 3 * std::pow(*how.ball, 3) : cell->volume();
+    number = std::max(1.0, std::round(*how.volume_fraction * room / of_one));
+  }
+  if (number > most)
+    throw UserError(list + formatted(" may ask for at most %.0f copies, because more surfaces do not fit into memory, but asks for %.0f.", most,
+                                     number));
+  return static_cast<int>(number);
 }
 
-/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards.
+/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards. Skips the random numbers of the spheres
+/// in `taken` that were drawn in the cell before, because these kinds of particles may have the same seed.
 std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
                           std::vector<PackedSphere>& taken) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
+  random.discard(3 * static_cast<unsigned long long>(std::ranges::count(taken, false, &PackedSphere::fixed)));
   for (int k = 0; k < number; ++k) {
     Vec3 place;
     for (int c = 0; c < 3; ++c) place[c] = uniform(random) - 0.5;
@@ -226,18 +240,24 @@ std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, c
   return std::vector<Copy>(static_cast<std::size_t>(number));
 }
 
+/// Returns the copies of a kind of particle and adds their circumscribed spheres to `taken`. Throws UserError if the size of the particle is unknown.
 std::vector<Copy> places(const ParticleKind& kind, const std::optional<stokes::PeriodicCell>& cell, std::vector<PackedSphere>& taken) {
   const CopiesOptions& how = kind.copies;
   const surface::ParticleShape& shape = kind.particle.shape;
   const std::string list = "Particles/" + kind.name + "/copies";
+  try {
+    if (!shape.sized()) shape.check();
+  } catch (const UserError& error) {
+    throw UserError("Particles/" + kind.name + ": " + error.what());
+  }
   const double radius = shape.circumscribed_radius();
   if (!how.present) {
     taken.push_back({shape.center, radius, 0, true});
     return {};
   }
   how.check(list, cell && cell->n() == 3);
+  const int number = how.file ? 0 : count(how, 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3), cell, list);
   if (how.random()) {
-    const int number = count(how, 4 * std::numbers::pi / 3 * std::pow(shape.equivalent_radius(), 3), cell);
     if (how.in_cell()) return in_cell(how, number, radius, shape.center, *cell, taken);
     return at_random(how, number, radius, shape.center, taken, list);
   }
@@ -327,10 +347,14 @@ std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, co
     for (std::size_t k = 0; k < copies.size(); ++k) {
       ParticleKind& one = all.emplace_back(kind);
       one.name += formatted(" %zu", k + 1);
+      if (std::ranges::any_of(kinds, [&](const ParticleKind& other) { return !other.copies.present && other.name == one.name; }))
+        throw UserError(formatted("Particles/%s has the name of copy %zu of Particles/%s, but results are stored by name: rename one of them.",
+                                  one.name.c_str(), k + 1, kind.name.c_str()));
       one.copies = {};
       surface::ParticleShape& shape = one.particle.shape;
       shape.center += copies[k].centre;
-      const Eigen::AngleAxisd turned(rotation(copies[k].orientation) * rotation(shape.orientation));
+      const Eigen::AngleAxisd turn = rotation(copies[k].orientation), turned(turn * rotation(shape.orientation));
+      if (shape.initial) shape.initial->turn = turn.toRotationMatrix(), shape.initial->shift = shape.center - turn * kind.particle.shape.center;
       shape.orientation = turned.angle() * 180 / std::numbers::pi * turned.axis();
     }
   }

@@ -64,7 +64,7 @@ struct CopiesOptions {
 
 /// Returns the kinds with every copy as a kind of its own, named `<name> 1`, `<name> 2`, …. Copies at random in a box or ball keep clear of the
 /// circumscribed spheres of all particles placed before them. Copies at random in the cell are packed together and keep clear of all particles.
-/// Throws UserError if a file does not hold positions, or if the copies do not fit.
+/// Throws UserError if a file does not hold positions, if the copies do not fit, or if a copy has the name of another particle.
 std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain);
 
 }  // namespace tanktread

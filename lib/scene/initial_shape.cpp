@@ -104,6 +104,7 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
     throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
   if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode);
+  x = (x * initial.turn.transpose()).rowwise() + initial.shift.transpose();
   const surface::Measures measures = surface::measures(body.space, x);
   const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);
   return image(x, measures.centroid, scale * Mat3::Identity());

@@ -89,7 +89,9 @@ void ParticleKind::declare(deck::Section& section) {
   section.mention("like");
   copies.present = section.given("copies");
   if (copies.present || section.documenting())
-    section.section("copies", copies, "copies of the particle: at positions from a file, on a lattice, or at random without overlap");
+    section.section("copies", copies,
+                    "copies of the particle: at positions from a file, on a lattice, or at random without overlap. An initial shape from a file "
+                    "or run is moved and turned with each copy");
   else
     section.mention("copies");
   if (section.documenting()) return;

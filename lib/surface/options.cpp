@@ -204,7 +204,7 @@ bool ParticleShape::sized() const {
 }
 
 double ParticleShape::circumscribed_radius() const {
-  if (imported) return (imported->net.rowwise() - imported->net.colwise().mean()).rowwise().norm().maxCoeff();
+  if (imported) return (imported->net.rowwise() - measures(imported->space, imported->net).centroid.transpose()).rowwise().norm().maxCoeff();
   return radius ? *radius : semi_axes.value().maxCoeff();
 }
 

@@ -53,6 +53,9 @@ struct InitialShape {
   double mode_amplitude = 0.01;     ///< largest displacement by the added mode, divided by the particle radius R_C
   /// volume that the particle starts with and keeps: `resting` (of the resting shape) or `own` (of the initial shape)
   std::string volume = "resting";
+  /// Rigid motion x -> turn x + shift of a shape from `file` or `run`, for copies of a particle; the identity for other particles
+  Mat3 turn = Mat3::Identity();
+  Vec3 shift = Vec3::Zero();
 
   void declare(deck::Section& section);
 

@@ -21,7 +21,10 @@ class File {
  public:
   File(const std::string& list, const std::string& path) : name_(list + "/outline \"" + deck::shortened(path, 80) + "\"") {
     for (const CsvRow& row : csv_rows(text_of_file(path, name_, 10'000'000), "x2")) rows_.push_back(point(row));
-    if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) rows_.pop_back();
+    if (rows_.size() > 1 && (rows_.front().x - rows_.back().x).norm() <= same_point * longest_step()) {
+      rows_.front().corner |= rows_.back().corner;
+      rows_.pop_back();
+    }
     check();
   }
 

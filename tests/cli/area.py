@@ -32,6 +32,15 @@ def two_processes_do_what_one_does():
     check(abs(one - two).max() < 1e-9, f"D differs by {abs(one - two).max()}")
 
 
+def area_points_without_area_elasticity_change_nothing():
+    words = ["--set", "Membrane/area dilatation=0", "--set", "Surface/elements per side=3", "--set", "Time/fixed step=0.02",
+             "--set", "Time/final time=0.04", "--set", "Output/interval=0.04", "--set", "Solvers/tolerance=1e-12", "--quiet"]
+    for points in 0, 1:
+        run(deck(DECK), *words, "--set", f"Membrane/area points={points}", "--output", f"points_{points}")
+    zero, one = (series(f"points_{points}", "taylor_inertia") for points in (0, 1))
+    check(abs(zero - one).max() < 1e-9, f"D differs by {abs(zero - one).max()}")
+
+
 WHOLE = """
 Tanktread:
   Flow: {type: simple shear}

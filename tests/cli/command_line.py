@@ -113,6 +113,13 @@ def an_expectation_binds_what_it_was_stated_for():
     run("--resume", "out", "--quiet", "--set", "Time/final time=0.06")  # it does not bind a run that goes on either
 
 
+def an_expectation_compares_times_with_units():
+    text = SMALL + "  Units: {}\n  Expect: {volume: {value: 5, tolerance: 1, at: %s}}\n"
+    for at, end, binds in (("20 ms", "0.01 s", False), ("20 ms", "0.03 s", True), ("0.02", "30 ms", True), ("20 ms", "0.03", True)):
+        said = run(deck(text % at), "--check", "--set", f"Time/final time={end}").stdout
+        check(("not binding: \"\"" in said) == binds, at, end, said)
+
+
 def an_expectation_that_the_run_does_not_reach_is_missed_and_said_to_be_before():
     late = ["--set", "Expect/volume/value=4.18879", "--set", "Expect/volume/tolerance=1", "--set", "Expect/volume/at=9", "--output", "late", "--quiet"]
     lines = run(deck(SMALL), *late, code=1).stderr.splitlines()

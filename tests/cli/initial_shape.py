@@ -22,6 +22,19 @@ Tanktread:
   Surface: { elements per side: 4, extraordinary points: catmull-clark }
   Time: { scheme: bs3, final time: 0.05 }
 """
+COPIES = """
+Tanktread:
+  Flow: { type: quiescent }
+  Particles:
+    many:
+      center: [0.5, 0, 0]
+      initial shape: { %s }
+      copies: { file: positions.csv }
+      Membrane: { law: Skalak, shear modulus: 1 }
+      Surface: { elements per side: 4, extraordinary points: catmull-clark }
+  Quadrature: { tolerance: 1.0e-3 }
+  Time: { scheme: bs3, fixed step: 0.001, final time: 0.001 }
+"""
 ADAPTS = "  Adaptation: { enabled: true, interval: 1, surface tolerance: 1.0e-4 }\n"
 
 
@@ -44,6 +57,17 @@ def a_run_starts_from_the_end_of_another_and_goes_on_without_it():
     shutil.rmtree("first")
     run("--resume", "then", "--quiet", "--set", "Time/final time=0.05")
     close(series("then", "time")[-1], 0.05, 0, "time")
+
+
+def copies_move_and_turn_a_shape_from_a_file_or_run():
+    run(deck(FIRST % ("0.05", "false")), "--output", "first", "--quiet", "--set", "Particle/center=[0.5, 0, 0]", "--set", "Particle/drift=held")
+    deck("0, 0, 0\n4, 1, 0, 0, 0, 90\n", "positions.csv")
+    for shape in "run: first", "file: first/surface.iga":
+        run(deck(COPIES % shape), "--output", "then", "--quiet", "--overwrite")
+        for copy, centre, axes in (1, (0.5, 0, 0), "123"), (2, (4.5, 1, 0), "213"):
+            for k in range(3):
+                close(series("then", f"many {copy}/centroid_x{k + 1}")[0], centre[k], 1e-6, "centroid")
+                close(series("then", f"many {copy}/length_x{k + 1}")[0], series("first", f"length_x{axes[k]}")[-1], 1e-9, "length")
 
 
 def a_volume_of_its_own_is_kept_and_found_again():

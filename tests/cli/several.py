@@ -309,10 +309,10 @@ Tanktread:
 """
 
 
-def _centres(results):
+def _centres(results, kind="many "):
     """Where the copies start."""
     found = _all(results)
-    names = sorted({name.split("/")[0] for name in found if name.startswith("many ")}, key=lambda name: int(name.split()[1]))
+    names = sorted({name.split("/")[0] for name in found if name.startswith(kind)}, key=lambda name: int(name.split()[1]))
     return numpy.array([[found[f"{name}/centroid_x{k}"][0] for k in (1, 2, 3)] for name in names])
 
 
@@ -356,11 +356,31 @@ def copies_fill_a_cell_across_its_faces():
     check((numpy.abs(x) > numpy.array([1, 1.25, 1.5])).any(), "none crosses a face")
 
 
+def kinds_of_equal_seed_are_at_other_positions_of_a_cell():
+    """Copies with the same number in their kinds are not close: a cell of 40 has a mean distance of 19."""
+    run(deck("""
+Tanktread:
+  Flow: {type: quiescent}
+  Domain: {side lengths: [40.0, 40.0, 40.0]}
+  Particles:
+    defaults: {motion: prescribed, Surface: {elements per side: 3}, copies: {number: 4}}
+    many: {}
+    other: {}
+  Quadrature: {tolerance: 1.0e-2}
+  Time: {scheme: bs3, fixed step: 0.01, final time: 0.01}
+"""), "--output", "kinds", "--quiet")
+    apart = _centres("kinds", "many ") - _centres("kinds", "other ")
+    distance = numpy.linalg.norm(apart - 40 * numpy.round(apart / 40), axis=1)
+    check(distance.mean() > 8, distance)
+
+
 def mistakes_of_copies_are_named():
     deck("0, 0, 0\n1.5, 0\n", "short.csv")
     for how, words in (
         ("number: 500, box: [4.0, 4.0, 4.0]", ["Particles/many/copies", "no room", "of 500"]),
         ("number: 5", ["box", "ball", "Domain"]),
+        ("volume fraction: 0.1, box: [2504.0, 2504.0, 2504.0]", ["Particles/many/copies", "at most 1000000", "memory", "29985"]),
+        ("lattice: [1000, 1001, 1], spacing: [1.0, 1.0, 1.0]", ["Particles/many/copies", "at most 1000000", "1001000"]),
         ("lattice: [2, 2, 1]", ["Particles/many/copies/spacing"]),
         ("lattice: [2, 2, 1], spacing: [0.9, 2.0, 2.0]", ["overlap", "many 1", "many 3"]),
         ("file: none.csv", ["none.csv"]),
@@ -371,6 +391,8 @@ def mistakes_of_copies_are_named():
         deck(COPIES % how)
         error = run("deck.yaml", "--check", code=2).stderr.strip()
         check(error.count("\n") == 0 and all(word in error for word in words), how, error)
+    error = run(deck(COPIES.replace(" one:", " many 2:") % "lattice: [2, 1, 1], spacing: [2.0, 2.0, 2.0]"), "--check", code=2).stderr
+    check("Particles/many 2 has the name of copy 2 of Particles/many" in error, error)
 
 
 def mistakes_are_named():
@@ -380,6 +402,7 @@ def mistakes_are_named():
         ("Particles/small/center=[1.5, 0.0, -0.4]", ["Particles/small is inside of Particles/drop"]),
         ("Particles/small/like=drp", ["Particles/small/like", "drp"]),
         ("Particles/capsule/like=small", ["/like must be", "does not lead back"]),
+        ("Particles/capsule/shape=spheroid", ["Particles/capsule", "needs Particle/semi-axes"]),
         ("Particles/small/centre=[0, 0, 0]", ["Particles/small/centre", "Particles/small/center"]),
         ("Particles/small/motion=rigid", ["Particles/small/motion", "prescribed"]),
         ("Particles/ball/velocity=[1, 0, 0]", ["Particles/ball", "Particle/velocity", "prescribed"]),

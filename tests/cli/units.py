@@ -83,7 +83,7 @@ def values_with_units_give_the_same_as_their_numbers():
     plain = said.replace("%s", "").replace("100 1/s", "100").replace("35 mPa s", "0.035").replace("2.5 um", "2.5").replace("1 um", "1")
     plain = plain.replace("5 uN/m", "5").replace("2e-19 J", "0.2").replace("4 ms", "0.004").replace("2 ms", "0.002").replace("  Units: {}\n", "")
     run(deck(plain), "--output", "plain", "--quiet")
-    for name, choice, length in (("preset", "", 1), ("other", "length: 2.5 um, time: 10 ms, force: 1 nN", 2.5)):
+    for name, choice, length in (("preset", "", 1), ("other", "length: 2.5e-4 centimeter, time: 10 ms, force: 1 nN", 2.5)):
         run(deck(said % choice), "--output", name, "--quiet")
         check(abs(series(name, "taylor_inertia") - series("plain", "taylor_inertia")).max() < 1e-11, name)
         check(abs(length**3 * series(name, "volume") - series("plain", "volume")).max() < 1e-10, name)

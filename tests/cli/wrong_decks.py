@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 # A mistake in the deck or on the command line is one sentence, exit code 2, and leaves nothing behind.
+import math
 import os
 import pathlib
 import re
@@ -55,6 +56,7 @@ SETTINGS = [
     (['Flow/viscosity="1"'], ["Flow/viscosity", "a number", '"1"']),
     (["Flow/shear rate=fast"], ["Flow/shear rate", "a number", "1/time", "fast"]),
     (["Surface/elements per side=6.5"], ["Surface/elements per side", "whole number", "6.5"]),
+    (["Units/length=1 um", "Particle/radius=[2 um, 3 um]"], ["Particle/radius", "a number", "2 um"]),
     (["Particle/center=1"], ["Particle/center", "three numbers", "1"]),
     (["Particle/center=[0, 1]"], ["Particle/center", "three numbers", "[0, 1]"]),
     (["Flow/type=linear", "Flow/gradient=[1, 2, 3]"], ["Flow/gradient", "nine numbers", "[1, 2, 3]"]),
@@ -334,6 +336,9 @@ def decks_of_other_editors_and_roomy_settings_are_good():
         pathlib.Path("other.yaml").write_text(text, encoding="utf-8", newline="")
         result = run("other.yaml", "--set", " Time/final time = 0.02", "--check")
         check("final time: 0.02" in result.stdout, result.stdout)
+    outline = "x2, x3\n" + "".join(f"{2 * math.cos(k * math.pi / 6)}, {2 * math.sin(k * math.pi / 6)}\n" for k in range(12))
+    pathlib.Path("outline.csv").write_text("\ufeff" + outline, encoding="utf-8")
+    run(_tube("outline.csv"), "--check")
 
 
 def shipped_decks_are_good_and_so_is_what_they_effectively_say():

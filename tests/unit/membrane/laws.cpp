@@ -10,7 +10,7 @@ namespace tanktread::membrane {
 namespace {
 
 const Law neo_hookean = NeoHookean{1.3}, skalak = Skalak{1.3, 2.5}, mooney = MooneyRivlin{1.3, 0.4}, evans = EvansSkalak{1.3, 2.5},
-          interface = SurfaceTension{1.3};
+          interface = SurfaceTension{1.3}, spring = MaxwellSpring{1.3, 2.5};
 
 TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
   for (const Law& law : {neo_hookean, skalak, mooney, evans}) {
@@ -21,7 +21,7 @@ TEST(Laws, AnUnstretchedMembraneStoresNothingAndPullsNowhere) {
 }
 
 TEST(Laws, DerivativesAreThoseOfTheEnergy) {
-  for (const Law& law : {neo_hookean, skalak, mooney, evans, interface})
+  for (const Law& law : {neo_hookean, skalak, mooney, evans, interface, spring})
     EXPECT_LT(std::visit([](const auto& l) { return response_error(l, 0.7, 0.4); }, law), 1e-9);
 }
 

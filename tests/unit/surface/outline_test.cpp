@@ -225,6 +225,7 @@ TEST_F(OutlineFile, HasCornersWhereItMarksThem) {
   EXPECT_FALSE(drop.inside({-0.01, 0}));
   EXPECT_GT(drop.corner_angle(0), 0.5);
   EXPECT_LT(drop.corner_angle(0), pi);
+  EXPECT_FALSE(read("0,0\n1,-0.5\n1.5,0\n1,0.5\n0,0,corner\n").smooth()) << "the mark may stand where the first point is repeated";
 }
 
 TEST_F(OutlineFile, IsRefusedWithTheReason) {
