@@ -5,9 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/formatted.hpp"
-#include "base/small_matrices.hpp"
-#include "system/collocation.hpp"
 #include "system/solids/rigid_tractions.hpp"
 #include "system/symmetry.hpp"
 

@@ -46,21 +46,19 @@ class RigidTractions;
 /// If loads are measured per current area, the mass matrix M of the current surface replaces M0.
 ///
 /// Rigid bodies: the unknown in their rows is the double-layer density w of (2.23), see RigidParticles. Alternatively the unknown is the traction on
-/// them (RigidTractions). Their motion is not stiff, so that their rows of the Jacobian are set to zero.
+/// them (RigidTractions).
 ///
 /// Symmetry: if the scene is symmetric, only the rows of fundamental control points are evaluated and solved for. All other rows are mirror images of
 /// these rows.
 ///
-/// Lattice: the layers include all images (Layer::repeat), and the frozen operators omit them. Each particle is replaced by its image in the cell
-/// around the origin. The velocity of the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions.
-///
-/// Plane wall: the layers include the images in the wall (Layer::set_wall). The frozen operator NodalOperator omits them.
+/// Lattice and plane wall: the layers include all images (ParticleLayers). On a lattice each particle is replaced by its image in the cell around the
+/// origin. The velocity of the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions.
 ///
 /// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. It is linear in the load and, for lambda != 1, in v. Its
-/// parts are added to the right-hand side and to B, both here and in the Jacobian. Alternatively v, the wall traction and the pressure drop are
-/// solved for in one linear system (BlockSystem).
+/// parts are added to the right-hand side and to B. Alternatively v, the wall traction and the pressure drop are solved for in one linear system
+/// (BlockSystem).
 ///
-/// Plates and posts: the velocity (2.47) caused by them is added to the right-hand side and to B in the same way. The Jacobian omits it.
+/// Plates and posts: the velocity (2.47) caused by them is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
   /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is kept, unless the particle sets

@@ -16,7 +16,8 @@
 namespace tanktread::coupling {
 
 /// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation, with frozen layers (4.3). B denotes the operator of (4.2)
-/// with frozen layers. The rows of rigid bodies are 0, because their motion is not stiff. Plates and posts are omitted. Calls are collective.
+/// with frozen layers. J and B include the response of a tube, and omit plates and posts. The rows of rigid bodies in J are 0, because their motion
+/// is not stiff. Calls are collective.
 class CapsuleJacobian {
  public:
   /// Changes due to a displacement dx and to additional loads of virtual work `work`. `rate`: change of the velocity of the control points, or its

@@ -24,8 +24,7 @@ CapsuleParameters completed(CapsuleParameters parameters, const spline::Space& s
 std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, const CapsuleParameters& parameters, const Layout& layout,
                                                   const Targets& targets, const Membranes& membranes) {
   if (std::ranges::none_of(parameters.particles, &Particle::slides)) return {};
-  return std::make_unique<InterfaceMotion>(space, membranes.unstressed(), parameters.particles, parameters.quadrature, layout.points(),
-                                           layout.touching(), targets.collocation(), membranes.mass(), layout.ranks(), targets.projection());
+  return std::make_unique<InterfaceMotion>(space, membranes.unstressed(), parameters, layout, targets, membranes.mass());
 }
 
 }  // namespace

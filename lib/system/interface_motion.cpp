@@ -9,39 +9,36 @@
 #include "base/small_matrices.hpp"
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
-#include "system/collocation.hpp"
 
 namespace tanktread::coupling {
 
-InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles,
-                                 const quadrature::Options& quadrature, const std::vector<int>& own_points, const std::vector<int>& own_elements,
-                                 const membrane::SymmetricSolver& collocation, const membrane::SymmetricSolver& mass, const Ranks& ranks,
-                                 const VelocityProjection* projection)
+InterfaceMotion::InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const Layout& layout,
+                                 const Targets& targets, const membrane::SymmetricSolver& mass)
     : space_(space),
-      sites_(collocation_matrix(space)),
-      projection_(projection),
-      collocation_(collocation),
+      sites_(targets.at_sites()),
+      projection_(targets.projection()),
+      collocation_(targets.collocation()),
       mass_(mass),
-      ranks_(ranks),
+      ranks_(layout.ranks()),
       mesh_(space, initial, membrane::NeoHookean{1}),
       tangent_(mesh_) {
-  for (const Particle& particle : particles) {
+  for (const Particle& particle : parameters.particles) {
     if (!particle.slides()) continue;
     const spline::Block& block = particle.block;
     radius_ = std::min(radius_, particle.radius);
     drops_.push_back({block, particle.interface_motion == "relaxed", particle.interface_speed, {}, {}, {}});
     Drop& drop = drops_.back();
     const auto holds = [&](int e) { return e >= block.first_element && e < block.first_element + block.n_elements; };
-    std::ranges::copy_if(own_points, std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
+    std::ranges::copy_if(layout.points(), std::back_inserter(drop.points), [&](int i) { return block.holds(i); });
     if (projection_)
       for (int i = 0; i < static_cast<int>(projection_->sites().size()); ++i)
         if (holds(projection_->sites()[static_cast<size_t>(i)].front().element)) drop.places.push_back(i);
     if (!drop.relaxed) continue;
     relaxed_ = true;
-    std::ranges::copy_if(own_elements, std::back_inserter(own_elements_), holds);
+    std::ranges::copy_if(layout.touching(), std::back_inserter(own_elements_), holds);
     std::vector<int> targets;
     for (const int i : drop.points) targets.push_back(i - block.first_point);
-    stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, quadrature);
+    stokes::Layer layer(stokes::Layer::Kernel::single_layer, *particle.space, particle.space->collocation, parameters.quadrature);
     layer.place(block.rows(initial));
     layer.assemble(targets, drop.layer);
   }

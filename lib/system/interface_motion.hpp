@@ -9,13 +9,7 @@
 
 #include "base/types.hpp"
 #include "membrane/membrane.hpp"
-#include "membrane/symmetric_solver.hpp"
-#include "quadrature/options.hpp"
-#include "spline/space.hpp"
-#include "stokes/layer.hpp"
-#include "system/particle.hpp"
-#include "system/ranks.hpp"
-#include "system/velocity_projection.hpp"
+#include "system/particle_layers.hpp"
 
 namespace tanktread::coupling {
 
@@ -34,11 +28,10 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// capsule with Ca = mu rate R_C / (mu speed). On all other particles u = v.
 class InterfaceMotion {
  public:
-  /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. `projection`: least-squares projection of u; if
-  /// null, u is collocated.
-  InterfaceMotion(const spline::Space& space, const Net& initial, std::span<const Particle> particles, const quadrature::Options& quadrature,
-                  const std::vector<int>& own_points, const std::vector<int>& own_elements, const membrane::SymmetricSolver& collocation,
-                  const membrane::SymmetricSolver& mass, const Ranks& ranks, const VelocityProjection* projection = nullptr);
+  /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
+  /// object.
+  InterfaceMotion(const spline::Space& space, const Net& initial, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
+                  const membrane::SymmetricSolver& mass);
 
   /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.
   /// Collective.
@@ -78,8 +71,8 @@ class InterfaceMotion {
   bool relaxed_ = false;           // true if any drop relaxes
   double radius_ = std::numeric_limits<double>::infinity();  // R_C of the smallest drop
   std::vector<int> own_elements_;  // rank-owned elements of relaxing drops
-  Eigen::SparseMatrix<double> sites_;  // collocation matrix R
-  const VelocityProjection* projection_;
+  const Eigen::SparseMatrix<double>& sites_;  // collocation matrix R
+  const VelocityProjection* projection_;      // null if u is collocated
   const membrane::SymmetricSolver &collocation_, &mass_;
   const Ranks& ranks_;
   membrane::Membrane mesh_;

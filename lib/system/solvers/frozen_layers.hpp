@@ -11,7 +11,8 @@
 namespace tanktread::coupling {
 
 /// The single layer A and the double layer D of (4.2) at the collocation sites, assembled at one shape and used at later shapes with the rotations
-/// (4.29) of the particles. The option `frozen_operator` selects NodalOperator or FrozenOperator for A; D is a FrozenOperator. Calls are collective.
+/// (4.29) of the particles. The option `frozen_operator` selects NodalOperator or FrozenOperator for A; D is a FrozenOperator. Images
+/// on a lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
 class FrozenLayers {
  public:
   /// `layers`: the layers to be assembled, if their targets are the collocation sites; otherwise this object has its own layers. `mass`: mass matrix
