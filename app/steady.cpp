@@ -10,7 +10,6 @@
 
 #include "app/runs.hpp"
 #include "app/signals.hpp"
-#include "app/steady_system.hpp"
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
 #include "deck/document.hpp"
@@ -24,20 +23,12 @@
 #include "scene/particles/particle_system.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
+#include "scene/steady_system.hpp"
 #include "system/agreement.hpp"
 
 namespace tanktread {
 
 namespace {
-
-coupling::Work operator+(coupling::Work a, const coupling::Work& b) {
-  using Work = coupling::Work;
-  for (long Work::*count : {&Work::evaluations, &Work::assemblies, &Work::tangents, &Work::solves, &Work::solver_iterations,
-                            &Work::velocity_iterations, &Work::velocity_solves})
-    a.*count += b.*count;
-  a.most_velocity_iterations = std::max(a.most_velocity_iterations, b.most_velocity_iterations);
-  return a;
-}
 
 /// A run that computes shapes one after another and records the results of each.
 class SteadyRun {

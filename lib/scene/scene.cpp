@@ -286,26 +286,22 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// Returns true if rigid bodies are solved for by tractions (`first kind`). `auto` selects `first kind` for up to 4500 unknowns if there are two or
-/// more bodies that all adapt their meshes, or if a rigid body is the only particle in a duct. To resolve a film of a tenth of the radius, `first
-/// kind` needs a third of the control points of `second kind`; factorising up to 4500 unknowns is faster than iterating on the finer mesh. One body
-/// beside a drop of viscosity ratio 5 takes twice the time by tractions.
+/// Returns true if rigid bodies are solved for by tractions (`first kind`). `auto` selects `first kind` for up to 1500 control points if there are
+/// two or more bodies that all adapt their meshes, or if a rigid body is the only particle in a duct. To resolve a film of a tenth of the radius,
+/// `first kind` needs a third of the control points of `second kind`; factorising so few unknowns is faster than iterating on the finer mesh.
 bool Scene::by_tractions() const {
-  constexpr double most_unknowns = 4500;
+  constexpr double most_points = 1500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";
-  double unknowns = 0;
-  int bodies = 0;
-  const auto* single = static_cast<const ParticleKind*>(this);
-  const std::span<const ParticleKind> kinds = particles.empty() ? std::span(single, 1) : std::span<const ParticleKind>(particles);
+  const std::vector<ParticleKind> kinds = particles.empty() ? std::vector<ParticleKind>{*this} : particles;
   const bool alone = tube.present && kinds.size() == 1 && solvers.tube == "schur";
+  int bodies = 0;
+  double points = 0;
   for (const ParticleKind& kind : kinds) {
     if (!kind.particle.rigid()) continue;
     if (!kind.adaptation.enabled && !alone) return false;
-    const auto& file = kind.particle.shape.imported;
-    unknowns += 3 * static_cast<double>(file ? file->space.n_points : kind.surface.n_points());
-    ++bodies;
+    ++bodies, points += kind.particle.shape.imported ? kind.particle.shape.imported->space.n_points : kind.surface.n_points();
   }
-  return bodies > (alone ? 0 : 1) && unknowns <= most_unknowns;
+  return bodies > (alone ? 0 : 1) && points <= most_points;
 }
 
 void Scene::check() const {

@@ -27,6 +27,14 @@ struct Work {
   long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
 };
 
+inline Work operator+(Work a, const Work& b) {
+  for (long Work::*count : {&Work::evaluations, &Work::assemblies, &Work::tangents, &Work::solves, &Work::solver_iterations,
+                            &Work::velocity_iterations, &Work::velocity_solves})
+    a.*count += b.*count;
+  a.most_velocity_iterations = std::max(a.most_velocity_iterations, b.most_velocity_iterations);
+  return a;
+}
+
 /// Particles, medium and solver options of a Capsule.
 struct CapsuleParameters {
   double viscosity = 1;                                          ///< mu of the outer fluid

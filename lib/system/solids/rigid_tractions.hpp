@@ -88,8 +88,8 @@ class RigidTractions {
   Net density(const Net& velocities);
 
   /// Returns the collocation-error correction of the pressure drop (2.7) for a force density f on freely moving bodies at the net x, with the control
-  /// values v of the bodies' velocity. `flow` must be a duct flow. If `by_work` is false, forces or torques act on the bodies, and only the interpolation
-  /// error of v_inf is corrected. All particles must be bodies. Collective.
+  /// values v of the bodies' velocity. `flow` must be a duct flow. If `by_work` is false, forces or torques act on the bodies, and only the
+  /// interpolation error of v_inf is corrected. All particles must be bodies. Collective.
   double lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
 
   /// Returns the integrals of the force density f over body p, without collocation-error corrections. The motion is not set.
