@@ -4,14 +4,23 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """Returns values(t) at the times `at` within t, by polynomials through `order` points."""
-    result = []
+    """Returns values(t) at the times `at` within t, by polynomials through `order` points. Rows at the time of the row
+    before, where a mesh has changed, are left out."""
+    result, kept = [], numpy.diff(t, prepend=-numpy.inf) > 0
+    t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     for time in at:
         start = min(max(int(numpy.searchsorted(t, time)) - order // 2, 0), max(len(t) - order, 0))
         nodes = t[start:start + order]
         weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
         result.append(float(numpy.dot(weights, values[start:start + order])))
     return numpy.array(result)
+
+
+def mean(t, values):
+    """Returns the average of values(t) over the times t by the trapezoidal rule; the value if there is one time."""
+    if t[-1] == t[0]:
+        return float(values[-1])
+    return float(numpy.sum(numpy.diff(t) * (values[1:] + values[:-1]) / 2) / (t[-1] - t[0]))
 
 
 def difference(t, values, curve_t, curve_values):

@@ -60,6 +60,9 @@ def answer(main):
         sys.exit(main())
     except Mistake as mistake:
         _fail(str(mistake))
+    except ModuleNotFoundError as error:
+        _fail(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
+              "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
     except OSError as error:  # a file that cannot be written
         _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except KeyboardInterrupt:

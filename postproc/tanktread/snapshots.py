@@ -7,6 +7,7 @@ import numpy
 
 from . import exports, lagrange
 from .files import opened, text_of_hdf
+from .mistakes import expect
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
@@ -62,6 +63,7 @@ class Snapshot:
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
+        expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
         number = self.particles.index(particle) + 1  # from 1 in the order of the deck
         return numpy.flatnonzero([self.fields["particle"][cell[0]] == number for cell in self.cells])
 

@@ -22,7 +22,8 @@ import shutil
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
 from package import SIDE, answer, expect, numpy, studies, table, tanktread
-from tanktread.figures.accuracy import average, largest
+from tanktread.figures.accuracy import largest
+from tanktread.interpolation import mean
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
 D, ENERGY, STRESS = "taylor_inertia", "energy", "stresslet_13"
@@ -186,7 +187,7 @@ class Scene:
             times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
         if request["of"] == "run":
             return times, series
-        return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else average(times, series)])
+        return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times, series)])
 
     def cheapest(self, request, reference):
         """Returns the processor seconds of the cheapest single run that meets the request; NaN if there is none."""

@@ -13,7 +13,7 @@ unstable wave, so the shortest that elements carry grows fastest, about two elem
 import argparse
 import pathlib
 
-from package import SHEAR, SIDE, answer, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, expect, interpolation, numpy, plt, studies, style
 import waves
 
 QUIET = 1e-3  # share of the load's power in waves below which there are none
@@ -30,7 +30,7 @@ def measured(study, n, modulus, parsed):
     found[0].power = sum(each.power / each.power.sum() for each in found) / len(found)
     t, d = one.series["time"], one.series["taylor_inertia"]
     t, d = t[t >= parsed.time - 2], d[t >= parsed.time - 2]
-    return one, found[0], numpy.trapz(d, t) / (t[-1] - t[0]), numpy.ptp(d)
+    return one, found[0], interpolation.mean(t, d), numpy.ptp(d)
 
 
 def element_size(n):
@@ -60,6 +60,7 @@ def draw_row(study, axes, modulus, parsed):
         if waved:
             lengths.append((1 / size, length))
             left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
+    expect(rows, f"no run with the modulus {modulus:g} came to its end")
     left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
              ylabel="power of the load", ylim=(1e-9, 2))
     middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][7], 1.1 * rows[-1][7]))

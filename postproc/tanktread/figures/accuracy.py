@@ -5,7 +5,7 @@ import tempfile
 
 import numpy
 
-from ..interpolation import difference
+from ..interpolation import difference, mean
 from ..mistakes import expect, log
 from ..results import Run
 from ..runs import Study, settings_of
@@ -22,6 +22,7 @@ class Levels:
     def __init__(self, run):
         found = (run.summary or {}).get("accuracy")
         expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
+        expect(found.get("levels"), f"{run.directory} has no finished level")
         self.requests = found["requests"]
         self.settings = [settings_of(one["settings"]) for one in found["levels"]]
         self.seconds = numpy.array([one["seconds"] for one in found["levels"]])
@@ -32,7 +33,7 @@ class Levels:
         series = run.series[request["series"]]
         if request["of"] == "run":
             return run.series["time"], series
-        value = series[-1] if request["of"] == "end" else average(run.series["time"], series)
+        value = series[-1] if request["of"] == "end" else mean(run.series["time"], series)
         return numpy.zeros(1), numpy.array([value])
 
     def errors(self, request):
@@ -56,13 +57,6 @@ class Levels:
                 expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
                 found[part] = largest(self.values(outcome.run, request), base)
         return found
-
-
-def average(times, values):
-    """Returns the time average of a series, by the trapezoidal rule."""
-    if len(times) == 1:
-        return values[0]
-    return numpy.sum(numpy.diff(times) * (values[1:] + values[:-1]) / 2) / (times[-1] - times[0])
 
 
 def largest(one, other):

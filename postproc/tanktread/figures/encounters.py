@@ -87,6 +87,7 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 def wall(run):
     """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
     x1 is the normal."""
+    expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
     along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]

@@ -15,12 +15,15 @@ from .register import figure
 from .style import plt
 
 SAMPLES = 400  # along the way
+
+
 class Errors:
     """Of one run: `times` and `errors` of the series within the curve, its largest error, its mesh and what it cost."""
 
     def __init__(self, run, curve, series):
         t = run.time
         inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
+        expect(inside.any(), f"{run.directory} has no row within the times of the curve")
         self.run, self.times = run, t[inside]
         self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
                                    for time, value in zip(t[inside], run.series[series][inside])])
@@ -30,7 +33,7 @@ class Errors:
 
     @property
     def family(self):
-        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance'):g}"
+        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance')}"
 
 
 @figure

@@ -35,14 +35,14 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, radius: float =
     shear_modulus: in uN/m
     law: other laws of the membrane to draw beside the deck's"""
     figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
-    for name, color in zip([None, *(law or [])], style.RUNS):
+    for name, color in zip([None, *(law or [])], style.RUNS * (1 + len(law or []))):
         runs = [pulled(deck, row[0] / (radius * shear_modulus), {"Membrane/law": name} if name else {})
                 for row in STRETCHED]
         sizes = radius * numpy.array([[run.series["length_x2"][-1], run.series["length_x1"][-1]] for run in runs])
         for (pn, across, along, bounds), (found_across, found_along) in zip(STRETCHED, sizes):
             inside = bounds is None or bounds[0] <= found_along <= bounds[1]
             within = "" if bounds is None else ", within its bar" if inside else ", OUTSIDE its bar"
-            log.info(f"{name or ''}{pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
+            log.info(f"{name or ''} {pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
                      f"across {found_across:.2f} um (measured {across})")
         forces = [row[0] for row in STRETCHED]
         plot.plot(forces, sizes[:, 1], color=color, label=f"{name or runs[0].value('Membrane/law')}, along")
@@ -95,7 +95,7 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
     elements: elements per side"""
     figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
     rates = numpy.array([row[0] for row in TURNING])
-    for value, color in zip(sorted(viscosity), style.RUNS):
+    for value, color in zip(sorted(viscosity), style.RUNS * len(viscosity)):
         found = numpy.array([last_turn(deck, rate, value, elements) for rate in rates])
         label = f"{value:g} µN s/m"
         plot.plot(rates, found[:, 0] / rates, "o-", markersize=3, color=color, label=label)

@@ -135,6 +135,8 @@ def command():
     parsed = vars(parser_of(name).parse_args(words[1:]))
     given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
     settings = settings_of(parsed.pop("set", []))
+    for option, value in parsed.items():
+        expect(type(value) is not int or value > 0 or option == "from_", f"--{option} must be above 0, but is {value}")
     if settings:
         given = [run_of(one, settings) for one in given] if isinstance(given, list) else run_of(given, settings)
     save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)

@@ -74,7 +74,8 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     upper.set_ylabel("effective viscosity μ_eff/μ")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set(ylabel="normal stress differences", xlabel="strain")
+    stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
+    lower.set(ylabel="normal stress differences" + stress, xlabel="strain")
     lower.legend()
     return figure
 
@@ -82,6 +83,7 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 def average(strain, values, first, blocks):
     """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
     blocks."""
+    expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
     integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(strain) * (values[1:] + values[:-1]) / 2)])
@@ -115,6 +117,7 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     for outcome, settings in zip(runs.outcomes, runs.rows):
         if row := averages(outcome, from_, blocks):
             rows.setdefault(settings[CA], []).append(row)
+    expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
     for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
         alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))

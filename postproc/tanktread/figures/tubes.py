@@ -6,6 +6,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
 from ..files import arrays_of
+from ..mistakes import expect
 from . import style
 from .draw import VIEW, draw_surface, section, share_window
 from .register import figure
@@ -128,6 +129,7 @@ def shots_of(run, times):
     """Returns the saved steps nearest to the times, each once."""
     found = {shot.path: shot for shot in (run.snapshot_at(time) for time in times
                                           if time <= run.series["time"][-1] * (1 + 1e-9))}
+    expect(found, f"{run.directory} ends before the first of these times")
     return list(found.values())
 
 
@@ -186,7 +188,7 @@ def tube_motion(runs, axes=None):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
     ducts = [duct_of(run) for run in runs]
     figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
-    for run, d, colour in zip(runs, ducts, style.RUNS):
+    for run, d, colour in zip(runs, ducts, style.RUNS * len(runs)):
         speed, radius = d["mean_velocity"], d["radius"]
         s = run.series
         time = run.time

@@ -88,6 +88,7 @@ def main():
     parsed = parser.parse_args()
     low, high = parsed.between
     expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
+    expect(parsed.within > 0, f"--within must be above 0, but is {parsed.within:g}")
     search = Search(parsed)
     found, how = common.edge(search.stays, low, high, 1 + parsed.within)
     expect(how == "edge",
