@@ -1,5 +1,6 @@
 """Errors that are reported in one sentence, and the frame that all commands of the package share."""
 
+import argparse
 import importlib
 import logging
 import pathlib
@@ -35,6 +36,11 @@ def progress(text):
         print(f"\r\x1b[K{text}", end="", file=sys.stderr, flush=True)
     elif text:
         print(text, file=sys.stderr, flush=True)
+
+
+def command_line(doc):
+    """Returns the parser of the command line of a script whose docstring is `doc`."""
+    return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
 class _Lines(logging.Handler):

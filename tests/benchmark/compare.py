@@ -19,7 +19,6 @@ in DIR, separately for each role and each content of the program, and are found 
 half as many at a time.
 """
 
-import argparse
 import concurrent.futures
 import fnmatch
 import hashlib
@@ -30,7 +29,7 @@ import shutil
 import sys
 import time
 
-from package import INPUTS, SIDE, numpy, table, tanktread, yaml
+from package import INPUTS, SIDE, command_line, numpy, table, tanktread, yaml
 from power_balance import ENDS
 
 # Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their
@@ -250,7 +249,7 @@ def pairs_of(arguments, decks):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("programs", nargs=2, metavar="PROGRAM", help="the old and the new program")
     parser.add_argument("--decks", nargs="+", metavar="NAME", help="names of decks (default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")

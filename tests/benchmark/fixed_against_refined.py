@@ -6,14 +6,12 @@ Figures 17 and 18).
     tests/benchmark/fixed_against_refined.py results/refined results/fixed  # runs of yours
 """
 
-import argparse
-
-from package import SIDE, answer, draw, numpy, plt, style, tanktread
+from package import SIDE, answer, command_line, draw, numpy, plt, style, tanktread
 from matplotlib.collections import LineCollection
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("runs", nargs="*", help="directories of results: a refined run, and those compared with it")
     parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE",
                         help="the picture (default: %(default)s)")

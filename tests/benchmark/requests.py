@@ -13,7 +13,6 @@ than the finest level. A ladder that stops at its limit and says so is neither m
 of accuracy.py. The cost is the number of processor seconds.
 """
 
-import argparse
 import collections
 import json
 import pathlib
@@ -21,7 +20,7 @@ import shutil
 
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
-from package import SIDE, answer, expect, numpy, studies, table, tanktread
+from package import SIDE, answer, command_line, expect, numpy, studies, table, tanktread
 from tanktread.figures.accuracy import largest
 from tanktread.interpolation import mean
 
@@ -81,7 +80,7 @@ COLUMNS = ["scene", "request", "level", "allowed", "true error", "estimate", "es
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--scene", nargs="+", default=[*SHIPPED, *OWN], choices=[*SHIPPED, *OWN], metavar="NAME",
                         help=f"of {', '.join([*SHIPPED, *OWN])} (default: all)")
     parser.add_argument("--search", action="store_true", help="also search the cheapest single run")

@@ -25,7 +25,7 @@ import tempfile
 
 import yaml
 
-from package import answer, table, tanktread
+from package import answer, command_line, table, tanktread
 
 
 def summaries(program, deck, settings, ranks, copies):
@@ -60,7 +60,7 @@ def difference(one, many, name="taylor_inertia"):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / "inputs/shear_neo_hookean.yaml")
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")

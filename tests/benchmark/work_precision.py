@@ -11,12 +11,11 @@ and in processor seconds of this machine, all ranks together. Each point is a ru
 whose runs are numbered and told beside it by what differs from the default, the ring.
 """
 
-import argparse
 import itertools
 import math
 import pathlib
 
-from package import answer, expect, interpolation, numpy, plt, studies, style
+from package import answer, command_line, expect, interpolation, numpy, plt, studies, style
 from tanktread.files import parsed as read
 from tanktread.files import table
 
@@ -171,7 +170,7 @@ def report(scene, points):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", help="the study: a file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2),
                         help="choices that may differ from the default at a time (default: 2)")

@@ -10,10 +10,9 @@ waves are degrees of 9 and more, which the flow does not force. Membranes withou
 unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
 """
 
-import argparse
 import pathlib
 
-from package import SHEAR, SIDE, answer, expect, interpolation, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style
 import waves
 
 QUIET = 1e-3  # share of the load's power in waves below which there are none
@@ -74,7 +73,7 @@ def draw_row(study, axes, modulus, parsed):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--meshes", nargs="+", type=int, default=[6, 9, 12], metavar="N",
                         help="elements along a side of the cube (default: 6 9 12)")
     parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.0005, 0.005],

@@ -11,12 +11,11 @@ from the deviations of the centroid from the parabola through its positions. A r
 twice the time, and once more; a run that still does neither ends the search with a message.
 """
 
-import argparse
 import pathlib
 
 import numpy
 
-from ..mistakes import Mistake, expect, log
+from ..mistakes import Mistake, command_line, expect, log
 from ..runs import deck_at, settings_of
 from . import common
 
@@ -73,7 +72,7 @@ class Search:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("deck", type=pathlib.Path, help="the deck of a particle in a channel")
     parser.add_argument("--key", default="Flow/mean velocity", help="the key (default: %(default)s)")
     parser.add_argument("--between", nargs=2, type=float, required=True, metavar=("LOW", "HIGH"),

@@ -34,13 +34,12 @@ large for the errors of the data, errors that the residuals give are printed too
 is the first suspect.
 """
 
-import argparse
 import os
 import pathlib
 
 import yaml
 
-from ..mistakes import expect, log, progress
+from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
@@ -106,7 +105,7 @@ def run(path, directory=None, jobs=None, laws=None):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("experiment", help="the experiment, a YAML file")
     parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
                         help="where results go (default: results/<experiment>)")

@@ -10,13 +10,12 @@ mean of the rays around it, so the errors of points are independent. Blur of var
 curvature to the inner side of the bend; points are moved back.
 """
 
-import argparse
 import pathlib
 
 import numpy
 
 from ..interpolation import mean
-from ..mistakes import Mistake, expect, log, optional
+from ..mistakes import Mistake, command_line, expect, log, optional
 
 scipy = optional("scipy", "tanktread-outline")
 optional("scipy.ndimage", "tanktread-outline", "scipy")
@@ -128,7 +127,7 @@ def averaged(angle, radius, points, each, row, column):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("picture", help="a PNG")
     parser.add_argument("-o", "--output", default="outline.csv", metavar="FILE",
                         help="the points (default: %(default)s)")

@@ -19,13 +19,12 @@ or if its largest value in the last third is beyond 0.005 and half as much again
 parachute. The particle starts as the deck states; where both motions are stable, a border is that of this start.
 """
 
-import argparse
 import collections
 import pathlib
 
 import numpy
 
-from ..mistakes import Mistake, expect, log
+from ..mistakes import Mistake, command_line, expect, log
 from . import common
 from .reading import decks_of, keys_of, number, values_of, yaml_of
 
@@ -221,7 +220,7 @@ class Diagram:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
     common.arguments(parser, pathlib.Path("results/phases"))
     parser.set_defaults(limit=None)

@@ -15,7 +15,6 @@ A run that was made is not made again, even if the study has changed. One that w
 fails has a row with its message.
 """
 
-import argparse
 import collections
 import csv
 import itertools
@@ -29,7 +28,7 @@ import numpy
 
 from ..files import opened
 from ..interpolation import mean
-from ..mistakes import expect, log, progress
+from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
 from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
 
@@ -253,7 +252,7 @@ def run(path, directory=None, jobs=None, fresh=False):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", help="the study, a YAML file")
     parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
                         help="of the table and, under runs/, of results (default: results/<study>)")
