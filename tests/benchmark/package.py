@@ -10,7 +10,7 @@ try:
     import tanktread
     import yaml
     from tanktread import interpolation
-    from tanktread.figures import draw, literature, style
+    from tanktread.figures import draw, style
     from tanktread.mistakes import answer, command_line, expect
     from tanktread.studies import common as studies
 except ModuleNotFoundError as error:
@@ -23,7 +23,7 @@ INPUTS = tanktread.SOURCE / "inputs"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]
 __all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "command_line", "draw", "expect",
-           "final", "interpolation", "line", "literature", "numpy", "plt", "studies", "style", "table", "tanktread", "ticks",
+           "final", "interpolation", "line", "numpy", "plt", "studies", "style", "table", "tanktread", "ticks",
            "worst", "yaml"]
 
 

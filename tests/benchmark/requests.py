@@ -21,8 +21,7 @@ import shutil
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
 from package import SIDE, answer, command_line, expect, numpy, studies, table, tanktread
-from tanktread.figures.accuracy import largest
-from tanktread.interpolation import mean
+from tanktread.figures.accuracy import largest, values
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
 D, ENERGY, STRESS = "taylor_inertia", "energy", "stresslet_13"
@@ -148,8 +147,8 @@ class Scene:
         return rows
 
     def row(self, request, level, code, cost, reference, search):
-        mine = self.values(tanktread.Run(self.directory / f"level_{level}"), request)
-        true, allowed, estimate = largest(mine, self.values(reference, request)), request["allowed"], request[
+        mine = values(tanktread.Run(self.directory / f"level_{level}"), request)
+        true, allowed, estimate = largest(mine, values(reference, request)), request["allowed"], request[
             "estimated error"]
         result = "not reached"
         if not request["met"] and code == 4:
@@ -177,27 +176,16 @@ class Scene:
         expect(finer, "the reference did not come to its end")
         return tanktread.Run(self.directory / f"level_{finer[0]}")
 
-    @staticmethod
-    def values(run, request):
-        """Returns the times and values of which the request limits the error."""
-        times, series = run.series["time"], run.series[request["series"]]
-        if "fold" in run.series:
-            chosen = numpy.flatnonzero((run.series["fold"] != 0) | (numpy.arange(len(series)) == len(series) - 1))
-            times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
-        if request["of"] == "run":
-            return times, series
-        return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times, series)])
-
     def cheapest(self, request, reference):
         """Returns the processor seconds of the cheapest single run that meets the request; NaN if there is none."""
-        best, exact = numpy.inf, self.values(reference, request)
+        best, exact = numpy.inf, values(reference, request)
         for time, quadrature in TOLERANCES:
             for side in SIDES:
                 outcome = self.study.run(self.deck, self.settings | {
                     SIDE: side, "Time/tolerance": time, "Quadrature/tolerance": quadrature})
                 if not outcome.done or outcome.processor_seconds > best:
                     break
-                if largest(self.values(outcome.run, request), exact) <= request["allowed"]:
+                if largest(values(outcome.run, request), exact) <= request["allowed"]:
                     best = outcome.processor_seconds
                     break
         return best if numpy.isfinite(best) else numpy.nan

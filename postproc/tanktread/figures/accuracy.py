@@ -28,24 +28,16 @@ class Levels:
         self.seconds = numpy.array([one["seconds"] for one in found["levels"]])
         self.runs = [Run(run.directory / f"level_{one['level']}") for one in found["levels"]]
 
-    def values(self, run, request):
-        """Returns times and values of which a request limits the error."""
-        series = run.series[request["series"]]
-        if request["of"] == "run":
-            return run.series["time"], series
-        value = series[-1] if request["of"] == "end" else mean(run.series["time"], series)
-        return numpy.zeros(1), numpy.array([value])
-
     def errors(self, request):
         """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
-        finest = self.values(self.runs[-1], request)
-        found = [largest(self.values(one, request), finest) for one in self.runs[:-1]]
+        finest = values(self.runs[-1], request)
+        found = [largest(values(one, request), finest) for one in self.runs[:-1]]
         return numpy.array([*found, request["estimated error"]])
 
     def parts(self, request, study):
         """Returns {part: change of the result if only this part is refined}, at the second last level but one."""
         k = max(0, len(self.runs) - 3)
-        base, found = self.values(self.runs[k], request), {}
+        base, found = values(self.runs[k], request), {}
         with tempfile.TemporaryDirectory() as folder:
             deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
             deck.write_text(self.runs[k].deck_text, encoding="utf-8")
@@ -55,8 +47,19 @@ class Levels:
                     continue
                 outcome = study.run(deck, finer)
                 expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
-                found[part] = largest(self.values(outcome.run, request), base)
+                found[part] = largest(values(outcome.run, request), base)
         return found
+
+
+def values(run, request):
+    """Returns times and values of which a request limits the error; of a branch those at folds and at its end."""
+    times, series = run.series["time"], run.series[request["series"]]
+    if "fold" in run.series:
+        chosen = numpy.flatnonzero((run.series["fold"] != 0) | (numpy.arange(len(series)) == len(series) - 1))
+        times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
+    if request["of"] == "run":
+        return times, series
+    return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times, series)])
 
 
 def largest(one, other):

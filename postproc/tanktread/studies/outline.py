@@ -13,12 +13,10 @@ curvature to the inner side of the bend; points are moved back.
 import pathlib
 
 import numpy
+import scipy.ndimage
 
 from ..interpolation import mean
-from ..mistakes import Mistake, command_line, expect, log, optional
-
-scipy = optional("scipy", "tanktread-outline")
-optional("scipy.ndimage", "tanktread-outline", "scipy")
+from ..mistakes import Mistake, command_line, expect, log
 
 WINDOW = 8   # pixels along a ray to either side of the edge, over which its step is summed
 FINE = 0.25  # pixels between samples of a ray
@@ -26,10 +24,10 @@ FINE = 0.25  # pixels between samples of a ray
 
 def grey(path):
     """Returns the picture's brightness (rows, columns), rows from above."""
+    from matplotlib.image import imread
+
     try:
-        picture = optional("matplotlib.image", "tanktread-outline", "matplotlib").imread(path)
-    except Mistake:
-        raise
+        picture = imread(path)
     except Exception as error:  # the reader has many kinds
         raise Mistake(f"{path} is no picture that can be read: {error}") from None
     return numpy.asarray(picture, float) if picture.ndim == 2 else numpy.asarray(picture[..., :3], float).mean(2)
