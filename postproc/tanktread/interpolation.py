@@ -16,11 +16,16 @@ def interpolated(t, values, at, order=6):
     return numpy.array(result)
 
 
+def averages_between(t, values, ends):
+    """Returns the averages of values(t) from each of the times `ends` (m,) to the next one, by the trapezoidal rule:
+    shape (m - 1,)."""
+    integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(t) * (values[1:] + values[:-1]) / 2)])
+    return numpy.diff(numpy.interp(ends, t, integral)) / numpy.diff(ends)
+
+
 def mean(t, values):
     """Returns the average of values(t) over the times t by the trapezoidal rule; the value if there is one time."""
-    if t[-1] == t[0]:
-        return float(values[-1])
-    return float(numpy.sum(numpy.diff(t) * (values[1:] + values[:-1]) / 2) / (t[-1] - t[0]))
+    return float(averages_between(t, values, t[[0, -1]])[0] if t[-1] > t[0] else values[-1])
 
 
 def difference(t, values, curve_t, curve_values):

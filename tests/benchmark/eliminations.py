@@ -5,12 +5,13 @@
 
 Every scene makes a few steps of fixed size with `Solvers/tolerance` 1e-12, so that the choices differ only by the
 solution of the linear systems. Prints a table: mean iterations per velocity solve and per implicit step, processor
-seconds, and the largest difference of all series from the first choice, relative to their largest values.
+seconds, and the largest difference of all series from the first choice, as compare.py takes it.
 """
 
 import sys
 
-from package import RATIO, SIDE, answer, numpy, table, tanktread
+from compare import differences_of
+from package import RATIO, SIDE, answer, table, tanktread
 
 SMALL = {"Solvers/tolerance": 1e-12, "Time/fixed step": 0.02, "Time/final time": 0.1, "Output/interval": 0.05,
          "Time/iteration tolerance": 1e-12, "Time/newton tolerance": 1e-10, "Time/newton iterations": 30}
@@ -28,21 +29,6 @@ SCENES = {
                                                       for one in LAYER for kind in ("own", "none", "recycled")]),
     "capsule, drop and ball": ("capsule_drop_ball", {}, LAYER + FROZEN[1:]),
 }
-OF_THE_SOLVER = ("wall_seconds", "solver_iterations", "velocity_iterations", "iterations", "evaluations")
-
-
-def difference(one, other):
-    """Returns the largest difference of all series, relative to the largest value of any series with the same unit."""
-    largest = 0.0
-    scale = {unit: max(numpy.nanmax(abs(one.series[name]), initial=0) for name in one.units if one.units[name] == unit)
-             for unit in set(one.units.values())}
-    for name, unit in one.units.items():
-        if name.rsplit("/")[-1] in OF_THE_SOLVER or name.rsplit("/")[-1].endswith(("inclination", "phase", "_x2")):
-            continue
-        off = numpy.nanmax(abs(one.series[name] - other.series[name]), initial=0)
-        if scale[unit] > 0:
-            largest = max(largest, off / scale[unit])
-    return largest
 
 
 def rows(study):
@@ -59,7 +45,7 @@ def rows(study):
             mean = [counts.get(part, 0) / max(1, counts.get(of, 0)) for part, of in
                     (("velocity_iterations", "velocity_solves"), ("solver_iterations", "linear_solves"))]
             yield [scene, words, *(f"{one:.1f}" for one in mean), f"{outcome.processor_seconds:.2f}",
-                   "–" if run is first else f"{difference(first, run):.1e}"]
+                   "–" if run is first else f"{max(differences_of(first, run)[0].values()):.1e}"]
 
 
 def main():

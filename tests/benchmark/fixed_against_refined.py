@@ -8,6 +8,7 @@ Figures 17 and 18).
 
 from package import SIDE, answer, command_line, draw, numpy, plt, style, tanktread
 from matplotlib.collections import LineCollection
+from tanktread.figures.surfaces import field_of
 
 
 def main():
@@ -44,12 +45,12 @@ def made():
 
 def draw_surfaces(figure, grid, runs, shots, names, field):
     """Draws the surfaces in the first row, and returns the label of the field."""
-    norm, colours = draw.scale([draw.magnitude(shot.fields[field]) for shot in shots])
+    norm, colours, pattern = field_of(shots, field)
     for k, (shot, name) in enumerate(zip(shots, names)):
         axis = figure.add_subplot(grid[0, k])
         draw.draw_surface(axis, shot, field, norm, colours, *draw.VIEW)
         axis.set_title(name)
-    words = tanktread.field_label(runs, field, "|{}|" if shots[0].fields[field].ndim > 1 else "{}")
+    words = tanktread.field_label(runs, field, pattern)
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
                     label=words)
     return words

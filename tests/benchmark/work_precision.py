@@ -142,7 +142,7 @@ def draw_legend(axis, colors, numbers):
 
 
 def report(scene, points):
-    """Prints the default against the front, and what each option of each choice needs at best for a level of error."""
+    """Prints the default against the front, and the quickest run for each level of error."""
     default = points[0]
     for cost, unit in COSTS.items():
         best = min((one for one in points if one.error <= default.error), key=lambda one: getattr(one, cost))
@@ -154,15 +154,9 @@ def report(scene, points):
         if not reaching:
             print(f"error {level:g}: none")
             continue
-        best, least = (min(reaching, key=lambda one: getattr(one, cost)) for cost in COSTS)
+        best = min(reaching, key=lambda one: one.seconds)
         print(f"error {level:g}: best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
               f"{best.evaluations} velocity evaluations")
-        for choice, option in [(choice, option) for choice, options in scene.choices.items() for option in options]:
-            these = [one for one in reaching if one.picked[choice] == option]
-            if these:
-                quick, lean = (min(these, key=lambda one: getattr(one, cost)) for cost in COSTS)
-                print(f"    {choice:14} {option:26} {quick.seconds:9.3g} s ({quick.seconds / best.seconds:6.2f} x)  "
-                      f"{lean.kernels:9.3g} kernels ({lean.kernels / least.kernels:6.2f} x)  {quick.label}")
 
 
 def main():

@@ -4,6 +4,7 @@ import pathlib
 
 import numpy
 
+from ..interpolation import averages_between
 from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study
@@ -86,15 +87,13 @@ def average(strain, values, first, blocks):
     expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
-    integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(strain) * (values[1:] + values[:-1]) / 2)])
-    ends = numpy.linspace(first, strain[-1], blocks + 1)
-    means = numpy.diff(numpy.interp(ends, strain, integral)) / numpy.diff(ends)
+    means = averages_between(strain, values, numpy.linspace(first, strain[-1], blocks + 1))
     return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
 
 
 @figure
 def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
-              jobs: int = 1, directory: pathlib.Path | None = None):
+              jobs: int = 1):
     """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
 
     A curve for each capillary number, from a sweep of runs that are kept in results/<study>. Below it stands
@@ -104,9 +103,8 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     single: deck of one capsule
     from_: strain at which averages begin
     blocks: number of parts of an average
-    jobs: runs at a time
-    directory: of the table and, under runs/, of results (default: results/<study>)"""
-    directory = directory or pathlib.Path("results") / pathlib.Path(study).stem
+    jobs: runs at a time"""
+    directory = pathlib.Path("results") / pathlib.Path(study).stem
     directory.mkdir(parents=True, exist_ok=True)
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
@@ -216,9 +214,7 @@ def drift(run, axes=None, *, from_: int = 10):
 def turns(time, values, phase):
     """Returns means in time over whole turns of the phase. Rows with NaN, where a series is undefined, are left out."""
     ends = numpy.interp(360 * numpy.arange(phase.max() // 360 + 1), phase, time)
-    time, values = time[~numpy.isnan(values)], values[~numpy.isnan(values)]
-    whole = numpy.concatenate([[0], numpy.cumsum((values[1:] + values[:-1]) / 2 * numpy.diff(time))])
-    return numpy.diff(numpy.interp(ends, time, whole)) / numpy.diff(ends)
+    return averages_between(time[~numpy.isnan(values)], values[~numpy.isnan(values)], ends)
 
 
 def line(means, first):

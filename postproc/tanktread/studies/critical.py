@@ -16,7 +16,7 @@ import pathlib
 import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
-from ..runs import deck_at, settings_of
+from ..runs import settings_of
 from . import common
 
 SLOW = 1e-3  # speed of a particle that stays, over the mean velocity
@@ -40,35 +40,25 @@ def stays(time, way, radius, speed):
     return True if slow and steady else None
 
 
-class Search:
-    """Runs at one value of the key after the other."""
-
-    def __init__(self, parsed):
-        self.parsed, self.runs, self.deck = parsed, common.study(parsed), deck_at(parsed.deck)
-        self.settings = {"Time/end when past": parsed.past} | settings_of(parsed.set)
-
-    def stays(self, value):
-        held, settings = None, self.settings | {self.parsed.key: value}
-        for _ in range(TIMES):
-            run, held = self.one(value, settings)
-            if held is not None:
-                return held
-            settings = settings | {"Time/final time": 2 * run.value("Time/final time")}
-        raise Mistake(f"{self.parsed.key}={value:.6g} neither passes nor stays")
-
-    def one(self, value, settings):
-        outcome = self.runs.run(self.deck, settings)
-        expect(outcome.done, f"{self.parsed.key}={value:.6g}: {outcome.message}")
+def stays_at(parsed, study, value):
+    """Returns whether the particle stays at a value of the key, by runs for longer and longer times."""
+    settings = {"Time/end when past": parsed.past} | settings_of(parsed.set) | {parsed.key: value}
+    for _ in range(TIMES):
+        outcome = study.run(parsed.deck, settings)
+        expect(outcome.done, f"{parsed.key}={value:.6g}: {outcome.message}")
         run, series = outcome.run, outcome.series
         speed = run.value("Flow/mean velocity", 1.0)
-        radius = run.value("Channel/radius", 1.0)
-        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"], radius, speed)
+        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"],
+                                                         run.value("Channel/radius", 1.0), speed)
         said = {True: "stays", False: "passes", None: f"neither passes nor stays by {series['time'][-1]:g}"}[held]
-        log.info(f"{self.parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
+        log.info(f"{parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
                  f"{series['velocity_x1'][-1] / speed:.2g} of the mean velocity; smallest film "
                  f"{series['gap'].min():.3g}, largest error of the volume {abs(series['volume_error']).max():.1g}; "
                  f"{outcome.processor_seconds:.0f} processor seconds")
-        return run, held
+        if held is not None:
+            return held
+        settings["Time/final time"] = 2 * run.value("Time/final time")
+    raise Mistake(f"{parsed.key}={value:.6g} neither passes nor stays")
 
 
 def main():
@@ -88,8 +78,8 @@ def main():
     low, high = parsed.between
     expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
     expect(parsed.within > 0, f"--within must be above 0, but is {parsed.within:g}")
-    search = Search(parsed)
-    found, how = common.edge(search.stays, low, high, 1 + parsed.within)
+    study = common.study(parsed)
+    found, how = common.edge(lambda value: stays_at(parsed, study, value), low, high, 1 + parsed.within)
     expect(how == "edge",
            f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")
     log.info(f"critical {parsed.key}: {found:.5g} to {found * (1 + parsed.within):.5g}")
