@@ -82,32 +82,10 @@ def legend_below(figure, axes):
     figure.legend(*axes.get_legend_handles_labels(), loc="upper center", ncol=2, bbox_to_anchor=(0.5, 0))
 
 
-def normal_far_from_extraordinary_points(run):
-    """Returns the L2 error of the normal over what is at least 0.5 away, on the unit sphere, from the images of the
-    cube's corners."""
-    result = tanktread.run(run["directory"])
-    axes, shot = numpy.array(result.value("Particle/semi-axes")), result.snapshots()[-1]
-    exact = shot.points / axes**2
-    exact /= numpy.linalg.norm(exact, axis=1)[:, None]
-    corners = shot.points[numpy.array([cell[:4] for cell in shot.cells])]
-    middle = abs(corners.mean(axis=1) / axes)
-    far = numpy.linalg.norm(middle / numpy.linalg.norm(middle, axis=1)[:, None] - 3**-0.5, axis=1) >= 0.5
-    area = numpy.linalg.norm(numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
-    square = ((shot.fields["Normals"] - exact) ** 2).sum(axis=1)
-    means = numpy.array([square[cell].mean() for cell in shot.cells])
-    return numpy.sqrt(numpy.average(means[far], weights=area[far]))
-
-
 def figure_8(found, path):
     figure, axes = plt.subplots(figsize=(5.6, 4.2))
     # the rule does not change the surface: one curve a surface
     draw_convergence(axes, found, "normal_l2_error", options=list(OPTIONS)[:4], cut=", rules by tolerance")
-    points = column(found["cube"], "n_control_points")
-    far = [normal_far_from_extraordinary_points(one) for one in found["cube"]]
-    axes.loglog(points, far, ":", color=style.RUNS[0], marker="o", ms=4.5, mfc="none",
-                label="unstructured, far from extraordinary points")
-    print("\nNormal on the cube mesh, far from its extraordinary points:", " ".join(f"{error:.3e}" for error in far),
-          "  slope %.2f, finest pair %.2f" % slope(points, far))
     axes.plot(546, PAPER_TABLE[2][0], **STAR)
     guide = numpy.array([700, 3000])
     axes.plot(guide, 6e-4 * (guide / guide[0]) ** -PAPER_SLOPES["normal"][1], color=style.FAINT, linewidth=0.9,

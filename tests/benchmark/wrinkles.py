@@ -49,8 +49,8 @@ def draw_row(study, axes, modulus, parsed):
         # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
         wave, size = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax()), element_size(n)
         waved, length = spectrum.short > QUIET, spectrum.wavelength(wave)
-        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.mean_degree,
-                     spectrum.short, mean, reach, one.seconds))
+        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.short, mean, reach,
+                     one.seconds))
         words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
         print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; "
               f"D = {mean:.5f}, range {reach:.1e}; {one.seconds:.0f} s", flush=True)
@@ -62,7 +62,7 @@ def draw_row(study, axes, modulus, parsed):
     expect(rows, f"no run with the modulus {modulus:g} came to its end")
     left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
              ylabel="power of the load", ylim=(1e-9, 2))
-    middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][7], 1.1 * rows[-1][7]))
+    middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][6], 1.1 * rows[-1][6]))
     sizes = numpy.array([element_size(n) for n in parsed.meshes])
     right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
     right.plot(1 / sizes, 2.25 * sizes, color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
@@ -88,7 +88,7 @@ def main():
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)
     studies.write_table(parsed.output / "wrinkles.csv", [
-        "modulus", "elements_per_side", "element_size", "degree", "wavelength", "mean_degree", "short_share",
+        "modulus", "elements_per_side", "element_size", "degree", "wavelength", "short_share",
         "taylor_inertia", "range", "seconds"], rows)
     style.save(figure, parsed.output / "wrinkles.png")
 

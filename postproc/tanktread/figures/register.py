@@ -49,25 +49,13 @@ def caption(function):
 def _options(function):
     """Yields (name, default, type, help) of the keyword options."""
     hints = typing.get_type_hints(function)
-    paragraphs = inspect.getdoc(function).split("\n\n")[1:]
-    lines = dict(line.split(": ", 1) for part in paragraphs for line in _joined(part) if ": " in line)
+    lines = dict(line.split(": ", 1) for line in inspect.getdoc(function).split("\n") if ": " in line)
     for name, one in list(inspect.signature(function).parameters.items())[2:]:
         kind = hints[name]
         inner = [each for each in typing.get_args(kind) if each is not type(None)]
         if type(None) in typing.get_args(kind):  # an optional one
             kind = inner[0]
         yield name, one.default, kind, lines.get(name, "")
-
-
-def _joined(part):
-    """Returns the lines of a paragraph, with indented lines joined to the line before."""
-    found = []
-    for line in part.split("\n"):
-        if line.startswith(" ") and found:
-            found[-1] += " " + line.strip()
-        else:
-            found.append(line)
-    return found
 
 
 def parser_of(name, program="tanktread-figure"):

@@ -120,7 +120,11 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
         alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
         fraction, mean, error = numpy.array(sorted(found)).T
-        draw_viscosity(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
+        look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
+        upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
+        upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
+        lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
+        lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
             slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
@@ -161,14 +165,6 @@ def straight_line(x, y, error):
     table = numpy.column_stack([numpy.ones_like(x), x]) / error[:, None]
     covariance = numpy.linalg.inv(table.T @ table)
     return (covariance @ table.T @ (y / error))[0], covariance[0, 0] ** 0.5
-
-
-def draw_viscosity(upper, lower, color, label, alone, fraction, mean, error):
-    look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
-    upper.errorbar(fraction, mean, error, label=label, **look)
-    upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
-    lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
-    lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
 
 
 @figure
