@@ -28,13 +28,11 @@ def main():
     grid = figure.add_gridspec(3, columns, height_ratios=[tall, 0.1, 3.4])
     words = draw_surfaces(figure, grid, runs, shots, names, arguments.field)
     draw_sections(*(figure.add_subplot(grid[2, k]) for k in range(3)), shots, names, arguments.field, words)
-    curves = [draw.on_section(shot, arguments.field) for shot in shots]
-    curves = [(angle, numpy.linalg.norm(values, axis=1)) for angle, _, values in curves]
-    first, top = curves[0], curves[0][1].max()
-    for run, (angle, values) in zip(runs[1:], curves[1:]):
-        change = abs(numpy.interp(first[0], angle, values, period=2 * numpy.pi) - first[1]).max()
-        print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {top:.5g}, largest difference on the "
-              f"section {100 * change / top:.2f} % of the largest")
+    (height, first), *others = (draw.near_tip(shot, arguments.field)[1:] for shot in shots)
+    for run, (at, values) in zip(runs[1:], others):
+        change = abs(numpy.interp(height, at, values) - first).max() / first.max()
+        print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {first.max():.5g}, largest difference "
+              f"on the half of the section with the tip {100 * change:.2f} % of the largest")
     style.save(figure, arguments.output)
 
 

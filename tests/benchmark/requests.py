@@ -14,7 +14,6 @@ of accuracy.py. The cost is the number of processor seconds.
 """
 
 import collections
-import json
 import pathlib
 import shutil
 
@@ -141,10 +140,7 @@ class Scene:
                 cost = sum(one["seconds"] for one in accuracy["levels"])
                 found.append((accuracy["requests"][0], accuracy["levels"][-1]["level"], code, cost))
         reference = self.reference(max(level for _, level, *_ in found))
-        rows = [self.row(*one, reference, search) for one in found]
-        text = json.dumps([dict(zip(COLUMNS, row)) for row in rows])
-        (self.directory / "requests.json").write_text(text, encoding="utf-8")
-        return rows
+        return [self.row(*one, reference, search) for one in found]
 
     def row(self, request, level, code, cost, reference, search):
         mine = values(tanktread.Run(self.directory / f"level_{level}"), request)

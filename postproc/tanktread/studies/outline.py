@@ -112,10 +112,10 @@ def unbent(points, variance):
 
 
 def averaged(angle, radius, points, each, row, column):
-    """Returns the value in the middle of a parabola through the rays around every point, and its standard error from
-    the scatter of the rays."""
+    """Returns the value in the middle of a parabola (of three rays a straight line) through the rays around every
+    point, and its standard error from the scatter of the rays."""
     order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
-    basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 1, increasing=True)
+    basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)
     middle = radius[order] @ weights[0]
     rest = radius[order] - radius[order] @ weights.T @ basis.T
@@ -140,7 +140,8 @@ def main():
     points, error = edge(picture, mask, number)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
-    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="", fmt="%.4f")
+    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="",
+                  fmt=["%.4f", "%.4f", "%.3g"])
     log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
         from ..figures import style
