@@ -137,6 +137,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
                  f"smallest film {run.series['gap'].min():.4g}")
     upper.set(ylim=(0, None), ylabel="Ca")
     upper.legend()
-    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$")
+    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
     lower.legend()
     return figure
