@@ -136,7 +136,8 @@ def figure(study, parsed):
     for (upper, lower), ratio in zip(axes.T, (0.2, 1, 5, 20)):
         reference, _ = reference_of(study, shear(ratio), 1e-8)
         for name, color in zip(NAMES, style.RUNS):
-            done = [one for one in many(study, shear(ratio), [{"Time/scheme": name} | one for one in SWEEP]) if one.done]
+            made = many(study, shear(ratio), [{"Time/scheme": name} | one for one in SWEEP])
+            done = [one for one in made if one.done]
             errors = [error(one, reference) for one in done]
             pen = {"color": color, "label": name, "markersize": 4, "linewidth": 1}
             upper.loglog([one.processor_seconds for one in done], errors, ".-", **pen)
