@@ -46,8 +46,8 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: 
     draw_outlines(outlines, runs)
     measured = numpy.array([row[2] for row in STRETCHED])
     low, high = (numpy.array([row[2] if row[3] is None else row[3][k] for row in STRETCHED]) for k in (0, 1))
-    plot.errorbar(forces, measured, (measured - low, high - measured), fmt=style.MARKS[0], color=style.INK, markersize=4,
-                  linewidth=0.8, capsize=2, label="Mills and others 2004")
+    plot.errorbar(forces, measured, (measured - low, high - measured), fmt=style.MARKS[0], color=style.INK,
+                  markersize=4, linewidth=0.8, capsize=2, label="Mills and others 2004")
     plot.plot(forces, [row[1] for row in STRETCHED], style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
               label="across, measured")
     plot.set(xlabel="force / pN", ylabel="diameter / µm")
