@@ -4,6 +4,8 @@ import importlib
 import pathlib
 import sys
 
+from .mistakes import answer
+
 COMMANDS = {"figure": ("figures", "command"), "sweep": ("studies.sweep", "main"), "fit": ("studies.fit", "main"),
             "outline": ("studies.outline", "main"), "phases": ("studies.phases", "main"),
             "critical": ("studies.critical", "main"), "report": ("report", "main"), "read": ("read", "main")}
@@ -18,17 +20,7 @@ def main():
         name = sys.argv.pop(1)
         sys.argv[0] = f"tanktread-{name}"
     module, function = COMMANDS[name]
-    try:
-        from .mistakes import answer
-    except ModuleNotFoundError as error:
-        _missing(error)
     answer(lambda: getattr(importlib.import_module(f"tanktread.{module}"), function)())
-
-
-def _missing(error):
-    """Ends the process with one sentence if the Python that runs a command lacks a required package."""
-    sys.exit(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
-             "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
 
 
 if __name__ == "__main__":

@@ -9,10 +9,11 @@ from .mistakes import expect, optional
 
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
 OF_PARTICLE = re.compile(r"(area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|"
-                         r"intrinsic_viscosity|"
-                         r"length_x\d|local_area_change|n_control_points|normal_velocity|phase|shape_velocity|"
-                         r"smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|(angular_)?velocity_x\d|"
-                         r"volume(_error)?|gap|\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?)")
+                         r"intrinsic_viscosity|length_x\d|local_area_change|n_control_points|normal_velocity|phase|"
+                         r"shape_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|"
+                         r"((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|gap|"
+                         r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|"
+                         r"(fluid|membrane)_dissipation|power_residual)")
 
 
 def split(run):

@@ -17,14 +17,18 @@ def yaml_text(text):
     return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
-def parsed(path, parse=yaml_text):
-    """Returns parse(text) of a file in UTF-8."""
+def parsed(path, parse=yaml_text, kind=object):
+    """Returns parse(text) of a file in UTF-8. Raises Mistake if it is not of this kind, such as dict."""
     try:
-        return parse(pathlib.Path(path).read_text(encoding="utf-8"))
+        found = parse(pathlib.Path(path).read_text(encoding="utf-8"))
+        expect(isinstance(found, kind), f"{path} is damaged: it holds no list of keys with values")
+        return found
     except OSError as error:
         raise Mistake(f"{path} cannot be read: {error.strerror}") from None
     except yaml.YAMLError as error:
         raise Mistake(f"{path} is not YAML: {error}") from None
+    except Mistake:
+        raise
     except ValueError as error:
         raise Mistake(f"{path} cannot be read: {error}") from None
 
@@ -59,7 +63,7 @@ class Named(dict):
         self.where = where
 
     def __missing__(self, name):
-        there = sorted(self) if len(self) < 60 else difflib.get_close_matches(name, self, 9, 0)
+        there = sorted(self) if len(self) < 20 else difflib.get_close_matches(name, self, 9, 0) + ["…"]
         raise Mistake(f"{self.where} {name}; there are: {', '.join(there)}")
 
 

@@ -4,14 +4,28 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """Returns values(t) at the times `at` within t, by polynomials through `order` points."""
-    result = []
+    """Returns values(t) at the times `at` within t, by polynomials through `order` points. Rows at the time of the row
+    before, where a mesh has changed, are left out."""
+    result, kept = [], numpy.diff(t, prepend=-numpy.inf) > 0
+    t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     for time in at:
         start = min(max(int(numpy.searchsorted(t, time)) - order // 2, 0), max(len(t) - order, 0))
         nodes = t[start:start + order]
         weights = [numpy.prod([(time - other) / (node - other) for other in nodes if other != node]) for node in nodes]
         result.append(float(numpy.dot(weights, values[start:start + order])))
     return numpy.array(result)
+
+
+def averages_between(t, values, ends):
+    """Returns the averages of values(t) from each of the times `ends` (m,) to the next one, by the trapezoidal rule:
+    shape (m - 1,)."""
+    integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(t) * (values[1:] + values[:-1]) / 2)])
+    return numpy.diff(numpy.interp(ends, t, integral)) / numpy.diff(ends)
+
+
+def mean(t, values):
+    """Returns the average of values(t) over the times t by the trapezoidal rule; the value if there is one time."""
+    return float(averages_between(t, values, t[[0, -1]])[0] if t[-1] > t[0] else values[-1])
 
 
 def difference(t, values, curve_t, curve_values):

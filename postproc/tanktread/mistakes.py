@@ -1,5 +1,6 @@
 """Errors that are reported in one sentence, and the frame that all commands of the package share."""
 
+import argparse
 import importlib
 import logging
 import pathlib
@@ -37,6 +38,11 @@ def progress(text):
         print(text, file=sys.stderr, flush=True)
 
 
+def command_line(doc):
+    """Returns the parser of the command line of a script whose docstring is `doc`."""
+    return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
 class _Lines(logging.Handler):
     """Prints what is logged on the present standard output."""
 
@@ -60,6 +66,9 @@ def answer(main):
         sys.exit(main())
     except Mistake as mistake:
         _fail(str(mistake))
+    except ModuleNotFoundError as error:
+        _fail(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
+              "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
     except OSError as error:  # a file that cannot be written
         _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
     except KeyboardInterrupt:

@@ -1,13 +1,11 @@
 """Lists what a run recorded, or prints some of its series."""
 
-import argparse
-
-from .mistakes import log
+from .mistakes import command_line, log
 from .runs import run
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = command_line(__doc__)
     parser.add_argument("results", help="directory of a run's results, or a deck")
     parser.add_argument("-s", "--series", nargs="+", metavar="NAME",
                         help="print these series, one line per step, instead of the list")

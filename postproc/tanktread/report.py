@@ -5,7 +5,6 @@ and to play, curves with values under the pointer, deck, plan, phases, warnings,
     tanktread-report results/study -o sweep.html                  # of a sweep, or of a fit
 """
 
-import argparse
 import base64
 import gzip
 import json
@@ -15,7 +14,7 @@ import pathlib
 import numpy
 
 from .files import opened, parsed
-from .mistakes import expect, log
+from .mistakes import command_line, expect, log
 from .runs import run as run_of
 from .snapshots import DIMENSIONS, evenly
 from .studies.sweep import table
@@ -189,7 +188,7 @@ def write(directory, output=None, field=None):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("results", type=pathlib.Path, help="directory of a run's, a sweep's or a fit's results")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="the page (default: report.html in that directory)")

@@ -5,10 +5,11 @@ import pathlib
 import re
 
 import numpy
+import yaml
 
 from . import exports
 from .files import Named, datasets, opened, parsed, text_of_hdf, yaml_text
-from .mistakes import expect
+from .mistakes import Mistake, expect
 from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
@@ -43,8 +44,16 @@ class Run:
         for name, values in self.series.items():
             expect("NaN if" in self.descriptions[name] or not numpy.isnan(values.sum()),
                    f"{path} has NaN in the series {name}, which is always defined: the file is damaged")
-        self.deck = (yaml_text(self.deck_text) or {}).get("Tanktread", {})
-        self.summary = parsed(summary) if summary.exists() else None
+            expect(values.shape == self.series["time"].shape,
+                   f"{path} has other rows in the series {name} than in `time`: the file is damaged")
+        self.deck = self._deck(path)
+        self.summary = Named(parsed(summary, kind=dict), f"{summary} holds no") if summary.exists() else None
+
+    def _deck(self, path):
+        try:
+            return yaml_text(self.deck_text)["Tanktread"] or {}
+        except (yaml.YAMLError, KeyError, TypeError):
+            raise Mistake(f"{path} holds no deck: the file is damaged") from None
 
     def __repr__(self):
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
@@ -145,8 +154,9 @@ class Run:
         """R_C: radius of the sphere of equal volume, of the first particle."""
         if self.several:
             return float(3 * self.series[f"{self.particles[0]}/volume"][0] / (4 * numpy.pi)) ** (1 / 3)
-        if self.summary and "numbers" in self.summary:
-            return float(self.summary["numbers"]["radius"])
+        numbers = (self.summary or {}).get("numbers") or {}
+        if "radius" in numbers:
+            return float(numbers["radius"])
         return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
 
     def scale(self, dimension):
@@ -210,8 +220,8 @@ class Run:
         series = self.directory / "run.hdf.series"
         if not series.exists():
             return []
-        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles)
-                for entry in parsed(series, json.loads)["files"]]
+        files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"]
+        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
 
     def snapshot_at(self, time):
         """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""

@@ -12,11 +12,11 @@ import subprocess
 import sys
 import time
 
-from .files import parsed
+from .files import Named, parsed
 from .mistakes import Mistake, expect
 from .results import Run
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]  # the source directory, or share/tanktread of an installation
+SOURCE = pathlib.Path(__file__).resolve().parents[2]  # the source directory, unless the package is installed
 ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
                "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
@@ -136,9 +136,12 @@ class Outcome:
         return self._run
 
     series = property(lambda self: self.run.series)
-    counts = property(lambda self: self.run.summary["counts"])
-    final = property(lambda self: self.run.summary["final"])
-    phases = property(lambda self: self.run.summary["seconds"])
+    counts = property(lambda self: self._of_summary("counts"))
+    final = property(lambda self: self._of_summary("final"))
+    phases = property(lambda self: self._of_summary("seconds"))
+
+    def _of_summary(self, section):
+        return Named(self.run.summary[section] or {}, f"{self.directory}/summary.yaml holds in {section} no")
 
     @property
     def status(self):
@@ -221,9 +224,11 @@ class Study:
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = code = os.waitstatus_to_exitcode(status)
             self._running.discard(process)
-        if code < 0 or code > 4:  # killed, by the limit
-            said = [f"stopped after {self.limit:g} s of processor time" if self.limit else f"killed by signal {-code}"]
-            code = None
+        killed = -code if code < 0 else code - 128  # mpirun ends with 128 plus the signal
+        if self.limit and killed in (signal.SIGKILL, signal.SIGXCPU):
+            code, said = None, [f"stopped after {self.limit:g} s of processor time"]
+        elif 0 < killed < 65:
+            said.append(f"killed by signal {killed}")
         return {"code": code, "message": said[-1] if said else "", "seconds": time.monotonic() - start,
                 "processor_seconds": usage.ru_utime + usage.ru_stime, "command": " ".join(map(quoted, words))}
 
@@ -255,26 +260,13 @@ class Study:
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             return list(pool.map(function, items))
 
-    def knows(self, key, word=None):
-        """Returns whether this program's manual has a key, and in its row a choice."""
-        row = self._row(key)
-        return row is not None and (word is None or f"`{word}`" in row)
-
     def dimension(self, key):
         """Returns the dimension of a key, such as force/length; "" of a number and of an unknown key."""
-        row = self._row(key)
-        unit = row.split("|")[4].strip() if row else ""
-        return "" if unit == "1" else unit
-
-    def _row(self, key):
-        """Returns the row of a key in this program's manual, or None."""
         if self._manual is None:
             self._manual = subprocess.run([str(self.program), "--reference"], capture_output=True, text=True,
                                           check=True).stdout
-        section, name = key.rsplit("/", 1)
+        section, _, name = key.rpartition("/")
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
-        return next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), None)
-
-    def schemes(self, wanted):
-        """Returns those of the time-stepping schemes that this program has."""
-        return [scheme for scheme in wanted if self.knows("Time/scheme", scheme)]
+        row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")
+        unit = row.split("|")[4].strip()
+        return "" if unit == "1" else unit

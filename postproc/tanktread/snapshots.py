@@ -6,7 +6,8 @@ import pathlib
 import numpy
 
 from . import exports, lagrange
-from .files import opened, text_of_hdf
+from .files import opened
+from .mistakes import expect
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
@@ -62,6 +63,7 @@ class Snapshot:
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
+        expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
         number = self.particles.index(particle) + 1  # from 1 in the order of the deck
         return numpy.flatnonzero([self.fields["particle"][cell[0]] == number for cell in self.cells])
 
@@ -125,13 +127,3 @@ class Snapshot:
 
         Both have cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
         return exports.mesh(self, kind)
-
-    def checkpoint(self):
-        """Returns the data from which the run is resumed: {"arrays": {...}, "numbers": {...}, "texts": {...}}."""
-        with opened(self.path) as file:
-            root = file["checkpoint"]
-            return {
-                "arrays": {name: data[:] for name, data in root["arrays"].items()},
-                "numbers": {name: float(data[()]) for name, data in root["numbers"].items()},
-                "texts": {name: text_of_hdf(data[()]) for name, data in root["texts"].items()},
-            }

@@ -12,10 +12,9 @@ from a finer run, relative to the largest value. Kernel evaluations are the same
 are printed as multiples of those that the first deck takes.
 """
 
-import argparse
 import pathlib
 
-from package import SHEAR, SIDE, answer, expect, numpy, studies, table, tanktread
+from package import SHEAR, SIDE, answer, command_line, expect, numpy, studies, table, tanktread
 from tanktread.interpolation import difference
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
@@ -44,7 +43,7 @@ SCENES = {
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--scene", nargs="+", default=list(SCENES), choices=SCENES, metavar="NAME",
                         help=f"of {', '.join(SCENES)} (default: all)")
     parser.add_argument("--deck", help="a deck of yours instead of the scenes")

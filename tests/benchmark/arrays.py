@@ -11,11 +11,10 @@ sheared in them (beta); k from v at three volume fractions, less what grows like
 Nunan & Keller (J. Fluid Mech. 142, 1984).
 """
 
-import argparse
 import itertools
 import pathlib
 
-from package import answer, numpy, table, tanktread
+from package import answer, command_line, numpy, table, tanktread
 
 ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
           "face-centred": (4, (1 - numpy.eye(3)) / 2)}
@@ -28,7 +27,7 @@ DECK = """Tanktread:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("what", choices=("drag", "viscosity"))
     parser.add_argument("fractions", nargs="*", type=float,
                         help="volume fractions (default: 0.001 0.064 0.2; 0.0025 0.005 0.01)")

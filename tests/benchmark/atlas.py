@@ -10,10 +10,9 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 (README.md there).
 """
 
-import argparse
 import textwrap
 
-from package import answer, studies, style
+from package import answer, command_line, studies, style
 import edges_of_membranes
 import edges_of_meshes
 import edges_of_shapes
@@ -37,19 +36,14 @@ def caption(figure, function, command):
 def draw(name, study, output):
     function = MAPS[name]
     print(f"{name}: {function.__doc__.splitlines()[0]}", flush=True)
-    drawn = function(study)
-    if drawn is None:
-        print("  left out: this program lacks what the map is about")
-        return
-    figure, head, rows = drawn
-    command = studies.command_of(__file__, "--map", name)
-    caption(figure, function, command)
+    figure, head, rows = function(study)
+    caption(figure, function, studies.command_of(__file__, "--map", name))
     studies.write_table(output / f"{name}.csv", head, rows)
     style.save(figure, output / f"{name}.png")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS), metavar="NAME",
                         help="which (default: all)")
     parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")

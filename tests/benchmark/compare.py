@@ -19,7 +19,6 @@ in DIR, separately for each role and each content of the program, and are found 
 half as many at a time.
 """
 
-import argparse
 import concurrent.futures
 import fnmatch
 import hashlib
@@ -28,9 +27,8 @@ import pathlib
 import re
 import shutil
 import sys
-import time
 
-from package import INPUTS, SIDE, numpy, table, tanktread, yaml
+from package import INPUTS, SIDE, command_line, numpy, table, tanktread, yaml
 from power_balance import ENDS
 
 # Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their
@@ -157,17 +155,6 @@ def work_of(outcome, run):
             outcome.processor_seconds]
 
 
-def plain(deck):
-    """Returns whether all particles of an effective deck are deformable and have the viscosity ratio 1 and a membrane
-    without viscosity."""
-    def values(node):
-        for key, value in node.items():
-            yield from values(value) if isinstance(value, dict) else [(key, value)]
-    return "viscosity ratio" not in str(deck.get("Continuation")) and not any(
-        key == "motion" and value in ("free", "prescribed") or key == "viscosity ratio" and value != 1
-        or key in ("shear viscosity", "dilatational viscosity") and value != 0 for key, value in values(deck))
-
-
 def loaded(outcome):
     """Returns the results of a run, or None if it ended before it had any."""
     try:
@@ -184,7 +171,6 @@ class Comparison:
         self.name, self.ranks, self.remarks, found = name, ranks, [], {}
         runs = [loaded(outcome) for outcome in outcomes]
         self.work = [work_of(*pair) for pair in zip(outcomes, runs)]
-        self.plain = bool(runs[0]) and plain(runs[0].deck)
         codes = ["time limit" if outcome.code is None else outcome.code for outcome in outcomes]
         if codes[0] != codes[1] or bool(runs[0]) != bool(runs[1]):
             found["exit code"] = math.inf
@@ -220,9 +206,8 @@ class Comparison:
         return [f"`{self.name}`", series, f"{self.worst[1]:.1e}", *numbers, "; ".join(self.remarks)]
 
 
-def totals(title, comparisons):
-    """Returns a line with the sums of evaluations and of seconds over some decks, and the deck with the largest ratio
-    of each."""
+def totals(comparisons):
+    """Returns a line with the sums of evaluations and of seconds, and the deck with the largest ratio of each."""
     words = []
     one_rank = [one for one in comparisons if one.ranks == 1]  # processor seconds of several ranks include busy waiting
     for what, k, measured in (("velocity evaluations", EVALUATIONS, comparisons),
@@ -234,7 +219,7 @@ def totals(title, comparisons):
             top = max([one for one in known if one.work[0][k] >= 1] or known, key=lambda one: one.ratio(k))
             words.append(f"{what} {old:.0f} and {new:.0f}, ratio {new / old:.3f}, largest {top.ratio(k):.3f} "
                          f"(`{top.name}`)")
-    return f"\n{title} ({len(comparisons)} decks): " + "; ".join(words)
+    return f"\n{len(comparisons)} decks: " + "; ".join(words)
 
 
 def pairs_of(arguments, decks):
@@ -250,7 +235,7 @@ def pairs_of(arguments, decks):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("programs", nargs=2, metavar="PROGRAM", help="the old and the new program")
     parser.add_argument("--decks", nargs="+", metavar="NAME", help="names of decks (default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
@@ -262,22 +247,18 @@ def main():
     parser.add_argument("--fresh", action="store_true", help="repeat the runs of an earlier comparison")
     arguments = parser.parse_args()
     named = yaml.safe_load(pathlib.Path(arguments.differences).read_text()) or [] if arguments.differences else []
-    decks, start, found_again, comparisons = all_decks(), time.time(), [], []
+    decks, comparisons = all_decks(), []
     if unknown := set(arguments.decks or []) - decks.keys():
         sys.exit(f"there is no deck {', '.join(sorted(unknown))}; choose from {', '.join(decks)}")
 
     def rows():
         for name, ranks, outcomes in pairs_of(arguments, decks):
-            found_again.extend(one for one in outcomes if (one.directory / "outcome.json").stat().st_mtime < start)
             comparisons.append(Comparison(name, ranks, outcomes, arguments, named))
             yield comparisons[-1].row()
 
     table(["deck", "worst series", "difference", "steps", "new", "evaluations", "new", "ratio", "iterations", "kernels",
            "seconds", "remarks"], rows())
-    print(totals("All decks", comparisons))
-    print(totals("Viscosity ratio 1, no viscous membrane, no rigid body", [one for one in comparisons if one.plain]))
-    print(f"\nWall time: {(time.time() - start) / 60:.1f} minutes. {len(found_again)} runs, with their seconds, are of "
-          "an earlier comparison.")
+    print(totals(comparisons))
     if failed := [one.name for one in comparisons if one.failed]:
         sys.exit(f"{len(failed)} decks differ: {', '.join(failed)}")
 

@@ -76,8 +76,6 @@ def gap_tube(study):
 
     Survives: rules by tolerance, forty times as accurate as 8 × 8 Gauss points on the same mesh at a gap of 0.2; for
     narrower ones finer elements."""
-    if not study.knows("Tube/section"):
-        return None
     short = {"Time/final time": 0.01, "Output/interval": 0.01, "Time/fixed step": 0.01}
 
     def jobs(settings):

@@ -39,7 +39,7 @@ def draw_steps(study, variable, label, values, of):
     """Draws the largest step of every scheme over a variable; of(value): settings and stiffness."""
     figure, axis = plt.subplots(figsize=(7.6, 5))
     rows = []
-    for scheme in study.schemes(SCHEMES):
+    for scheme in SCHEMES:
         found = [(value, *largest_step(study, of(value)[0], scheme, of(value)[1])) for value in values]
         rows += [(scheme, *one) for one in found]
         axis.plot(values, [step for _, step, _ in found], label=SCHEMES[scheme], **PEN[scheme])

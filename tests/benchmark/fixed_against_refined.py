@@ -6,14 +6,13 @@ Figures 17 and 18).
     tests/benchmark/fixed_against_refined.py results/refined results/fixed  # runs of yours
 """
 
-import argparse
-
-from package import SIDE, answer, draw, numpy, plt, style, tanktread
+from package import SIDE, answer, command_line, draw, numpy, plt, style, tanktread
 from matplotlib.collections import LineCollection
+from tanktread.figures.surfaces import field_of
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("runs", nargs="*", help="directories of results: a refined run, and those compared with it")
     parser.add_argument("-o", "--output", default="fixed_against_refined.png", metavar="FILE",
                         help="the picture (default: %(default)s)")
@@ -29,13 +28,11 @@ def main():
     grid = figure.add_gridspec(3, columns, height_ratios=[tall, 0.1, 3.4])
     words = draw_surfaces(figure, grid, runs, shots, names, arguments.field)
     draw_sections(*(figure.add_subplot(grid[2, k]) for k in range(3)), shots, names, arguments.field, words)
-    curves = [draw.on_section(shot, arguments.field) for shot in shots]
-    curves = [(angle, numpy.linalg.norm(values, axis=1)) for angle, _, values in curves]
-    first, top = curves[0], curves[0][1].max()
-    for run, (angle, values) in zip(runs[1:], curves[1:]):
-        change = abs(numpy.interp(first[0], angle, values, period=2 * numpy.pi) - first[1]).max()
-        print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {top:.5g}, largest difference on the "
-              f"section {100 * change / top:.2f} % of the largest")
+    (height, first), *others = (draw.near_tip(shot, arguments.field)[1:] for shot in shots)
+    for run, (at, values) in zip(runs[1:], others):
+        change = abs(numpy.interp(height, at, values) - first).max() / first.max()
+        print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {first.max():.5g}, largest difference "
+              f"on the half of the section with the tip {100 * change:.2f} % of the largest")
     style.save(figure, arguments.output)
 
 
@@ -46,12 +43,12 @@ def made():
 
 def draw_surfaces(figure, grid, runs, shots, names, field):
     """Draws the surfaces in the first row, and returns the label of the field."""
-    norm, colours = draw.scale([draw.magnitude(shot.fields[field]) for shot in shots])
+    norm, colours, pattern = field_of(shots, field)
     for k, (shot, name) in enumerate(zip(shots, names)):
         axis = figure.add_subplot(grid[0, k])
         draw.draw_surface(axis, shot, field, norm, colours, *draw.VIEW)
         axis.set_title(name)
-    words = tanktread.field_label(runs, field, "|{}|" if shots[0].fields[field].ndim > 1 else "{}")
+    words = tanktread.field_label(runs, field, pattern)
     figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
                     label=words)
     return words

@@ -8,12 +8,11 @@
 Exponents are fitted by least squares to the meshes from --from control points on.
 """
 
-import argparse
 import json
 import pathlib
 import subprocess
 
-from package import answer, expect, numpy, plt, style, table, tanktread
+from package import answer, command_line, expect, numpy, plt, style, table, tanktread
 from tanktread.files import parsed as read
 
 PARTS = {"evaluation s": "whole evaluation", "layer far s": "far sum", "layer near s": "near elements",
@@ -46,7 +45,7 @@ def draw(axis, meshes, lines, least, colors, dash="o-"):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("file", nargs="?", help="what the benchmark wrote (default: results/growth.json, "
                         "written now if it is not there)")
     parser.add_argument("--from", dest="least", type=float, default=3000, metavar="POINTS",

@@ -15,13 +15,12 @@ steady, periodic: `Steady/tolerance`, `Periodic/tolerance`. The error of the nod
 over R_C, against a tolerance of 1e-11 (Steady) or 1e-7 (Periodic, Time/tolerance 1e-8 in all runs).
 """
 
-import argparse
 import pathlib
 import shutil
 import subprocess
 import sys
 
-from package import RATIO, SIDE, answer, numpy, studies, table, tanktread
+from package import RATIO, SIDE, answer, command_line, numpy, studies, table, tanktread
 import scipy.spatial
 
 SHEAR, OBLATE, CA = "shear_neo_hookean", "oblate_shear", "Membrane/capillary number"
@@ -203,7 +202,7 @@ def periodic(study):
 
 def main():
     tables = {one.__name__: one for one in (quadrature, solvers, adaptation, steady, periodic)}
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("tables", nargs="*", choices=[[], *tables], help="(default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
     studies.arguments(parser, pathlib.Path("results/other_tolerances"))

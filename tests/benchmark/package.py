@@ -10,8 +10,8 @@ try:
     import tanktread
     import yaml
     from tanktread import interpolation
-    from tanktread.figures import draw, literature, style
-    from tanktread.mistakes import answer, expect
+    from tanktread.figures import draw, style
+    from tanktread.mistakes import answer, command_line, expect
     from tanktread.studies import common as studies
 except ModuleNotFoundError as error:
     sys.exit(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 (app/packages.txt)")
@@ -22,8 +22,8 @@ plt.rcParams.update(style.STYLE)
 INPUTS = tanktread.SOURCE / "inputs"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]
-__all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "draw", "expect", "final",
-           "interpolation", "line", "literature", "numpy", "plt", "studies", "style", "table", "tanktread", "ticks",
+__all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "command_line", "draw", "expect",
+           "final", "interpolation", "line", "numpy", "plt", "studies", "style", "table", "tanktread", "ticks",
            "worst", "yaml"]
 
 

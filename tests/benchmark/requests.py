@@ -13,16 +13,14 @@ than the finest level. A ladder that stops at its limit and says so is neither m
 of accuracy.py. The cost is the number of processor seconds.
 """
 
-import argparse
 import collections
-import json
 import pathlib
 import shutil
 
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
-from package import SIDE, answer, expect, numpy, studies, table, tanktread
-from tanktread.figures.accuracy import average, largest
+from package import SIDE, answer, command_line, expect, numpy, studies, table, tanktread
+from tanktread.figures.accuracy import largest, values
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
 D, ENERGY, STRESS = "taylor_inertia", "energy", "stresslet_13"
@@ -80,7 +78,7 @@ COLUMNS = ["scene", "request", "level", "allowed", "true error", "estimate", "es
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--scene", nargs="+", default=[*SHIPPED, *OWN], choices=[*SHIPPED, *OWN], metavar="NAME",
                         help=f"of {', '.join([*SHIPPED, *OWN])} (default: all)")
     parser.add_argument("--search", action="store_true", help="also search the cheapest single run")
@@ -142,14 +140,11 @@ class Scene:
                 cost = sum(one["seconds"] for one in accuracy["levels"])
                 found.append((accuracy["requests"][0], accuracy["levels"][-1]["level"], code, cost))
         reference = self.reference(max(level for _, level, *_ in found))
-        rows = [self.row(*one, reference, search) for one in found]
-        text = json.dumps([dict(zip(COLUMNS, row)) for row in rows])
-        (self.directory / "requests.json").write_text(text, encoding="utf-8")
-        return rows
+        return [self.row(*one, reference, search) for one in found]
 
     def row(self, request, level, code, cost, reference, search):
-        mine = self.values(tanktread.Run(self.directory / f"level_{level}"), request)
-        true, allowed, estimate = largest(mine, self.values(reference, request)), request["allowed"], request[
+        mine = values(tanktread.Run(self.directory / f"level_{level}"), request)
+        true, allowed, estimate = largest(mine, values(reference, request)), request["allowed"], request[
             "estimated error"]
         result = "not reached"
         if not request["met"] and code == 4:
@@ -177,27 +172,16 @@ class Scene:
         expect(finer, "the reference did not come to its end")
         return tanktread.Run(self.directory / f"level_{finer[0]}")
 
-    @staticmethod
-    def values(run, request):
-        """Returns the times and values of which the request limits the error."""
-        times, series = run.series["time"], run.series[request["series"]]
-        if "fold" in run.series:
-            chosen = numpy.flatnonzero((run.series["fold"] != 0) | (numpy.arange(len(series)) == len(series) - 1))
-            times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
-        if request["of"] == "run":
-            return times, series
-        return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else average(times, series)])
-
     def cheapest(self, request, reference):
         """Returns the processor seconds of the cheapest single run that meets the request; NaN if there is none."""
-        best, exact = numpy.inf, self.values(reference, request)
+        best, exact = numpy.inf, values(reference, request)
         for time, quadrature in TOLERANCES:
             for side in SIDES:
                 outcome = self.study.run(self.deck, self.settings | {
                     SIDE: side, "Time/tolerance": time, "Quadrature/tolerance": quadrature})
                 if not outcome.done or outcome.processor_seconds > best:
                     break
-                if largest(self.values(outcome.run, request), exact) <= request["allowed"]:
+                if largest(values(outcome.run, request), exact) <= request["allowed"]:
                     best = outcome.processor_seconds
                     break
         return best if numpy.isfinite(best) else numpy.nan

@@ -23,21 +23,17 @@ import subprocess
 import sys
 import tempfile
 
-import yaml
-
-from package import answer, table, tanktread
+from package import answer, command_line, table, tanktread, yaml
 
 
 def summaries(program, deck, settings, ranks, copies):
-    """summary.yaml of each of some runs at the same time."""
+    """Returns the summaries of some runs that are made at the same time."""
     with tempfile.TemporaryDirectory() as where:
         places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
         runs = []
         for place in places:
             words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output",
-                     str(place)]
-            for setting in settings:
-                words += ["--set", setting]
+                     str(place), *(word for setting in settings for word in ("--set", setting))]
             runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                          env=os.environ | tanktread.ENVIRONMENT))
         said = [run.communicate()[1] for run in runs]
@@ -48,19 +44,13 @@ def summaries(program, deck, settings, ranks, copies):
 
 
 def seconds(summary):
-    """By phase, and of all of them."""
+    """Returns seconds by phase, and of all phases but the start."""
     times = summary["seconds"]
     return times | {"all but start": sum(times.values()) - times.get("start", 0)}
 
 
-def difference(one, many, name="taylor_inertia"):
-    """Largest of a series at the end, of any particle."""
-    return max((abs(value - many["final"][key]) for key, value in one["final"].items() if key.split("/")[-1] == name),
-               default=0)
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / "inputs/shear_neo_hookean.yaml")
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
@@ -90,7 +80,9 @@ def main():
     one, other = runs["one"][0], runs["many"][0]
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
         print(f"{key}: {one['counts'][key]:.10g} and {other['counts'][key]:.10g}")
-    print(f"difference of D {difference(one, other):.1e}")
+    differences = [abs(value - other["final"][key]) for key, value in one["final"].items()
+                   if key.split("/")[-1] == "taylor_inertia"]
+    print(f"difference of D {max(differences, default=0):.1e}")
 
 
 if __name__ == "__main__":

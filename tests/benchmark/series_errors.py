@@ -15,11 +15,10 @@ natural unit (most of them are 0 by symmetry) are left out. An entry is empty if
 is below 1e-9. Results are kept in DIR and are found again.
 """
 
-import argparse
 import sys
 
 from compare import WORK, natural_unit
-from package import INPUTS, RATIO, SIDE, answer, expect, interpolation, numpy, table, tanktread
+from package import INPUTS, RATIO, SIDE, answer, command_line, expect, interpolation, numpy, studies, table
 from power_balance import MESHES, finer
 
 DEFAULTS = {SIDE: 6, "Time/tolerance": 1e-4, "Quadrature/tolerance": 1e-4}
@@ -103,14 +102,13 @@ def text(number):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), help="(default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
-    parser.add_argument("--output", default="results/series_errors", metavar="DIR", help="(default: %(default)s)")
-    parser.add_argument("--limit", type=float, default=1800, metavar="SECONDS",
-                        help="processor time of a run (default: %(default)s)")
+    studies.arguments(parser, "results/series_errors")
+    parser.set_defaults(limit=1800)
     parsed = parser.parse_args()
-    study = tanktread.Study(directory=parsed.output, limit=parsed.limit, jobs=parsed.jobs)
+    study = studies.study(parsed, parsed.jobs)
     found = study.map(lambda name: errors_of(study, name), parsed.scenes)
     names = dict.fromkeys(series for one in found for series in one)
     rows = {series: [one.get(series, numpy.nan) for one in found] for series in names}

@@ -2,16 +2,14 @@
 """The paper's section 4.1: Figures 8, 9 and 10, Table 1, and error against work, for every surface and every way to
 take the integrals.
 
-Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed, keeps the results, and
-draws what is there. A run that has been made already is not made again. The largest meshes take minutes; `--largest 2`
-leaves them out.
+Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed; a run that has been made
+already is not made again. The largest meshes take minutes; `--largest 2` leaves them out.
 """
 
-import argparse
 import pathlib
 import sys
 
-from package import SIDE, answer, numpy, plt, style, table, tanktread
+from package import SIDE, answer, command_line, numpy, plt, style, table, tanktread
 
 SIZES = [0, 1, 2, 3]  # 56, 218, 866, 3458 control points on the cube; 42, 146, 546, 2114 on the structured mesh
 # normal, pressure and drag (per cent) on the structured mesh of 546 control points, by azimuthal subdivisions
@@ -44,32 +42,22 @@ OPTIONS = {
 }
 
 
-class Study:
-    """Runs of the two decks, made where they are missing."""
+def made(study, mesh, settings):
+    """Returns the final values of a run, with its directory; None if it failed."""
+    outcome = study.run(f"inputs/spheroid_{mesh}.yaml", settings)
+    if not outcome.done:  # errors beyond what the deck as it stands expects are its end too
+        print(f"  {outcome.message}", file=sys.stderr)
+        return None
+    return dict(outcome.final, directory=outcome.directory)
 
-    def __init__(self, program, directory, makes):
-        self.runs, self.makes = tanktread.Study(program, directory), makes
 
-    def run(self, mesh, settings):
-        """Returns the final values of a run, with its directory; None if it is missing and may not be made, or
-        failed."""
-        deck = f"inputs/spheroid_{mesh}.yaml"
-        where = self.runs.directory / self.runs.name([deck], settings)
-        if not (self.makes or (where / "summary.yaml").exists()):
-            return None
-        outcome = self.runs.run(deck, settings)
-        if not outcome.done:  # errors beyond what the deck as it stands expects are its end too
-            print(f"  {outcome.message}", file=sys.stderr)
-            return None
-        return dict(outcome.final, directory=where)
-
-    def sizes(self, option, largest):
-        """Returns the final values of an option on its meshes, coarse to fine."""
-        _, mesh, settings, _ = OPTIONS[option]
-        extents = [{SIDE: 3 * 2**size} if mesh == "cube" else {
-            "Surface/azimuthal elements": 8 * 2**size, "Surface/meridional elements": 4 * 2**size}
-            for size in SIZES[:largest + 1]]
-        return [one for one in (self.run(mesh, settings | extent) for extent in extents) if one]
+def sizes(study, option, largest):
+    """Returns the final values of an option on its meshes, coarse to fine."""
+    _, mesh, settings, _ = OPTIONS[option]
+    extents = [{SIDE: 3 * 2**size} if mesh == "cube" else {
+        "Surface/azimuthal elements": 8 * 2**size, "Surface/meridional elements": 4 * 2**size}
+        for size in SIZES[:largest + 1]]
+    return [one for one in (made(study, mesh, settings | extent) for extent in extents) if one]
 
 
 def slope(points, errors):
@@ -94,32 +82,10 @@ def legend_below(figure, axes):
     figure.legend(*axes.get_legend_handles_labels(), loc="upper center", ncol=2, bbox_to_anchor=(0.5, 0))
 
 
-def normal_far_from_extraordinary_points(run):
-    """Returns the L2 error of the normal over what is at least 0.5 away, on the unit sphere, from the images of the
-    cube's corners."""
-    result = tanktread.run(run["directory"])
-    axes, shot = numpy.array(result.value("Particle/semi-axes")), result.snapshots()[-1]
-    exact = shot.points / axes**2
-    exact /= numpy.linalg.norm(exact, axis=1)[:, None]
-    corners = shot.points[numpy.array([cell[:4] for cell in shot.cells])]
-    middle = abs(corners.mean(axis=1) / axes)
-    far = numpy.linalg.norm(middle / numpy.linalg.norm(middle, axis=1)[:, None] - 3**-0.5, axis=1) >= 0.5
-    area = numpy.linalg.norm(numpy.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]), axis=1)
-    square = ((shot.fields["Normals"] - exact) ** 2).sum(axis=1)
-    means = numpy.array([square[cell].mean() for cell in shot.cells])
-    return numpy.sqrt(numpy.average(means[far], weights=area[far]))
-
-
 def figure_8(found, path):
     figure, axes = plt.subplots(figsize=(5.6, 4.2))
     # the rule does not change the surface: one curve a surface
     draw_convergence(axes, found, "normal_l2_error", options=list(OPTIONS)[:4], cut=", rules by tolerance")
-    points = column(found["cube"], "n_control_points")
-    far = [normal_far_from_extraordinary_points(one) for one in found["cube"]]
-    axes.loglog(points, far, ":", color=style.RUNS[0], marker="o", ms=4.5, mfc="none",
-                label="unstructured, far from extraordinary points")
-    print("\nNormal on the cube mesh, far from its extraordinary points:", " ".join(f"{error:.3e}" for error in far),
-          "  slope %.2f, finest pair %.2f" % slope(points, far))
     axes.plot(546, PAPER_TABLE[2][0], **STAR)
     guide = numpy.array([700, 3000])
     axes.plot(guide, 6e-4 * (guide / guide[0]) ** -PAPER_SLOPES["normal"][1], color=style.FAINT, linewidth=0.9,
@@ -183,7 +149,7 @@ def table_1(study):
     rows = []
     for level, paper in enumerate(PAPER_TABLE):
         for label, settings in (("8 x 8 Gauss", FIXED), ("rules by tolerance", {})):
-            run = study.run("polar", TRANSFORM | settings | {"Surface/pole subdivisions": level})
+            run = made(study, "polar", TRANSFORM | settings | {"Surface/pole subdivisions": level})
             if run:
                 values = run["normal_l2_error"], run["pressure_l2_error"], 100 * run["drag_error"], *paper
                 rows.append([level, label, *(f"{value:.3e}" for value in values)])
@@ -220,7 +186,7 @@ def work(study, path):
     figure, grid = plt.subplots(2, 2, figsize=(10.5, 7.6), sharey="row")
     rows = []
     for i, (label, mesh, settings, key) in enumerate(sweeps):
-        runs = {value: study.run(mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value})
+        runs = {value: made(study, mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value})
                 for value in tolerances.get(key, [4, 6, 8, 12, 16])}
         runs = {value: one for value, one in runs.items() if one}
         look = {"color": style.RUNS[i % 4], "linestyle": "-" if key == "tolerance" else "--",
@@ -241,24 +207,21 @@ def work(study, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="of runs (default: %(default)s)")
     parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR",
                         help="of the pictures (default: %(default)s)")
     parser.add_argument("--largest", type=int, default=3, choices=SIZES[1:],
                         help="largest mesh of the four (default: %(default)s)")
-    parser.add_argument("--read-only", action="store_true", help="draw what is there, run nothing")
-    parser.add_argument("--no-work", action="store_true", help="leave out error against work")
     arguments = parser.parse_args()
-    study = Study(None, arguments.results, not arguments.read_only)
-    found = {name: study.sizes(name, arguments.largest) for name in OPTIONS}
+    study = tanktread.Study(directory=arguments.results)
+    found = {name: sizes(study, name, arguments.largest) for name in OPTIONS}
     table_of_options(found)
     table_1(study)
     figure_8(found, arguments.output / "spheroid_figure_8.png")
     figure_9(found, arguments.output / "spheroid_figure_9.png")
     figure_10(found, arguments.output / "spheroid_figure_10.png")
-    if not arguments.no_work:
-        work(study, arguments.output / "spheroid_work.png")
+    work(study, arguments.output / "spheroid_work.png")
 
 
 if __name__ == "__main__":

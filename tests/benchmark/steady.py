@@ -13,10 +13,9 @@ that starts from the end of the run has the same labels. `branch`: the branch of
 without its spectrum, from Ca = 0.1 up to the fold and back.
 """
 
-import argparse
 import itertools
 
-from package import SIDE, answer, changed, expect, table, tanktread, yaml
+from package import SIDE, answer, changed, command_line, expect, table, tanktread, yaml
 
 FOLDER, KRYLOV = "results/steady", ["GMRES", "BICGSTAB", "TFQMR"]
 SEARCHED = ["drop_steady", "capsule_steady"]
@@ -83,7 +82,7 @@ def branch(study):
 
 def main():
     tables = {one.__name__: one for one in (solvers, states, branch)}
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("table", choices=tables)
     tables[parser.parse_args().table](tanktread.Study(directory=FOLDER))
 

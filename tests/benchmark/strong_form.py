@@ -6,14 +6,12 @@ form stalls.
     tests/benchmark/strong_form.py results/weak results/strong  # runs of yours
 """
 
-import argparse
-
-from package import SIDE, answer, draw, plt, style, tanktread
+from package import SIDE, answer, command_line, draw, plt, style, tanktread
 from matplotlib.collections import LineCollection
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("runs", nargs="*", help="directories of runs in the weak and in the strong form")
     parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="default: %(default)s")
     arguments = parser.parse_args()

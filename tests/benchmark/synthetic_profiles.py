@@ -14,12 +14,11 @@ The steady shape depends on the capillary number alone, so fits to samples and p
 NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.
 """
 
-import argparse
 import itertools
 import os
 import pathlib
 
-from package import INPUTS, SIDE, answer, expect, numpy, table, tanktread
+from package import INPUTS, SIDE, answer, command_line, expect, numpy, table, tanktread
 import scipy.interpolate
 import scipy.ndimage
 
@@ -195,7 +194,7 @@ def write(study, directory):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--exact", action="store_true", help="fit outlines without noise")
     parser.add_argument("--samples", type=int, default=0, metavar="N", help="samples of noise")
     parser.add_argument("--pictures", type=int, default=0, metavar="N", help="samples of five pictures")

@@ -4,7 +4,6 @@
     time_tolerance.py ratios     # viscosity ratios 0.05 to 50: error divided by tolerance, each implicit scheme
     time_tolerance.py scenes     # the same for scenes of other kinds, default scheme
     time_tolerance.py schemes    # evaluations and seconds of every scheme for an error below 1e-4
-    time_tolerance.py cost --against OLD_PROGRAM    # the same divided by that of another program, default scheme
     time_tolerance.py figure     # error against work at four viscosity ratios, viscosity_ratio.png
 
 The error is the largest difference of D (`taylor_inertia`, of the particle where it is largest) over the run to a
@@ -12,10 +11,9 @@ reference on the same mesh with the same integrals. Two references by different 
 printed. Runs are made once, under results/time_tolerance.
 """
 
-import argparse
 import pathlib
 
-from package import RATIO, SHEAR, SIDE, answer, expect, interpolation, numpy, plt, studies, style, table, tanktread
+from package import RATIO, SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style, table
 
 BASE = {SIDE: 6, "Quadrature/tolerance": 1e-6}
 LONG = {"Output/interval": 1e3, "Time/steady tolerance": 1e-13}  # pictures and an early end would shorten steps
@@ -62,8 +60,6 @@ SCENES = {  # name: deck, settings
     "parabolic flow, ratio 5": of("parabolic_capsule", 5),
     "oblate, ratio 20": of("oblate_shear", 20, 6),
 }
-COSTS = {"ratio 5": shear(5), "ratio 5, n = 12": shear(5, **{SIDE: 12}), "ratio 1": shear(1), "ratio 0.2": shear(0.2),
-         "viscous membrane": SCENES["viscous membrane"], "tube, ratio 5": of("capsule_in_tube", 5)}
 SCHEMES = {f"ratio {ratio:g}": shear(ratio) for ratio in RATIOS} | {
     "Ca = 0.02": shear(1, **{"Membrane/capillary number": 0.02, "Membrane/pre-inflation": 0.05, "Time/final time": 2}),
     "Ca = 2, Skalak": shear(1, **SKALAK | {"Membrane/capillary number": 2, "Time/final time": 3}),
@@ -72,23 +68,19 @@ SCHEMES = {f"ratio {ratio:g}": shear(ratio) for ratio in RATIOS} | {
                                        "drop in extension, ratio 5")}}
 
 
-class Runs:
-    """Runs of one program."""
+def many(study, scene, variants):
+    """Returns the outcomes of a scene with each of these settings in addition."""
+    deck, base = scene
+    return study.all([(deck, base | LONG | variant) for variant in variants])
 
-    def __init__(self, study):
-        self.study = study
 
-    def many(self, scene, variants, also=LONG):
-        deck, base = scene
-        return self.study.all([(deck, base | also | variant) for variant in variants])
-
-    def reference(self, scene, tolerance):
-        """Returns a run by an explicit scheme, and its difference to one by an implicit scheme, whose steps err by less
-        than their tolerance (4.31)."""
-        first, second = self.many(scene, [{"Time/scheme": "bs3", "Time/tolerance": tolerance}, {
-            "Time/scheme": "bdf3", "Time/newton iterations": 20, "Time/tolerance": 10 * tolerance}])
-        expect(first.done and second.done, f"a reference of {scene[0]} fails: {first.message} {second.message}")
-        return first, error(second, first)
+def reference_of(study, scene, tolerance):
+    """Returns a run by an explicit scheme, and its difference to one by an implicit scheme, whose steps err by less
+    than their tolerance (4.31)."""
+    first, second = many(study, scene, [{"Time/scheme": "bs3", "Time/tolerance": tolerance}, {
+        "Time/scheme": "bdf3", "Time/newton iterations": 20, "Time/tolerance": 10 * tolerance}])
+    expect(first.done and second.done, f"a reference of {scene[0]} fails: {first.message} {second.message}")
+    return first, error(second, first)
 
 
 def error(outcome, reference):
@@ -105,13 +97,13 @@ def cheapest(outcomes, reference, level=1e-4):
             min((one.processor_seconds for one in good), default=numpy.nan))
 
 
-def ratios(runs, parsed):
+def ratios(study, parsed):
     tolerances = [1e-3, 1e-4, 1e-5, 1e-6]
 
     def row(ratio):
-        reference, difference = runs.reference(shear(ratio), 1e-8)
-        cells = [", ".join(f"{error(one, reference) / tolerance:.2f}" for one, tolerance in zip(runs.many(
-            shear(ratio), [{"Time/scheme": scheme, "Time/tolerance": one} for one in tolerances]), tolerances))
+        reference, difference = reference_of(study, shear(ratio), 1e-8)
+        cells = [", ".join(f"{error(one, reference) / tolerance:.2f}" for one, tolerance in zip(many(
+            study, shear(ratio), [{"Time/scheme": scheme, "Time/tolerance": one} for one in tolerances]), tolerances))
             for scheme in NAMES[:3]]
         return [f"{ratio:g}", *cells, f"{difference:.0e}"]
 
@@ -119,44 +111,33 @@ def ratios(runs, parsed):
           map(row, RATIOS))
 
 
-def scenes(runs, parsed):
+def scenes(study, parsed):
     def row(name):
-        reference, difference = runs.reference(SCENES[name], 1e-7)
-        pairs = zip(runs.many(SCENES[name], [{"Time/tolerance": one} for one in (1e-4, 1e-5)]), (1e-4, 1e-5))
+        reference, difference = reference_of(study, SCENES[name], 1e-7)
+        pairs = zip(many(study, SCENES[name], [{"Time/tolerance": one} for one in (1e-4, 1e-5)]), (1e-4, 1e-5))
         return [name, *(f"{error(one, reference) / tolerance:.2f} ({one.counts['evaluations']})"
                         for one, tolerance in pairs), f"{difference:.0e}"]
 
     table(["scene", "error/tolerance (evaluations) at 1e-4", "at 1e-5", "references differ by"], map(row, SCENES))
 
 
-def cost(runs, parsed):
-    expect(parsed.against, "cost needs --against PROGRAM")
-    old = Runs(tanktread.Study(parsed.against, parsed.output / "old", parsed.limit, parsed.jobs))
-
+def schemes(study, parsed):
     def row(name):
-        reference, _ = runs.reference(COSTS[name], 1e-7)
-        (e0, s0), (e1, s1) = (cheapest(one.many(COSTS[name], SWEEP, {}), reference) for one in (old, runs))
-        return [name, e0, e1, f"{e1 / e0:.2f}", f"{s0:.2f}", f"{s1:.2f}", f"{s1 / s0:.2f}"]
-
-    table(["scene", "evaluations before", "now", "ratio", "processor seconds before", "now", "ratio"], map(row, COSTS))
-
-
-def schemes(runs, parsed):
-    def row(name):
-        reference, _ = runs.reference(SCHEMES[name], 1e-7)
-        found = [cheapest(runs.many(SCHEMES[name], [{"Time/scheme": scheme} | one for one in SWEEP]), reference)
+        reference, _ = reference_of(study, SCHEMES[name], 1e-7)
+        found = [cheapest(many(study, SCHEMES[name], [{"Time/scheme": scheme} | one for one in SWEEP]), reference)
                  for scheme in NAMES]
         return [name, *(f"{evaluations}, {seconds:.2f} s" if seconds > 0 else "" for evaluations, seconds in found)]
 
     table(["evaluations and seconds for an error below 1e-4", *(f"`{name}`" for name in NAMES)], map(row, SCHEMES))
 
 
-def figure(runs, parsed):
+def figure(study, parsed):
     drawing, axes = plt.subplots(2, 4, figsize=(12, 6), sharey=True)
     for (upper, lower), ratio in zip(axes.T, (0.2, 1, 5, 20)):
-        reference, _ = runs.reference(shear(ratio), 1e-8)
+        reference, _ = reference_of(study, shear(ratio), 1e-8)
         for name, color in zip(NAMES, style.RUNS):
-            done = [one for one in runs.many(shear(ratio), [{"Time/scheme": name} | one for one in SWEEP]) if one.done]
+            made = many(study, shear(ratio), [{"Time/scheme": name} | one for one in SWEEP])
+            done = [one for one in made if one.done]
             errors = [error(one, reference) for one in done]
             pen = {"color": color, "label": name, "markersize": 4, "linewidth": 1}
             upper.loglog([one.processor_seconds for one in done], errors, ".-", **pen)
@@ -170,15 +151,14 @@ def figure(runs, parsed):
 
 
 def main():
-    tables = {one.__name__: one for one in (ratios, scenes, cost, schemes, figure)}
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    tables = {one.__name__: one for one in (ratios, scenes, schemes, figure)}
+    parser = command_line(__doc__)
     parser.add_argument("what", choices=tables)
-    parser.add_argument("--against", type=pathlib.Path, help="another program, for `cost`")
     parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default: %(default)s)")
     studies.arguments(parser, pathlib.Path("results/time_tolerance"))
     parser.set_defaults(limit=900)
     parsed = parser.parse_args()
-    tables[parsed.what](Runs(studies.study(parsed, parsed.jobs)), parsed)
+    tables[parsed.what](studies.study(parsed, parsed.jobs), parsed)
 
 
 if __name__ == "__main__":

@@ -26,11 +26,6 @@ class Spectrum:
         """Share of the power in degrees beyond SMOOTH."""
         return self.power[SMOOTH + 1:].sum() / self.power.sum()
 
-    @property
-    def mean_degree(self):
-        """Mean of the degrees beyond SMOOTH, weighted by power."""
-        return numpy.average(self.degrees[SMOOTH + 1:], weights=self.power[SMOOTH + 1:])
-
 
 def short_share(run, field="load"):
     """Returns the share of the power of short waves in the last snapshot of a run."""

@@ -11,26 +11,28 @@ and in processor seconds of this machine, all ranks together. Each point is a ru
 whose runs are numbered and told beside it by what differs from the default, the ring.
 """
 
-import argparse
+import dataclasses
 import itertools
 import math
 import pathlib
 
-from package import answer, expect, interpolation, numpy, plt, studies, style
+from package import answer, command_line, expect, interpolation, numpy, plt, studies, style
 from tanktread.files import parsed as read
 from tanktread.files import table
 
 COSTS = {"seconds": "processor seconds", "kernels": "kernel evaluations"}
+# A run that came to its end. Points are compared by identity.
+Point = dataclasses.make_dataclass("Point", "picked label error kind seconds kernels evaluations".split(), eq=False)
 
 
 class Scene:
     """A study file. `choices`: {choice: {option: settings}}; the first option is the default."""
 
-    def __init__(self, path, curves, without=()):
+    def __init__(self, path, curves):
         text = read(path)
         self.name, self.title, self.curves = pathlib.Path(path).stem, text["title"], curves
         self.decks, self.base, self.error = text["deck"], text.get("base", {}), text["error"]
-        self.choices = {choice: {name: keys or {} for name, keys in options.items() if name not in without}
+        self.choices = {choice: {name: keys or {} for name, keys in options.items()}
                         for choice, options in text["choices"].items()}
         self.levels, self.pairs = text.get("levels", [1e-3, 1e-4, 1e-5]), text.get("pairs")
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
@@ -78,23 +80,16 @@ class Scene:
             ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
             outcome, label = study.run(decks, settings, ranks), self.label(picked)
             if not outcome.done:
-                why = "not in this program" if outcome.refused else "failed"
-                print(f"{label}: {why}: {outcome.message}", flush=True)
+                print(f"{label}: {outcome.status}: {outcome.message}", flush=True)
                 rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
                 continue
-            points.append(Point(picked, label, outcome, error_of(outcome), kind(picked[self.shape])))
+            points.append(Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
+                                outcome.kernel_evaluations, outcome.counts.get("evaluations", 1)))
             one = points[-1]
             rows.append((*picked.values(), one.error, one.seconds, one.kernels, one.evaluations, ""))
             print(f"{label:44} error {one.error:.2e}  {one.seconds:7.2f} s  {one.kernels:.3g} kernel, "
                   f"{one.evaluations} velocity evaluations", flush=True)
         return points, rows
-
-
-class Point:
-    def __init__(self, picked, label, outcome, error, kind):
-        self.picked, self.label, self.error, self.kind = picked, label, error, kind
-        self.seconds, self.kernels = outcome.processor_seconds, outcome.kernel_evaluations
-        self.evaluations = outcome.counts.get("evaluations", 1)
 
 
 def kind(option):
@@ -147,7 +142,7 @@ def draw_legend(axis, colors, numbers):
 
 
 def report(scene, points):
-    """Prints the default against the front, and what each option of each choice needs at best for a level of error."""
+    """Prints the default against the front, and the quickest run for each level of error."""
     default = points[0]
     for cost, unit in COSTS.items():
         best = min((one for one in points if one.error <= default.error), key=lambda one: getattr(one, cost))
@@ -159,29 +154,22 @@ def report(scene, points):
         if not reaching:
             print(f"error {level:g}: none")
             continue
-        best, least = (min(reaching, key=lambda one: getattr(one, cost)) for cost in COSTS)
+        best = min(reaching, key=lambda one: one.seconds)
         print(f"error {level:g}: best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
               f"{best.evaluations} velocity evaluations")
-        for choice, option in [(choice, option) for choice, options in scene.choices.items() for option in options]:
-            these = [one for one in reaching if one.picked[choice] == option]
-            if these:
-                quick, lean = (min(these, key=lambda one: getattr(one, cost)) for cost in COSTS)
-                print(f"    {choice:14} {option:26} {quick.seconds:9.3g} s ({quick.seconds / best.seconds:6.2f} x)  "
-                      f"{lean.kernels:9.3g} kernels ({lean.kernels / least.kernels:6.2f} x)  {quick.label}")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", help="the study: a file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2),
                         help="choices that may differ from the default at a time (default: 2)")
     parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
-    parser.add_argument("--without", nargs="+", default=[], metavar="OPTION", help="leave these options out")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR",
                         help="folder of reference curves (default: none, a run of the study's `reference` instead)")
     studies.arguments(parser, pathlib.Path("results/work_precision"))
     parsed = parser.parse_args()
-    scene = Scene(parsed.study, parsed.curves, parsed.without)
+    scene = Scene(parsed.study, parsed.curves)
     points, rows = scene.points(studies.study(parsed), parsed.differences, parsed.only)
     expect(points, "no run came to its end")
     kinds = list(dict.fromkeys(one.kind for one in points))
@@ -201,7 +189,6 @@ def main():
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = [parsed.study] + (["--differences", "1"] if parsed.differences == 1 else [])
     words += ["--only", *parsed.only] if parsed.only else []
-    words += ["--without", *parsed.without] if parsed.without else []
     against = f", against {scene.error['curve'] if parsed.curves else 'a finer run'}" if "curve" in scene.error else ""
     figure.supxlabel(rf"\$ {studies.command_of(__file__, *words)}" f"\nerror: {scene.error.get('text', '')}{against}",
                      x=0.01, ha="left", fontsize=7.5)

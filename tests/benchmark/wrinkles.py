@@ -10,10 +10,9 @@ waves are degrees of 9 and more, which the flow does not force. Membranes withou
 unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
 """
 
-import argparse
 import pathlib
 
-from package import SHEAR, SIDE, answer, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style
 import waves
 
 QUIET = 1e-3  # share of the load's power in waves below which there are none
@@ -30,7 +29,7 @@ def measured(study, n, modulus, parsed):
     found[0].power = sum(each.power / each.power.sum() for each in found) / len(found)
     t, d = one.series["time"], one.series["taylor_inertia"]
     t, d = t[t >= parsed.time - 2], d[t >= parsed.time - 2]
-    return one, found[0], numpy.trapz(d, t) / (t[-1] - t[0]), numpy.ptp(d)
+    return one, found[0], interpolation.mean(t, d), numpy.ptp(d)
 
 
 def element_size(n):
@@ -50,8 +49,8 @@ def draw_row(study, axes, modulus, parsed):
         # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
         wave, size = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax()), element_size(n)
         waved, length = spectrum.short > QUIET, spectrum.wavelength(wave)
-        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.mean_degree,
-                     spectrum.short, mean, reach, one.seconds))
+        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.short, mean, reach,
+                     one.seconds))
         words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
         print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; "
               f"D = {mean:.5f}, range {reach:.1e}; {one.seconds:.0f} s", flush=True)
@@ -60,9 +59,10 @@ def draw_row(study, axes, modulus, parsed):
         if waved:
             lengths.append((1 / size, length))
             left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
+    expect(rows, f"no run with the modulus {modulus:g} came to its end")
     left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
              ylabel="power of the load", ylim=(1e-9, 2))
-    middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][7], 1.1 * rows[-1][7]))
+    middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][6], 1.1 * rows[-1][6]))
     sizes = numpy.array([element_size(n) for n in parsed.meshes])
     right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
     right.plot(1 / sizes, 2.25 * sizes, color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
@@ -73,7 +73,7 @@ def draw_row(study, axes, modulus, parsed):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("--meshes", nargs="+", type=int, default=[6, 9, 12], metavar="N",
                         help="elements along a side of the cube (default: 6 9 12)")
     parser.add_argument("--modulus", nargs="+", type=float, default=[0.0, 0.0005, 0.005],
@@ -88,7 +88,7 @@ def main():
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
     figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)
     studies.write_table(parsed.output / "wrinkles.csv", [
-        "modulus", "elements_per_side", "element_size", "degree", "wavelength", "mean_degree", "short_share",
+        "modulus", "elements_per_side", "element_size", "degree", "wavelength", "short_share",
         "taylor_inertia", "range", "seconds"], rows)
     style.save(figure, parsed.output / "wrinkles.png")
 

@@ -126,6 +126,11 @@ def snapshots_and_summaries_that_are_cut():
             path.write_text("a: [")
         _refused("figure", "shape", name)
         _refused("report", name)
+    pathlib.Path("a/run.hdf.series").write_text("{}")
+    pathlib.Path("b/summary.yaml").write_text("text")
+    _refused("figure", "shape", "a")
+    _refused("report", "b")
+    _refused("read", _damaged("cut_deck", lambda file: [file.pop("deck"), file.create_dataset("deck", data="Tanktread: [")]))
     _all_refused()
 
 
@@ -149,6 +154,12 @@ def tables_that_are_empty_or_no_tables():
         pathlib.Path("known/nh_shear_ca0.3_spectral.csv").write_text(pathlib.Path(name).read_text())
         _refused("figure", "deformation", "one", "--curves", "known")
         _refused("outline", name)
+    pathlib.Path("late.csv").write_text("t,taylor_inertia\n100,0\n200,0.1\n")
+    _refused("figure", "convergence", "one", "--curve", "late.csv")
+    pathlib.Path("exact.csv").write_text("0,0,0.1\n0.1,0.05,0\n0.2,0.1,0.1\n")
+    for datum in "{series: taylor_inertia, curve: exact.csv}", "{series: taylor_inertia, value: 0.1, error: 0}", CURVE.replace("0.1", "1e-x") % "exact.csv":
+        pathlib.Path("fit.yaml").write_text(FIT % datum)
+        _refused("fit", "fit.yaml", "--jobs", "1")
     _all_refused()
 
 

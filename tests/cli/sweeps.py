@@ -199,6 +199,16 @@ def a_deck_with_keys_changed_is_run_once_and_a_surface_is_evaluated_anywhere():
     close(abs(shot.evaluate(shot.points, cells, s, t, ds=1) - slope).max(), 0, 1e-7, "a derivative")
 
 
+def a_column_may_be_the_series_of_a_particle_and_a_mean_is_over_time():
+    deck("Tanktread: { Flow: { type: simple shear }, Time: { final time: 0.1 }, Particles: { upper: { center: [0, 0, 3] }, lower: {},\n"
+         "  defaults: { Membrane: { capillary number: 0.3 }, Surface: { elements per side: 3 } } } }")
+    pathlib.Path("study.yaml").write_text("deck: deck.yaml\nrecord: {upper/area: upper/area, mean: {series: upper/area, take: mean}}\n")
+    _sweep("study.yaml", "--jobs", "1")
+    row, found = _rows()[0], tanktread.run(next(pathlib.Path("results/study/runs").glob("deck_*"))).series
+    close(float(row["upper/area"]), found["upper/area"][-1], 1e-12, "the last value")
+    close(float(row["mean"]), numpy.trapz(found["upper/area"], found["time"]) / found["time"][-1], 1e-12, "the mean over time")
+
+
 def a_sweep_has_a_row_for_every_combination_and_draws_a_column():
     deck(DECK)
     deck(STUDY, "study.yaml")

@@ -85,8 +85,8 @@ void SolverOptions::declare(deck::Section& section) {
       "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
       "`first kind`: the tractions are the unknowns (2.40) of a dense matrix, which is factored for every configuration; far more "
       "accurate if gaps are small. `auto`: `first kind` if there are at least two rigid bodies, all with Adaptation/enabled and together "
-      "with at most 1500 control points at the start, or if the only particle in a Tube or Channel is a rigid body with at most 1500 control points and "
-      "Solvers/tube is `schur`; otherwise `second kind`");
+      "with at most 1500 control points at the start, or if the only particle in a Tube or Channel is a rigid body with at most 1500 "
+      "control points and Solvers/tube is `schur`; otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "

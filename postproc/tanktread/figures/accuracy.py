@@ -5,7 +5,7 @@ import tempfile
 
 import numpy
 
-from ..interpolation import difference
+from ..interpolation import difference, mean
 from ..mistakes import expect, log
 from ..results import Run
 from ..runs import Study, settings_of
@@ -22,29 +22,22 @@ class Levels:
     def __init__(self, run):
         found = (run.summary or {}).get("accuracy")
         expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
+        expect(found.get("levels"), f"{run.directory} has no finished level")
         self.requests = found["requests"]
         self.settings = [settings_of(one["settings"]) for one in found["levels"]]
         self.seconds = numpy.array([one["seconds"] for one in found["levels"]])
         self.runs = [Run(run.directory / f"level_{one['level']}") for one in found["levels"]]
 
-    def values(self, run, request):
-        """Returns times and values of which a request limits the error."""
-        series = run.series[request["series"]]
-        if request["of"] == "run":
-            return run.series["time"], series
-        value = series[-1] if request["of"] == "end" else average(run.series["time"], series)
-        return numpy.zeros(1), numpy.array([value])
-
     def errors(self, request):
         """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
-        finest = self.values(self.runs[-1], request)
-        found = [largest(self.values(one, request), finest) for one in self.runs[:-1]]
+        finest = values(self.runs[-1], request)
+        found = [largest(values(one, request), finest) for one in self.runs[:-1]]
         return numpy.array([*found, request["estimated error"]])
 
     def parts(self, request, study):
         """Returns {part: change of the result if only this part is refined}, at the second last level but one."""
         k = max(0, len(self.runs) - 3)
-        base, found = self.values(self.runs[k], request), {}
+        base, found = values(self.runs[k], request), {}
         with tempfile.TemporaryDirectory() as folder:
             deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
             deck.write_text(self.runs[k].deck_text, encoding="utf-8")
@@ -54,15 +47,19 @@ class Levels:
                     continue
                 outcome = study.run(deck, finer)
                 expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
-                found[part] = largest(self.values(outcome.run, request), base)
+                found[part] = largest(values(outcome.run, request), base)
         return found
 
 
-def average(times, values):
-    """Returns the time average of a series, by the trapezoidal rule."""
-    if len(times) == 1:
-        return values[0]
-    return numpy.sum(numpy.diff(times) * (values[1:] + values[:-1]) / 2) / (times[-1] - times[0])
+def values(run, request):
+    """Returns times and values of which a request limits the error; of a branch those at folds and at its end."""
+    times, series = run.series["time"], run.series[request["series"]]
+    if "fold" in run.series:
+        chosen = numpy.flatnonzero((run.series["fold"] != 0) | (numpy.arange(len(series)) == len(series) - 1))
+        times, series = numpy.arange(len(chosen), dtype=float), series[chosen]
+    if request["of"] == "run":
+        return times, series
+    return numpy.zeros(1), numpy.array([series[-1] if request["of"] == "end" else mean(times, series)])
 
 
 def largest(one, other):

@@ -14,7 +14,7 @@ from .surfaces import field_of
 
 LEAST_WIDTH = 100  # pixels
 DEFORMABLE = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}  # label of an axis, and its series
-RIGID = {"incl., °": ["inclination"], "ω₂": ["angular_velocity_x2"]}
+RIGID = {"incl., °": ["inclination"]}
 
 
 @figure
@@ -109,9 +109,10 @@ class Film:
 def shown(run):
     """Returns {axis label: [series]} of the two panels below the surface."""
     if not run.several:
-        return DEFORMABLE if "taylor_inertia" in run.series else RIGID
+        rate = "ω₂" + run.in_units("1/time")
+        return DEFORMABLE if "taylor_inertia" in run.series else RIGID | {rate: ["angular_velocity_x2"]}
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
-    return ({"D": deforming} if deforming else {}) | {"smallest gap": ["smallest_gap"]}
+    return ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}
 
 
 def middle(shot):

@@ -5,7 +5,7 @@ import pathlib
 import numpy
 import yaml
 
-from ..mistakes import Mistake, log
+from ..mistakes import expect, log
 from ..runs import Study
 from . import style
 from .register import figure
@@ -34,12 +34,12 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
             draw(axes[1], parameter, run.series["leading_rate"], unstable(run), color)
     for p, d in exact or []:
         upper.plot(p, d, "+", color=style.INK)
-    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else series)
+    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else runs[0].axis(series))
     if len(runs) > 1:
         upper.legend()
     if rated:
         axes[1].axhline(0, color=style.INK, linewidth=0.6)
-        axes[1].set_ylabel("leading rate")
+        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("_", " "))
     axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
     return figure
 
@@ -69,6 +69,8 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     names, reached = set(), []
     for run, color in zip(runs, style.RUNS * len(runs)):
         found = numpy.flatnonzero(run.series["fold"] > 0)
+        expect(len(found) and "second_parameter" in run.series,
+               f"{run.directory} has no folds along a Continuation/second parameter")
         continuation = run.deck["Continuation"]
         names.add((continuation["second parameter"], continuation["parameter"]))
         found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
@@ -79,9 +81,8 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
         for row in zip(second, parameter, value):
             log.info(f"{run.name}: {continuation['second parameter']} {row[0]:.7g}: fold at {row[1]:.7g}, "
                      f"{series} = {row[2]:.6f}")
-    if len(names) > 1:
-        raise Mistake("one figure has one pair of parameters; these runs have " +
-                      "; ".join(" against ".join(pair[::-1]) for pair in sorted(names)))
+    expect(len(names) == 1, "one figure has one pair of parameters; these runs have "
+                            + "; ".join(" against ".join(pair[::-1]) for pair in sorted(names)))
     for point in exact or []:
         upper.plot(*point, "+", color=style.INK, markersize=9)
     second, parameter = names.pop()
@@ -90,7 +91,7 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set(ylabel="Taylor parameter D there" if series.startswith("taylor") else series + " there", xlabel=second)
+    lower.set(ylabel="Taylor parameter D there" if series.startswith("taylor") else runs[0].axis(series), xlabel=second)
     return figure
 
 
@@ -118,7 +119,7 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     draw(axis, parameter, rate, unstable(run), style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
-    axis.set(xlabel=path, ylabel="rate of the leading mode")
+    axis.set(xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
     axis.legend()
     return figure
 
@@ -154,7 +155,7 @@ def in_time(study, deck, run, k, path, series, amplitude, length):
         if not outcome.done:
             log.info(f"from {settings['Particle/initial shape/run']}: {outcome.message}")
             return numpy.nan
-        values.append(numpy.interp(times, outcome.run.time, outcome.series[series]))
+        values.append(numpy.interp(times, outcome.series["time"], outcome.series[series]))
         if numpy.isnan(values[-1]).any():
             log.info(f"from {settings['Particle/initial shape/run']}: {series} is undefined (NaN)")
             return numpy.nan

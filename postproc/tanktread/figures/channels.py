@@ -22,7 +22,7 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
 
     shapes: number of times, evenly along the particle's way
     across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
-    c = channel_of(run)
+    c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
     if axes is None or hasattr(axes, "add_subplot"):
         figure = style.canvas(axes, 10.5, 9.5)
         panels = figure.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]],
@@ -32,24 +32,16 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
         panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
     cut_open(panels["cut"], run, c, shapes, across - 1)
     along_the_way(panels, run, c)
-    wall(panels["wall"], run, c)
+    panels["wall"].plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
+    panels["wall"].set(xlabel="arc length along the centre line" + run.in_units("length"),
+                       title="shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
     return figure
-
-
-def channel_of(run):
-    """Returns the arrays of channel.h5 by name: centre (n, 3), s (n,), wall (4, n, 3) and others."""
-    return arrays_of(run.directory / "channel.h5")
-
-
-def centroid(run):
-    """Returns the positions of the centroid (rows, 3), in length."""
-    name = "center_x" if "center_x1" in run.series else "centroid_x"
-    return numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
 
 
 def way_along(run, c):
     """Returns the way of the centroid (rows,) along the centre line: to its nearest point, and on along its tangent."""
-    places = centroid(run)
+    name = "center_x" if "center_x1" in run.series else "centroid_x"
+    places = numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
     nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
     along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]
     return c["s"][nearest] + numpy.sum((places - c["centre"][nearest]) * along, axis=1)
@@ -108,14 +100,8 @@ def along_the_way(axes, run, c):
     axes["pressure"].legend()
     added = f"pressure drop that the particle adds{run.in_units('force/length^2')}"
     axes["pressure"].set_title(f"{added} (empty channel: {c['pressure_drop']:.5g})")
-    for name in ("extents", "velocity", "pressure"):
+    for name in "extents", "velocity", "pressure":
         axes[name].set_xlabel("arc length of the centroid along the centre line" + run.in_units("length"))
-
-
-def wall(axis, run, c):
-    axis.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
-    axis.set_xlabel("arc length along the centre line" + run.in_units("length"))
-    axis.set_title("shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
 
 
 @figure
@@ -151,6 +137,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
                  f"smallest film {run.series['gap'].min():.4g}")
     upper.set(ylim=(0, None), ylabel="Ca")
     upper.legend()
-    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$")
+    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
     lower.legend()
     return figure

@@ -157,14 +157,6 @@ def near_tip(shot, field):
     return place[:, 0], place[:, 2], numpy.linalg.norm(place[:, 3:], axis=1)
 
 
-def on_section(shot, field):
-    """Returns angle (n,), distance from the middle (n,) and field (n, k) along the section x2 = middle, by angle."""
-    place = field_cut(shot, field).mean(axis=1)
-    angle = numpy.arctan2(place[:, 2], place[:, 0])
-    order = numpy.argsort(angle)
-    return angle[order], numpy.hypot(place[:, 0], place[:, 2])[order], place[order, 3:]
-
-
 def section_variation(shot, field):
     """Returns angle (n,) and |d field / dl| (n,) along the section x2 = middle. The angle is that of the section's
     ellipse, stretched to a circle."""

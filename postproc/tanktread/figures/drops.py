@@ -68,9 +68,10 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
                                           linewidths=1.6))
     for side in (-1, 1):
         axes[0].plot(side * outline[0], outline[1], color=style.FAINT, linestyle=(0, (4, 3)), linewidth=1)
-    axes[0].set(aspect="equal", xlabel="$x_1$", ylabel="$x_3$")
+    length = run.in_units("length")
+    axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
     axes[1].semilogy(run.time, abs(series["energy"] - energy), color=style.RUNS[0])
-    axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|")
+    axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|" + run.in_units("force length"))
     if meshes:
         points, error, seconds = numpy.array(list(errors(deck, meshes, "results/vesicles"))).T
         for row in zip(points, error, seconds):

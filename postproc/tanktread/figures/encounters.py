@@ -16,15 +16,13 @@ from .style import plt
 
 
 @figure
-def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None,
-              unit: float = 1):
+def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None):
     """Two particles that meet: the path of one past the other, the smallest gap, and how they deform.
 
     Drawn against dx; dx, dz are x1 and x3 of the first centroid less those of the second one, over R_C.
 
     pair: names of the two particles (default: the first two)
-    curve: a path of the literature, a CSV file with columns dx, dz
-    unit: length of that path's unit, over R_C"""
+    curve: a path of the literature, a CSV file with columns dx, dz over R_C"""
     figure, (path, gap, deformation) = style.panels(axes, 3, 1, 6.4, 8, sharex=True)
     for run, color in zip(runs, style.RUNS * len(runs)):
         names = pair or run.particles[:2]
@@ -42,7 +40,7 @@ def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pa
         log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, largest dz "
                  f"{dz.max():.5f}")
     if curve:
-        known = table(curve) * unit
+        known = table(curve)
         path.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
     path.set_ylabel("dz / R$_C$")
     path.legend()
@@ -87,6 +85,7 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 def wall(run):
     """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
     x1 is the normal."""
+    expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
     along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]

@@ -15,12 +15,15 @@ from .register import figure
 from .style import plt
 
 SAMPLES = 400  # along the way
+
+
 class Errors:
     """Of one run: `times` and `errors` of the series within the curve, its largest error, its mesh and what it cost."""
 
     def __init__(self, run, curve, series):
         t = run.time
         inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
+        expect(inside.any(), f"{run.directory} has no row within the times of the curve")
         self.run, self.times = run, t[inside]
         self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
                                    for time, value in zip(t[inside], run.series[series][inside])])
@@ -30,7 +33,7 @@ class Errors:
 
     @property
     def family(self):
-        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance'):g}"
+        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance')}"
 
 
 @figure
@@ -99,7 +102,7 @@ def report(runs, families):
 @figure
 def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
          set_: list[str] | None = None, curves: tuple[pathlib.Path, pathlib.Path, pathlib.Path] | None = None,
-         between: tuple[float, float] = (-3.9, 4.9), directory: pathlib.Path = pathlib.Path("results/step")):
+         between: tuple[float, float] = (-3.9, 4.9)):
     """Extents of a capsule against its centroid in a channel that steps, with edges rounded less and less, and sharp.
 
     The extent along x3 has kinks, beside which it is no better than rows are close: --set 'Time/maximum step=0.01' for
@@ -112,8 +115,7 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
     finer: keys by which runs are made finer, each KEY=VALUE
     set_: other keys of all runs, each KEY=VALUE
     curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
-    between: centroids between which extents are drawn
-    directory: where runs are kept"""
+    between: centroids between which extents are drawn"""
     large, small = radii
     words, finer = set_ or [], finer or []
     expect(0 < small < large,
@@ -122,7 +124,7 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
            "--between needs two centroids that ascend, but is given {:g} and {:g}".format(*between))
     settings_of(words + finer)
     known = [curve_of(path, between) for path in curves or []]
-    x, runs, deck = numpy.linspace(*between, SAMPLES), Study(directory=directory), deck_at(deck)
+    x, runs, deck = numpy.linspace(*between, SAMPLES), Study(directory="results/step"), deck_at(deck)
     of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
     sharp = sharp_edges(of_large, of_small, large / small)
     names = ("x₁", "x₂", "x₃")

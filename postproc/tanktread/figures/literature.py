@@ -8,13 +8,9 @@ import re
 import numpy
 
 from ..files import table
-from ..interpolation import difference, interpolated
 
-__all__ = ["Curve", "curves", "difference", "interpolated"]
-
-# First letters of a file name -> source. The capillary numbers in these names are of the Young modulus E_s = 3 G_s:
-# ours are three
-# times as large. The logarithmic neo-Hookean law differs from ours by up to 7 % in D.
+# First letters of a file name: source. The capillary numbers in these names are of the Young modulus E_s = 3 G_s: those
+# of decks are three times as large. The logarithmic neo-Hookean law differs from `neo-Hookean` by up to 7 % in D.
 SHEAR_SOURCES = {
     "pozrikidis_1995": "Pozrikidis 1995 (logarithmic law)",
     "ramanujan_pozrikidis_1998": "Ramanujan & Pozrikidis 1998 (logarithmic law)",
@@ -23,7 +19,7 @@ SHEAR_SOURCES = {
     "huet_2023_front_tracking": "Huet & Wachs 2023",
 }
 
-# than a law
+# Keys by which a membrane has more than a law.
 MORE = ("pre-inflation", "bending modulus", "bending number", "global area dilatation", "shear viscosity",
         "dilatational viscosity", "forces")
 

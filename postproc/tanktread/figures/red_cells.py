@@ -20,36 +20,36 @@ INCLINATION = (12.5, 13.2)
 RETURNING = ((0, 2.005), (0.032, 1.732), (0.065, 1.525), (0.115, 1.367), (0.184, 1.247), (0.231, 1.197), (0.300, 1.157),
              (0.397, 1.112))
 RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # of the disc in um; Pa s outside; viscosity inside over that outside
+DRAWN = 5.6  # force that draws the cell out, over shear modulus and radius
 MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosity in uN s/m: in use, slowest, fastest
 
 
 @figure
-def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, radius: float = RADIUS, shear_modulus: float = 5.3,
-             law: list[str] | None = None):
+def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: float = 5.3):
     """A red cell in optical tweezers: its diameters along and across the force, beside those that were measured.
 
     Beside them its outline from the side at each force. The deck, with lengths in radii of the disc, is run once for
     each force.
 
-    radius: radius of the disc, in um
-    shear_modulus: in uN/m
-    law: other laws of the membrane to draw beside the deck's"""
+    shear_modulus: in uN/m"""
     figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
-    for name, color in zip([None, *(law or [])], style.RUNS):
-        runs = [pulled(deck, row[0] / (radius * shear_modulus), {"Membrane/law": name} if name else {})
-                for row in STRETCHED]
-        sizes = radius * numpy.array([[run.series["length_x2"][-1], run.series["length_x1"][-1]] for run in runs])
-        for (pn, across, along, bounds), (found_across, found_along) in zip(STRETCHED, sizes):
-            inside = bounds is None or bounds[0] <= found_along <= bounds[1]
-            within = "" if bounds is None else ", within its bar" if inside else ", OUTSIDE its bar"
-            log.info(f"{name or ''}{pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
-                     f"across {found_across:.2f} um (measured {across})")
-        forces = [row[0] for row in STRETCHED]
-        plot.plot(forces, sizes[:, 1], color=color, label=f"{name or runs[0].value('Membrane/law')}, along")
-        plot.plot(forces, sizes[:, 0], color=color, linestyle=(0, (4, 2)), label="across")
-        if name is None:
-            draw_outlines(outlines, runs, radius)
-    draw_measured(plot)
+    runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in STRETCHED]
+    sizes = RADIUS * numpy.array([[run.series["length_x2"][-1], run.series["length_x1"][-1]] for run in runs])
+    for (pn, across, along, bounds), (found_across, found_along) in zip(STRETCHED, sizes):
+        inside = bounds is None or bounds[0] <= found_along <= bounds[1]
+        within = "" if bounds is None else ", within its bar" if inside else ", OUTSIDE its bar"
+        log.info(f"{pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
+                 f"across {found_across:.2f} um (measured {across})")
+    forces = [row[0] for row in STRETCHED]
+    plot.plot(forces, sizes[:, 1], color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
+    plot.plot(forces, sizes[:, 0], color=style.RUNS[0], linestyle=(0, (4, 2)), label="across")
+    draw_outlines(outlines, runs)
+    measured = numpy.array([row[2] for row in STRETCHED])
+    low, high = (numpy.array([row[2] if row[3] is None else row[3][k] for row in STRETCHED]) for k in (0, 1))
+    plot.errorbar(forces, measured, (measured - low, high - measured), fmt=style.MARKS[0], color=style.INK,
+                  markersize=4, linewidth=0.8, capsize=2, label="Mills and others 2004")
+    plot.plot(forces, [row[1] for row in STRETCHED], style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
+              label="across, measured")
     plot.set(xlabel="force / pN", ylabel="diameter / µm")
     plot.legend()
     return figure
@@ -61,20 +61,10 @@ def pulled(deck, force, more):
     return run_of(deck, {f"Membrane/forces/{name}/force": [sign * force, 0, 0] for name, sign in ends} | more)
 
 
-def draw_measured(plot):
-    forces = numpy.array([row[0] for row in STRETCHED])
-    along = numpy.array([row[2] for row in STRETCHED])
-    low, high = (numpy.array([row[2] if row[3] is None else row[3][k] for row in STRETCHED]) for k in (0, 1))
-    plot.errorbar(forces, along, (along - low, high - along), fmt=style.MARKS[0], color=style.INK, markersize=4,
-                  linewidth=0.8, capsize=2, label="Mills and others 2004")
-    plot.plot(forces, [row[1] for row in STRETCHED], style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
-              label="across, measured")
-
-
-def draw_outlines(plot, runs, radius):
+def draw_outlines(plot, runs):
     """Draws the convex outlines as seen along x3, one per force."""
     for (pn, *_), run, shade in zip(STRETCHED, runs, numpy.linspace(0.25, 1, len(runs))):
-        points = numpy.asarray(run.snapshots()[-1].points)[:, :2] * radius
+        points = numpy.asarray(run.snapshots()[-1].points)[:, :2] * RADIUS
         around = numpy.linspace(0, 2 * numpy.pi, 361)
         directions = numpy.stack([numpy.cos(around), numpy.sin(around)])
         outline = points[(points @ directions).argmax(axis=0)]
@@ -95,7 +85,7 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
     elements: elements per side"""
     figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
     rates = numpy.array([row[0] for row in TURNING])
-    for value, color in zip(sorted(viscosity), style.RUNS):
+    for value, color in zip(sorted(viscosity), style.RUNS * len(viscosity)):
         found = numpy.array([last_turn(deck, rate, value, elements) for rate in rates])
         label = f"{value:g} µN s/m"
         plot.plot(rates, found[:, 0] / rates, "o-", markersize=3, color=color, label=label)
@@ -130,19 +120,18 @@ def last_turn(deck, rate, viscosity, elements):
 
 
 @figure
-def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, force: float = 5.6, elements: int = 6):
+def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int = 6):
     """A red cell let go by tweezers at a length of twice its width returns to its disc, beside the experiment.
 
     Length over width against time, and the time constant of the exponential that fits best, for several moduli and
     viscosities of the membrane. The deck has lengths in radii of the disc.
 
-    force: that draws it out, over shear modulus and radius
     elements: elements per side"""
     figure, (plot,) = style.panels(axes, 1, 1, 5.2, 3.6)
     time, ratio = numpy.array(RETURNING).T
     log.info(f"measured: time constant {constant(time, ratio):.4f} s")
     for (modulus, viscosity), color in zip(MEMBRANES, style.RUNS):
-        seconds, found = let_go(deck, force, elements, modulus, viscosity)
+        seconds, found = let_go(deck, elements, modulus, viscosity)
         log.info(f"{modulus:g} uN/m, {viscosity:g} uN s/m: time constant {constant(seconds, found):.4f} s, "
                  f"from a length over width of {found[0]:.3f}")
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
@@ -152,10 +141,10 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, force: float = 
     return figure
 
 
-def let_go(deck, force, elements, modulus, viscosity):
+def let_go(deck, elements, modulus, viscosity):
     """Returns seconds, and length over width from where it is as in the experiment at first."""
     mesh = {"Surface/elements per side": elements}
-    start = pulled(deck, force, mesh)
+    start = pulled(deck, DRAWN, mesh)
     unit = FLUID * RADIUS / modulus  # of time, in seconds: the deck's are fluid viscosity x radius / shear modulus
     run = pulled(deck, 0, mesh | {
         "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),

@@ -49,25 +49,13 @@ def caption(function):
 def _options(function):
     """Yields (name, default, type, help) of the keyword options."""
     hints = typing.get_type_hints(function)
-    paragraphs = inspect.getdoc(function).split("\n\n")[1:]
-    lines = dict(line.split(": ", 1) for part in paragraphs for line in _joined(part) if ": " in line)
+    lines = dict(line.split(": ", 1) for line in inspect.getdoc(function).split("\n") if ": " in line)
     for name, one in list(inspect.signature(function).parameters.items())[2:]:
         kind = hints[name]
         inner = [each for each in typing.get_args(kind) if each is not type(None)]
         if type(None) in typing.get_args(kind):  # an optional one
             kind = inner[0]
         yield name, one.default, kind, lines.get(name, "")
-
-
-def _joined(part):
-    """Returns the lines of a paragraph, with indented lines joined to the line before."""
-    found = []
-    for line in part.split("\n"):
-        if line.startswith(" ") and found:
-            found[-1] += " " + line.strip()
-        else:
-            found.append(line)
-    return found
 
 
 def parser_of(name, program="tanktread-figure"):
@@ -135,6 +123,8 @@ def command():
     parsed = vars(parser_of(name).parse_args(words[1:]))
     given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
     settings = settings_of(parsed.pop("set", []))
+    for option, value in parsed.items():
+        expect(type(value) is not int or value > 0 or option == "from_", f"--{option} must be above 0, but is {value}")
     if settings:
         given = [run_of(one, settings) for one in given] if isinstance(given, list) else run_of(given, settings)
     save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)

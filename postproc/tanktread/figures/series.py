@@ -5,7 +5,8 @@ from typing import Literal
 
 import numpy
 
-from ..mistakes import Mistake, log
+from ..interpolation import difference
+from ..mistakes import expect, log
 from ..results import time_label
 from . import literature, style
 from .register import figure
@@ -90,8 +91,7 @@ def draw_run(upper, lower, run, deformation, color):
 def draw_particles(upper, lower, run, deformation, colors):
     """Draws deformation and inclination of several particles, with thin lines if they are many."""
     deforming = [name for name in run.particles if f"{name}/{deformation}" in run.series]
-    if not deforming:
-        raise Mistake(f"{run.directory}: none of its particles deforms")
+    expect(deforming, f"{run.directory}: none of its particles deforms")
     few = len(deforming) <= len(style.RUNS)
     for k, name in enumerate(deforming):
         pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
@@ -133,18 +133,17 @@ def report(run, known):
     for curve in known:
         if not curve.exact:
             continue
-        d = literature.difference(t, run.series["taylor_inertia"], curve.t, curve.d)
-        angle = literature.difference(t, run.series["inclination"], curve.t, curve.inclination)
+        d = difference(t, run.series["taylor_inertia"], curve.t, curve.d)
+        angle = difference(t, run.series["inclination"], curve.t, curve.inclination)
         log.info(f"{run.name}: largest difference from the {curve.label}: {d:.2e} in D, {angle:.2e} degrees")
 
 
 @figure
-def refinement(runs, axes=None, *, steady: list[float] | None = None, deformation: Deformation = "taylor_inertia"):
+def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     """D over time with a mark at every change of the mesh, and the number of control points (the paper's Figure 14).
 
     Of several runs of one scene, the difference of D from the first one stands below, at the times of snapshots.
 
-    steady: steady values of D in the literature, drawn at the right
     deformation: which Taylor parameter"""
     compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
     heights = [3, 1.5, 1.8] if compares else [3, 1.8]
@@ -163,11 +162,6 @@ def refinement(runs, axes=None, *, steady: list[float] | None = None, deformatio
                          color=color)
         log.info(f"{run.name}: {len(changes)} changes of the mesh, D({t[-1]:g}) = {values[-1]:.6f}, "
                  f"{points[-1]:.0f} control points")
-    end = max(run.time[-1] for run in runs)
-    for value in steady or []:
-        upper.plot([0.97 * end, 1.03 * end], [value] * 2, color=style.INK)
-    if steady:
-        upper.plot([], [], color=style.INK, label="literature: " + ", ".join(f"{value:g}" for value in steady))
     if compares:
         axes[1].axhline(0, color=style.RUNS[0])
         axes[1].set_ylabel("10³ (D − D of\nthe first)")

@@ -5,7 +5,6 @@ from matplotlib.cm import ScalarMappable
 
 from ..mistakes import expect, log
 from ..results import field_label
-from ..snapshots import DIMENSIONS
 from . import style
 from .draw import VIEW, draw_sections, draw_surface, magnitude, scale, section_variation, share_window, view_axes
 from .register import figure
@@ -43,7 +42,7 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
 
 @figure
 def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "traction",
-           reference: list[float] | None = None, view: tuple[float, float] = VIEW):
+           view: tuple[float, float] = VIEW):
     """Meshes at some times, and below each the variation of a field along the section x2 = 0 (the paper's Figures 15,
     16).
 
@@ -51,7 +50,6 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
 
     times: simulated times (default: the start, the middle and the end); of several runs the last of them is drawn
     field: field whose variation is drawn
-    reference: reference values of its variation, in the deck's unit, one or one per panel: circles in the lower row
     view: azimuth and elevation of the eye, in degrees"""
     end = runs[0].series["time"][-1]
     if len(runs) > 1:
@@ -73,11 +71,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         points = run.series["n_control_points"][row]
         surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
         polar = figure.add_subplot(grid[2, k], projection="polar")
-        unit = run.scale(DIMENSIONS.get(field))[0] / run.scale("length")[0]
-        circle = reference and reference[min(k, len(reference) - 1)] / unit
-        tops.append((draw_variation(polar, shot, field, circle), polar))
-        if circle and (k == 0 or len(set(reference or [])) > 1):
-            polar.legend(loc="upper left", bbox_to_anchor=(-0.1, 0.04))
+        tops.append((draw_variation(polar, shot, field), polar))
     share_window(surfaces)
     for _, polar in tops:
         polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
@@ -86,19 +80,14 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     return figure
 
 
-def draw_variation(axis, shot, field, reference):
+def draw_variation(axis, shot, field):
     """Returns how far out it reaches."""
     angle, variation = section_variation(shot, field)
     closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
-    top = max(variation.max(), 1.15 * (reference or 0), 1e-12)
-    axis.plot(closed, numpy.append(variation, variation[0]), color=style.RUNS[0], linewidth=1, label=f"|d {field}/dl|")
-    if reference:
-        axis.plot(numpy.linspace(0, 2 * numpy.pi, 200), [reference] * 200, color=style.RUNS[1], linestyle=":",
-                  linewidth=1.6,
-                  label=f"reference, {reference:g}")
+    axis.plot(closed, numpy.append(variation, variation[0]), color=style.RUNS[0], linewidth=1)
     axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
     axis.set_rlabel_position(55)
     axis.tick_params(labelsize=7.5)
     axis.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     log.info(f"{shot.path}: largest variation {variation.max():.3g}")
-    return top
+    return max(variation.max(), 1e-12)

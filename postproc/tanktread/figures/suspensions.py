@@ -4,6 +4,7 @@ import pathlib
 
 import numpy
 
+from ..interpolation import averages_between
 from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study
@@ -74,7 +75,8 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     upper.set_ylabel("effective viscosity μ_eff/μ")
     upper.legend()
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set(ylabel="normal stress differences", xlabel="strain")
+    stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
+    lower.set(ylabel="normal stress differences" + stress, xlabel="strain")
     lower.legend()
     return figure
 
@@ -82,17 +84,16 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 def average(strain, values, first, blocks):
     """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
     blocks."""
+    expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
-    integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(strain) * (values[1:] + values[:-1]) / 2)])
-    ends = numpy.linspace(first, strain[-1], blocks + 1)
-    means = numpy.diff(numpy.interp(ends, strain, integral)) / numpy.diff(ends)
+    means = averages_between(strain, values, numpy.linspace(first, strain[-1], blocks + 1))
     return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
 
 
 @figure
 def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
-              jobs: int = 1, directory: pathlib.Path | None = None):
+              jobs: int = 1):
     """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
 
     A curve for each capillary number, from a sweep of runs that are kept in results/<study>. Below it stands
@@ -102,9 +103,8 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     single: deck of one capsule
     from_: strain at which averages begin
     blocks: number of parts of an average
-    jobs: runs at a time
-    directory: of the table and, under runs/, of results (default: results/<study>)"""
-    directory = directory or pathlib.Path("results") / pathlib.Path(study).stem
+    jobs: runs at a time"""
+    directory = pathlib.Path("results") / pathlib.Path(study).stem
     directory.mkdir(parents=True, exist_ok=True)
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
@@ -115,11 +115,16 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     for outcome, settings in zip(runs.outcomes, runs.rows):
         if row := averages(outcome, from_, blocks):
             rows.setdefault(settings[CA], []).append(row)
+    expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
     for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
         alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
         fraction, mean, error = numpy.array(sorted(found)).T
-        draw_viscosity(upper, lower, color, f"Ca = {ca:g}", alone, fraction, mean, error)
+        look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
+        upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
+        upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
+        lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
+        lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
             slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
@@ -160,14 +165,6 @@ def straight_line(x, y, error):
     table = numpy.column_stack([numpy.ones_like(x), x]) / error[:, None]
     covariance = numpy.linalg.inv(table.T @ table)
     return (covariance @ table.T @ (y / error))[0], covariance[0, 0] ** 0.5
-
-
-def draw_viscosity(upper, lower, color, label, alone, fraction, mean, error):
-    look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
-    upper.errorbar(fraction, mean, error, label=label, **look)
-    upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
-    lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
-    lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
 
 
 @figure
@@ -213,9 +210,7 @@ def drift(run, axes=None, *, from_: int = 10):
 def turns(time, values, phase):
     """Returns means in time over whole turns of the phase. Rows with NaN, where a series is undefined, are left out."""
     ends = numpy.interp(360 * numpy.arange(phase.max() // 360 + 1), phase, time)
-    time, values = time[~numpy.isnan(values)], values[~numpy.isnan(values)]
-    whole = numpy.concatenate([[0], numpy.cumsum((values[1:] + values[:-1]) / 2 * numpy.diff(time))])
-    return numpy.diff(numpy.interp(ends, time, whole)) / numpy.diff(ends)
+    return averages_between(time[~numpy.isnan(values)], values[~numpy.isnan(values)], ends)
 
 
 def line(means, first):

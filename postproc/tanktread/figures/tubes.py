@@ -6,6 +6,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
 from ..files import arrays_of
+from ..mistakes import expect
 from . import style
 from .draw import VIEW, draw_surface, section, share_window
 from .register import figure
@@ -20,10 +21,9 @@ PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "
 
 
 @figure
-def duct(runs, axes=None, *, no_path: bool = False):
-    """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across it.
-
-    no_path: without the path of the centroid"""
+def duct(runs, axes=None):
+    """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
+    it."""
     ducts = [duct_of(run) for run in runs]
     top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
     outlines = numpy.concatenate([d["outline"] for d in ducts])
@@ -33,8 +33,7 @@ def duct(runs, axes=None, *, no_path: bool = False):
     figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
     for axis, d, run in zip(axes, ducts, runs):
         filled = draw_section(axis, d, levels)
-        if not no_path:
-            draw_path(axis, run, d["radius"])
+        draw_path(axis, run, d["radius"])
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
     axes[0].set_ylabel("x₃ / R$_T$")
@@ -128,6 +127,7 @@ def shots_of(run, times):
     """Returns the saved steps nearest to the times, each once."""
     found = {shot.path: shot for shot in (run.snapshot_at(time) for time in times
                                           if time <= run.series["time"][-1] * (1 + 1e-9))}
+    expect(found, f"{run.directory} ends before the first of these times")
     return list(found.values())
 
 
@@ -186,7 +186,7 @@ def tube_motion(runs, axes=None):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
     ducts = [duct_of(run) for run in runs]
     figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
-    for run, d, colour in zip(runs, ducts, style.RUNS):
+    for run, d, colour in zip(runs, ducts, style.RUNS * len(runs)):
         speed, radius = d["mean_velocity"], d["radius"]
         s = run.series
         time = run.time

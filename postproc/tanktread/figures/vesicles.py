@@ -21,14 +21,11 @@ class Shape:
                                    for l in range(0, degree + 1, 2)]).T for order in (0, 1, 2)]
         self.size = degree // 2 + 1
 
-    def radius(self, c):
-        return numpy.exp(self.bases[0] @ c)
-
     def measures(self, c):
         """Returns area, volume, the integral of twice the mean curvature, and half the integral of its square: shape
         (4,)."""
         _, first, second = (basis @ c for basis in self.bases)
-        r, sine2 = self.radius(c), 1 - COSINE**2
+        r, sine2 = numpy.exp(self.bases[0] @ c), 1 - COSINE**2
         slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
         g = numpy.sqrt(r**2 + slope2)
         curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
@@ -107,6 +104,6 @@ def at_rest(energy, aspect):
                f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
         c, pressure = solved.x[:-1], solved.x[-1]
         values.append(energy(now.measures(c)))
-    r, sine = now.radius(c), numpy.sqrt(1 - COSINE**2)
+    r, sine = numpy.exp(now.bases[0] @ c), numpy.sqrt(1 - COSINE**2)
     log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
     return numpy.array([r * sine, r * COSINE]), values[-1]

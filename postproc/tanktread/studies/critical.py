@@ -11,13 +11,12 @@ from the deviations of the centroid from the parabola through its positions. A r
 twice the time, and once more; a run that still does neither ends the search with a message.
 """
 
-import argparse
 import pathlib
 
 import numpy
 
-from ..mistakes import Mistake, expect, log
-from ..runs import deck_at, settings_of
+from ..mistakes import Mistake, command_line, expect, log
+from ..runs import settings_of
 from . import common
 
 SLOW = 1e-3  # speed of a particle that stays, over the mean velocity
@@ -41,39 +40,29 @@ def stays(time, way, radius, speed):
     return True if slow and steady else None
 
 
-class Search:
-    """Runs at one value of the key after the other."""
-
-    def __init__(self, parsed):
-        self.parsed, self.runs, self.deck = parsed, common.study(parsed), deck_at(parsed.deck)
-        self.settings = {"Time/end when past": parsed.past} | settings_of(parsed.set)
-
-    def stays(self, value):
-        held, settings = None, self.settings | {self.parsed.key: value}
-        for _ in range(TIMES):
-            run, held = self.one(value, settings)
-            if held is not None:
-                return held
-            settings = settings | {"Time/final time": 2 * run.value("Time/final time")}
-        raise Mistake(f"{self.parsed.key}={value:.6g} neither passes nor stays")
-
-    def one(self, value, settings):
-        outcome = self.runs.run(self.deck, settings)
-        expect(outcome.done, f"{self.parsed.key}={value:.6g}: {outcome.message}")
+def stays_at(parsed, study, value):
+    """Returns whether the particle stays at a value of the key, by runs for longer and longer times."""
+    settings = {"Time/end when past": parsed.past} | settings_of(parsed.set) | {parsed.key: value}
+    for _ in range(TIMES):
+        outcome = study.run(parsed.deck, settings)
+        expect(outcome.done, f"{parsed.key}={value:.6g}: {outcome.message}")
         run, series = outcome.run, outcome.series
         speed = run.value("Flow/mean velocity", 1.0)
-        radius = run.value("Channel/radius", 1.0)
-        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"], radius, speed)
+        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"],
+                                                         run.value("Channel/radius", 1.0), speed)
         said = {True: "stays", False: "passes", None: f"neither passes nor stays by {series['time'][-1]:g}"}[held]
-        log.info(f"{self.parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
+        log.info(f"{parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
                  f"{series['velocity_x1'][-1] / speed:.2g} of the mean velocity; smallest film "
                  f"{series['gap'].min():.3g}, largest error of the volume {abs(series['volume_error']).max():.1g}; "
                  f"{outcome.processor_seconds:.0f} processor seconds")
-        return run, held
+        if held is not None:
+            return held
+        settings["Time/final time"] = 2 * run.value("Time/final time")
+    raise Mistake(f"{parsed.key}={value:.6g} neither passes nor stays")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("deck", type=pathlib.Path, help="the deck of a particle in a channel")
     parser.add_argument("--key", default="Flow/mean velocity", help="the key (default: %(default)s)")
     parser.add_argument("--between", nargs=2, type=float, required=True, metavar=("LOW", "HIGH"),
@@ -88,8 +77,9 @@ def main():
     parsed = parser.parse_args()
     low, high = parsed.between
     expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")
-    search = Search(parsed)
-    found, how = common.edge(search.stays, low, high, 1 + parsed.within)
+    expect(parsed.within > 0, f"--within must be above 0, but is {parsed.within:g}")
+    study = common.study(parsed)
+    found, how = common.edge(lambda value: stays_at(parsed, study, value), low, high, 1 + parsed.within)
     expect(how == "edge",
            f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")
     log.info(f"critical {parsed.key}: {found:.5g} to {found * (1 + parsed.within):.5g}")

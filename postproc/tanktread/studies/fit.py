@@ -27,19 +27,19 @@ An experiment is a YAML file: `deck` (one, or several that overlay each other), 
 
 The position of an outline in its picture is free. Derivatives are differences of runs, made side by side: one per step
 for each unknown key and experiment, none for positions and scales. Runs are kept and found again if all their keys are
-equal, so it is best to leave a `start` as it was. Errors are those of the data carried on, of nothing else: a quantity
-known with an error belongs under `unknown`, such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too
+equal, so it is best to leave a `start` as it was. Standard errors follow from those of the data and, if the deck
+requests an accuracy, from the estimated errors of the series. A quantity known with an error belongs under `unknown`,
+such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too
 large for the errors of the data, errors that the residuals give are printed too; a mesh that is too coarse for the data
 is the first suspect.
 """
 
-import argparse
 import os
 import pathlib
 
 import yaml
 
-from ..mistakes import expect, log, progress
+from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
@@ -105,7 +105,7 @@ def run(path, directory=None, jobs=None, laws=None):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("experiment", help="the experiment, a YAML file")
     parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
                         help="where results go (default: results/<experiment>)")

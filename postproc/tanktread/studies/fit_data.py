@@ -6,7 +6,7 @@ from ..files import table
 from ..interpolation import interpolated
 from ..mistakes import expect
 from . import silhouette
-from .reading import keys_of, number
+from .reading import keys_of, number, positive
 
 # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 FAR = numpy.log(1000)
@@ -19,20 +19,23 @@ class Unknown:
     def __init__(self, key, given, owner=None):
         given = given if isinstance(given, dict) else {"start": given}
         self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
-        expect(isinstance(given.get("start", given.get("known")), (int, float)),
-               f"{self.name} needs a number to start from")
         expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
-        self.start_value = float(given.get("start", given.get("known")))
+        self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
         self.logarithmic = given.get("spacing") != "linear"
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
         start = self.number(self.start_value)
-        for word in {"known", "error", "from", "to"} & set(given):
-            number(given[word], f"{self.name}: {word}")
+        given = given | {word: number(given[word], f"{self.name}: {word}")
+                         for word in {"known", "from", "to"} & set(given)}
+        expect(not self.logarithmic or all(given[word] > 0 for word in {"from", "to"} & set(given)),
+               f"{self.name}: `from` and `to` must be above 0, or it has `spacing: linear`")
         self.bounds = tuple(self.number(given[word]) if word in given else start + far
                             for word, far in (("from", -FAR), ("to", FAR)))
-        self.known, self.error = given.get("known"), given.get("error")
+        expect(self.bounds[0] <= start <= self.bounds[1] and self.bounds[0] < self.bounds[1],
+               f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
+        self.known = given.get("known")
+        self.error = positive(given["error"], f"{self.name}: error") if "error" in given else None
 
     def number(self, value):
         return numpy.log(value) if self.logarithmic else value / self.unit
@@ -45,27 +48,48 @@ class Unknown:
         return value * error if self.logarithmic else self.unit * error
 
 
+def at_of(given, name):
+    """Returns the time of a datum, or None for the end of the run."""
+    return number(given["at"], f"{name}: at") if given.get("at") is not None else None
+
+
+def error_of(given, name):
+    """Returns the standard error that a datum states, or None."""
+    return positive(given["error"], f"{name}: error") if given.get("error") is not None else None
+
+
+def errors_in(rows, name):
+    """Returns the third column of a table (n,), standard errors."""
+    expect((rows[:, 2] > 0).all() and numpy.isfinite(rows[:, 2]).all(),
+           f"{name}: the third column of the table is of standard errors, and one is not a number above 0")
+    return rows[:, 2]
+
+
 class OutlineData:
     """Points of an edge in a plane. Unknown with it: where it lies, and its scale where that has an error."""
 
     def __init__(self, given, name, folder):
         known = {"outline", "plane", "error", "scale", "scale error", "at", "open"}
         expect(set(given) <= known, f"{name}: an outline has {', '.join(sorted(known))}")
-        expect(isinstance(given.get("scale"), (int, float)),
+        expect("scale" in given,
                f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
-        self.name, self.at, self.scale, self.error = name, given.get("at"), float(given["scale"]), given.get("error")
+        self.name, self.at, self.error = name, at_of(given, name), error_of(given, name)
+        self.scale = positive(given["scale"], f"{name}: scale")
         plane = given.get("plane", ["x1", "x3"])
-        expect(len(set(plane)) == 2 and set(plane) <= {"x1", "x2", "x3"}, f"{name}: the plane is two of x1, x2, x3")
+        expect(isinstance(plane, list) and len(plane) == 2 and plane[0] != plane[1]
+               and all(one in ("x1", "x2", "x3") for one in plane), f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
         rows = table(folder / str(given["outline"]))
         self.points = rows[:, :2][:, numpy.argsort(plane)]
         if self.error is None and rows.shape[1] > 2:
-            self.error = float(numpy.sqrt((rows[:, 2] ** 2).mean()))
+            self.error = float(numpy.sqrt((errors_in(rows, name) ** 2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
                "from the first (`open: true` takes it as it is)")
         self.free_scale, self.scale_error = given.get("scale error") == "free", given.get("scale error", 0)
+        if self.scale_error and not self.free_scale:
+            self.scale_error = positive(self.scale_error, f"{name}: scale error")
         self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
         self.count = len(self.points)
 
@@ -104,9 +128,7 @@ class SeriesData:
         known = {"series", "over", "value", "curve", "error", "at", "origin"}
         expect(set(given) <= known and ("value" in given) != ("curve" in given),
                f"{name}: a series has value or curve, and error, at, over, origin")
-        for word in {"value", "error"} & set(given):
-            number(given[word], f"{name}: {word}")
-        self.name, self.error = name, given.get("error")
+        self.name, self.error = name, error_of(given, name)
         self.series = [given[word] for word in ("series", "over") if word in given]
         self.places = int("origin" in given)
         expect(not self.places or given["origin"] == "free" and "curve" in given,
@@ -114,10 +136,10 @@ class SeriesData:
         if "curve" in given:
             rows = table(folder / str(given["curve"]))
             self.times, self.values = rows[:, 0], rows[:, 1]
-            self.error = rows[:, 2] if self.error is None and rows.shape[1] > 2 else self.error
-            self.span = float(numpy.ptp(self.times))  # which the place is told in
+            self.error = errors_in(rows, name) if self.error is None and rows.shape[1] > 2 else self.error
+            self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the start of the curve in the fit
         else:
-            self.times, self.values = given.get("at"), numpy.array([float(given["value"])])
+            self.times, self.values = at_of(given, name), numpy.array([number(given["value"], f"{name}: value")])
         self.count = len(self.values)
         self.discretisation = None  # error of the runs, if their deck requests an accuracy
 

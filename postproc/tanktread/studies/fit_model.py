@@ -139,7 +139,8 @@ class Fit:
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
         tries = [start] + [start + shift * unit * numpy.array([one.logarithmic for one in self.unknowns])
                            for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
-        for numbers in tries:
+        low, high = numpy.transpose([one.bounds for one in self.unknowns])
+        for numbers in (one for one in tries if ((low <= one) & (one <= high)).all()):
             predictions = self.predictions(numbers)
             if predictions is not None:
                 return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, predictions))])

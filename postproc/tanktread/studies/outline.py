@@ -10,15 +10,13 @@ mean of the rays around it, so the errors of points are independent. Blur of var
 curvature to the inner side of the bend; points are moved back.
 """
 
-import argparse
 import pathlib
 
 import numpy
+import scipy.ndimage
 
-from ..mistakes import Mistake, expect, log, optional
-
-scipy = optional("scipy", "tanktread-outline")
-optional("scipy.ndimage", "tanktread-outline", "scipy")
+from ..interpolation import mean
+from ..mistakes import Mistake, command_line, expect, log
 
 WINDOW = 8   # pixels along a ray to either side of the edge, over which its step is summed
 FINE = 0.25  # pixels between samples of a ray
@@ -26,10 +24,10 @@ FINE = 0.25  # pixels between samples of a ray
 
 def grey(path):
     """Returns the picture's brightness (rows, columns), rows from above."""
+    from matplotlib.image import imread
+
     try:
-        picture = optional("matplotlib.image", "tanktread-outline", "matplotlib").imread(path)
-    except Mistake:
-        raise
+        picture = imread(path)
     except Exception as error:  # the reader has many kinds
         raise Mistake(f"{path} is no picture that can be read: {error}") from None
     return numpy.asarray(picture, float) if picture.ndim == 2 else numpy.asarray(picture[..., :3], float).mean(2)
@@ -61,11 +59,17 @@ def body(picture, path):
     return mask
 
 
+def most_points(mask):
+    """Returns the largest number of points of an outline: each takes three rays, about two pixels apart, because their
+    scatter gives the standard error."""
+    return int(numpy.sqrt(mask.sum() * numpy.pi) / 2)
+
+
 def edge(picture, mask, points):
     """Returns points (n, 2) of the edge as column and row, and the standard error of a point, in pixels. An odd number
     of rays, about two pixels apart, is averaged for a point, after the bend of the outline between them is removed."""
     row, column = scipy.ndimage.center_of_mass(mask)
-    each = max(1, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
+    each = max(2, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
     angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
     ray = numpy.stack([numpy.sin(angle), numpy.cos(angle)])[:, :, None]
     middle = numpy.array([row, column])[:, None, None]
@@ -90,7 +94,7 @@ def edge(picture, mask, points):
         typical = values.mean(0)
         slope = numpy.gradient(typical, off)
         found = found - (values - typical) @ slope / (slope @ slope)
-    variance = -numpy.trapz(off**2 * slope, off)
+    variance = -mean(off, off**2 * slope) * (off[-1] - off[0])
     found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
     places, error = averaged(angle, found, points, each, row, column)
     return unbent(places, variance), error
@@ -108,34 +112,36 @@ def unbent(points, variance):
 
 
 def averaged(angle, radius, points, each, row, column):
-    """Returns the value in the middle of a parabola through the rays around every point, and its standard error from
-    the scatter of the rays."""
+    """Returns the value in the middle of a parabola (of three rays a straight line) through the rays around every
+    point, and its standard error from the scatter of the rays."""
     order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
-    x = numpy.linspace(-1, 1, each) if each > 1 else numpy.zeros(1)
-    basis = numpy.vander(x, 3 if each > 4 else 1, increasing=True)
+    basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)
     middle = radius[order] @ weights[0]
     rest = radius[order] - radius[order] @ weights.T @ basis.T
-    error = numpy.sqrt((rest**2).sum() / max(1, points * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
+    error = numpy.sqrt((rest**2).sum() / (points * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
     at = angle[order[:, each // 2]]
     return numpy.column_stack([column + middle * numpy.cos(at), row + middle * numpy.sin(at)]), float(error)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("picture", help="a PNG")
     parser.add_argument("-o", "--output", default="outline.csv", metavar="FILE",
                         help="the points (default: %(default)s)")
-    parser.add_argument("--points", type=int, default=60, help="how many (default: %(default)s)")
+    parser.add_argument("--points", type=int, help="how many (default: 60, or in a small picture fewer)")
     parser.add_argument("--overlay", metavar="FILE", help="a picture with the points on it, to look at")
     arguments = parser.parse_args()
-    expect(arguments.points >= 8, "--points must be at least 8")
     picture = grey(arguments.picture)
     expect(numpy.ptp(picture) > 0, f"{arguments.picture}: its brightness is the same everywhere")
-    points, error = edge(picture, body(picture, arguments.picture), arguments.points)
+    mask = body(picture, arguments.picture)
+    most, number = most_points(mask), arguments.points or min(60, most_points(mask))
+    expect(8 <= number <= most, f"{arguments.picture}: --points must be from 8 to {most}, half the rays of its outline")
+    points, error = edge(picture, mask, number)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
-    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="", fmt="%.4f")
+    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="",
+                  fmt=["%.4f", "%.4f", "%.3g"])
     log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
         from ..figures import style

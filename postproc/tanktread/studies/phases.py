@@ -19,13 +19,12 @@ or if its largest value in the last third is beyond 0.005 and half as much again
 parachute. The particle starts as the deck states; where both motions are stable, a border is that of this start.
 """
 
-import argparse
 import collections
 import pathlib
 
 import numpy
 
-from ..mistakes import Mistake, expect, log
+from ..mistakes import Mistake, command_line, expect, log
 from . import common
 from .reading import decks_of, keys_of, number, values_of, yaml_of
 
@@ -36,8 +35,8 @@ HALF = 180  # degrees: a shape, or its membrane, looks as before
 ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
 GROWS = 1.5  # a cell that leaves the axis is more than so many times as askew as before
 
-# Two motions, the one below the border first, by the names that `tell` gives; what it measures, and the series used.
-Kind = collections.namedtuple("Kind", "below above tell measures series")
+# Two motions, the one below the border first, by the names that `tell` gives, and what it measures.
+Kind = collections.namedtuple("Kind", "below above tell measures")
 
 
 def in_shear(series, begin):
@@ -70,10 +69,10 @@ def in_capillary(series, begin):
             or last > max(GROWS * first, STRAIGHT) else "parachute"), first, last
 
 
-MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane"),
-                         ("inclination", "phase")),
-           "capillary": Kind(("slips",), "parachute", in_capillary, ("askew before", "at the end"),
-                             ("centroid_x2", "centroid_x3", "volume", "taylor_inertia", "inclination"))}
+MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane")),
+           "capillary": Kind(("slips",), "parachute", in_capillary, ("askew before", "at the end"))}
+
+
 class Diagram:
     """A study file and the borders that are found, {curve: rows of the value across, the two values that a border lies
     between, and how it ended}."""
@@ -221,7 +220,7 @@ class Diagram:
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
     common.arguments(parser, pathlib.Path("results/phases"))
     parser.set_defaults(limit=None)

@@ -5,16 +5,24 @@ import pathlib
 import numpy
 
 from ..files import parsed
-from ..mistakes import Mistake, expect
+from ..mistakes import expect
 from ..runs import shared
 
 
 def number(given, name):
     """Returns a number of a YAML file, in which 1e-2 is a string."""
     try:
-        return float(given)
+        found = float(given)
     except (TypeError, ValueError):
-        raise Mistake(f"{name}: {given} is not a number") from None
+        found = numpy.nan
+    expect(not numpy.isnan(found), f"{name}: {given} is not a number")
+    return found
+
+
+def positive(given, name):
+    """Returns a number above 0."""
+    expect(0 < number(given, name) < numpy.inf, f"{name} must be a number above 0, but is {given}")
+    return float(given)
 
 
 def whole(given, name):

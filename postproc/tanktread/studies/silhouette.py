@@ -1,4 +1,4 @@
-"""The outline of a surface as a camera sees it, or its section, and the distances of points from it."""
+"""The outline of a surface as a camera sees it, and the distances of points from it."""
 
 import numpy
 import scipy.interpolate
@@ -62,17 +62,6 @@ def seen(shot, axis=1, k=8):
         return numpy.cross(tangent_s, tangent_t)[:, axis]
 
     return _outermost(numpy.delete(_zeros(shot, across, k), axis, axis=1))
-
-
-def cut(shot, axis=1, place=None, k=8):
-    """Returns the Outline of the section of a snapshot's surface by the plane x_{axis+1} = place (default: its
-    middle)."""
-    place = (shot.points[:, axis].min() + shot.points[:, axis].max()) / 2 if place is None else place
-
-    def height(cells, s, t):
-        return shot.evaluate(shot.points[:, axis], cells, s, t) - place
-
-    return _outermost(numpy.delete(_zeros(shot, height, k), axis, axis=1))
 
 
 def _zeros(shot, function, k):

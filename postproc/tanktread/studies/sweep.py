@@ -8,14 +8,13 @@ A study is a small YAML file: `deck` (one, or several that overlay each other), 
 that vary: `grid` (every combination), `together` (lists side by side), `random` (number, seed, keys). If several of
 these are given, their combinations are run. The values of a key are a list, or {from, to, number, spacing: linear |
 logarithmic}; those of a random key {from, to, spacing}, or a list to draw from. `record` names the columns: the name of
-a series for its last value, or {series, take: last | smallest | largest | mean | all, at: time}.
+a series for its last value, or {series, take: last | smallest | largest | mean | all, at: time}; a mean is over time.
 inputs/studies/study.yaml is an example.
 
 A run that was made is not made again, even if the study has changed. One that was interrupted is resumed. One that
 fails has a row with its message.
 """
 
-import argparse
 import collections
 import csv
 import itertools
@@ -28,12 +27,13 @@ import h5py
 import numpy
 
 from ..files import opened
-from ..mistakes import expect, log, progress
+from ..interpolation import mean
+from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
 from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
 
-TAKES = {"last": lambda values: values[-1], "smallest": numpy.min, "largest": numpy.max, "mean": numpy.mean,
-         "all": None}
+TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
+         "largest": lambda time, values: values.max(), "mean": mean, "all": None}
 KEYS = {"deck", "set", "grid", "together", "random", "record", "limit", "ranks"}
 
 
@@ -93,20 +93,22 @@ def recorded(outcome, columns):
     A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
-        values = outcome.series[series] if outcome.done else numpy.array([])
+        time, values = ((outcome.series["time"], outcome.series[series]) if outcome.done
+                        else (numpy.array([]), numpy.array([])))
         if take == "all":
             row[name] = values
             continue
-        defined = values if take == "last" else values[~numpy.isnan(values)]  # a series is NaN where it is undefined
+        kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # it is NaN where undefined
         row[name] = numpy.nan
         if at is not None and len(values):
-            row[name] = float(numpy.interp(at, outcome.series["time"], values))
-        elif len(defined):
-            row[name] = float(TAKES[take](defined))
+            row[name] = float(numpy.interp(at, time, values))
+        elif kept.any():
+            row[name] = float(TAKES[take](time[kept], values[kept]))
         error = outcome.run.errors.get(series) if len(values) else None
         if error is not None:
-            row[f"{name} error"] = float(numpy.interp(at, outcome.series["time"], error) if at is not None
-                                         else error[-1] if take == "last" else numpy.max(error))
+            largest = error[kept].max() if kept.any() else numpy.nan
+            row[f"{name} error"] = float(numpy.interp(at, time, error) if at is not None else error[-1]
+                                         if take == "last" else largest)
     return row
 
 
@@ -172,12 +174,11 @@ class Sweep:
                 longest = max(numpy.size(values[name]) for values in found)
                 one = [numpy.pad(numpy.atleast_1d(values[name]), (0, longest - numpy.size(values[name])),
                                  constant_values=numpy.nan) for values in found]
-                every = name in whole or name == "time"
+                every = name in whole or name not in single
                 file[f"columns/{name}"] = numpy.array(one) if every else numpy.array(one)[:, 0]
             self._write_units(file)
         for name in "table.csv", "table.h5":
             log.info(directory / name)
-
 
     def _write_units(self, file):
         """Writes the attribute `unit` of keys and columns, such as ", µm", as the first run that ended has it."""
@@ -186,8 +187,8 @@ class Sweep:
             return
         for key in self.keys:
             file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
-        for name in file["columns"]:
-            series = self.columns[name.removesuffix(" error")][0] if name != "time" else name
+        for name in file.attrs["columns"]:
+            series = (self.columns.get(name) or self.columns.get(name.removesuffix(" error")) or [name])[0]
             file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
 
 
@@ -251,7 +252,7 @@ def run(path, directory=None, jobs=None, fresh=False):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("study", help="the study, a YAML file")
     parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
                         help="of the table and, under runs/, of results (default: results/<study>)")
