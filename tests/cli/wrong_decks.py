@@ -336,7 +336,7 @@ def decks_of_other_editors_and_roomy_settings_are_good():
         pathlib.Path("other.yaml").write_text(text, encoding="utf-8", newline="")
         result = run("other.yaml", "--set", " Time/final time = 0.02", "--check")
         check("final time: 0.02" in result.stdout, result.stdout)
-    outline = "x2, x3\n" + "".join(f"{2 * math.cos(k * math.pi / 6)}, {2 * math.sin(k * math.pi / 6)}\n" for k in range(12))
+    outline = "x2, x3\n" + "".join(f"{math.cos(k * math.pi / 6)}, {math.sin(k * math.pi / 6)}\n" for k in range(12))
     pathlib.Path("outline.csv").write_text("\ufeff" + outline, encoding="utf-8")
     run(_tube("outline.csv"), "--check")
 
