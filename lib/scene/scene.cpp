@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include <Teuchos_ParameterList.hpp>
 
@@ -10,7 +11,6 @@
 #include "base/formatted.hpp"
 #include "deck/units.hpp"
 #include "deck/words.hpp"
-#include "stokes/flow/ambient_flow.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
 #include "surface/channel.hpp"
@@ -292,10 +292,10 @@ std::vector<Scene> Scene::alone() const {
 bool Scene::by_tractions() const {
   constexpr double most_points = 1500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";
-  const std::vector<ParticleKind> kinds = particles.empty() ? std::vector<ParticleKind>{*this} : particles;
+  const ParticleKind* first = particles.empty() ? this : particles.data();
+  const std::span kinds(first, std::max<std::size_t>(1, particles.size()));
   const bool alone = tube.present && kinds.size() == 1 && solvers.tube == "schur";
-  int bodies = 0;
-  double points = 0;
+  double bodies = 0, points = 0;
   for (const ParticleKind& kind : kinds) {
     if (!kind.particle.rigid()) continue;
     if (!kind.adaptation.enabled && !alone) return false;
