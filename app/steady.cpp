@@ -92,7 +92,8 @@ class SteadyRun {
     const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
       if (amplitude == 1) return {of, &*of->equations};
       Scene weaker = of->scene;
-      weaker.flow.history = stokes::FlowHistory{.times = std::vector<double>{0}, .amplitudes = std::vector<double>{amplitude}};
+      stokes::FlowHistory& constant = weaker.flow.history.emplace();
+      constant.times = {0}, constant.amplitudes = {amplitude};
       if (latest) count_out(*latest);
       latest = std::make_shared<System>(std::move(weaker), ranks_, phases_, told_);
       carry_to(*latest, mesh);

@@ -232,17 +232,18 @@ ClosestPoints nearest_points(const Patch& first, const Patch& second, const Clos
     return {x, y, (y - x).norm(), {spline::Site{near.sites[0].element, u[0], u[1]}, spline::Site{near.sites[1].element, u[2], u[3]}}};
   };
   const Eigen::Vector4d start(near.sites[0].s, near.sites[0].t, near.sites[1].s, near.sites[1].t);
+  const ClosestPoints before = points(start);
   Eigen::Vector4d u = start;
-  for (int k = 0; k < 20; ++k) {
+  double step_length = 1;
+  for (int k = 0; k < 20 && step_length > 1e-12; ++k) {
     const auto [x, y] = jets(u);
     const Eigen::Vector4d step = newton_step(x, y);
+    step_length = step.norm();
     u -= step;
-    if (!((u.array() - 0.5).abs().maxCoeff() <= 0.6)) break;
-    if (step.norm() > 1e-12) continue;
-    const ClosestPoints found = points(u), before = points(start);
-    return found.gap <= before.gap ? found : before;
+    if (!((u.array() - 0.5).abs().maxCoeff() <= 0.6)) return before;
   }
-  return points(start);
+  const ClosestPoints found = points(u);
+  return step_length < 1e-7 && found.gap <= before.gap ? found : before;
 }
 
 namespace {

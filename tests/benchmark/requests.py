@@ -85,12 +85,13 @@ def main():
     studies.arguments(parser, pathlib.Path("results/requests"))
     parser.set_defaults(limit=60)
     parsed = parser.parse_args()
+    limit, parsed.limit = parsed.limit, 6 * parsed.limit  # references may take five times as long as the ladders
     study, rows = studies.study(parsed), []
 
     def lines():
         for name in parsed.scene:
             try:
-                for row in Scene(name, parsed.output / "ladders", study, parsed.limit).rows(parsed.search):
+                for row in Scene(name, parsed.output / "ladders", study, limit).rows(parsed.search):
                     rows.append(dict(zip(COLUMNS, row)))
                     yield row
             except tanktread.Mistake as mistake:

@@ -218,6 +218,23 @@ Tanktread:
     check(len(gap) > rows and gap.min() < 0.19 < gap[0], gap)
 
 
+def the_narrowest_gap_does_not_depend_on_ranks():
+    deck("""
+Tanktread:
+  Flow: {type: linear, gradient: [0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0]}
+  Particles:
+    defaults: {viscosity ratio: 5.0, Membrane: {shear modulus: 10.0}, Surface: {elements per side: 4}}
+    one: {center: [3.0, -1.0, 2.0]}
+    two: {center: [3.0, 1.8, 2.3]}
+  Time: {final time: 0.2}
+  Output: {interval: 0.1}
+""")
+    run("deck.yaml", "--output", "one", "--quiet")
+    run("deck.yaml", "--output", "ranks", "--quiet", ranks=2)
+    for name in ("smallest_gap", "gap_x1", "gap_x2", "gap_x3"):
+        check(numpy.abs(series("one", name) - series("ranks", name)).max() < 1e-10, name, series("one", name), series("ranks", name))
+
+
 CONFINED = """
 Tanktread:
   Flow: {type: duct}

@@ -67,12 +67,18 @@ class Pairs {
 
   const std::vector<Pair>& all() const { return all_; }
 
-  /// Returns the closest points of one pair if its gap is smaller than `reach`.
+  /// Error of the gaps by which the closest points are searched.
+  double tolerance() const { return gap_accuracy * radius_; }
+
+  /// Returns the closest points of one pair if its gap is smaller than `reach`. Newton's method makes them independent of the order of the search.
   surface::ClosestPoints closest(const Pair& pair, double reach) const {
     const auto& [bound, p, q, beyond] = pair;
     std::unique_ptr<Placed> moved;
     if (!beyond.isZero(0)) moved = std::make_unique<Placed>(members_[q], x_[q].rowwise() + beyond.transpose());
-    return surface::closest_points(placed_[p]->boxes, moved ? moved->boxes : placed_[q]->boxes, gap_accuracy * radius_, reach);
+    const Placed &first = *placed_[p], &second = moved ? *moved : *placed_[q];
+    const surface::ClosestPoints found = surface::closest_points(first.boxes, second.boxes, tolerance(), reach);
+    if (!(found.gap < reach)) return found;
+    return surface::nearest_points(first.patches[found.sites[0].element], second.patches[found.sites[1].element], found);
   }
 
  private:
@@ -97,17 +103,35 @@ class Pairs {
   double radius_ = 0;  // largest R_C
 };
 
+/// A pair of particles, one of them shifted by the lattice vector `beyond`, with its gap.
+struct Candidate : Nearest {
+  Vec3 beyond = Vec3::Zero();
+
+  /// Returns true if this pair is to be reported rather than the other one. Of equal gaps, which symmetric scenes have, that of the particles named
+  /// first is, so that rounding does not decide.
+  bool precedes(const Candidate& other, double tolerance) const {
+    if (std::abs(gap - other.gap) > tolerance || !std::isfinite(other.gap)) return gap < other.gap;
+    const auto key = [](const Candidate& of) { return std::array{double(of.first), double(of.second), of.beyond[0], of.beyond[1], of.beyond[2]}; };
+    const auto mine = key(*this), others = key(other);
+    for (std::size_t k = 0; k < mine.size(); ++k)
+      if (std::abs(mine[k] - others[k]) > tolerance) return mine[k] < others[k];
+    return false;
+  }
+};
+
 /// Returns the pair with the smallest gap among the pairs k for which mine(k) is true.
 template <class Mine>
-Nearest nearest(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell, const Mine& mine) {
-  const Pairs pairs(members, x, cell);
-  Nearest found;
-  for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < found.gap; ++k) {
+Candidate nearest(const Pairs& pairs, const Mine& mine) {
+  Candidate found;
+  for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < found.gap + pairs.tolerance(); ++k) {
     if (!mine(k)) continue;
     const Pair& pair = pairs.all()[k];
-    const surface::ClosestPoints closest = pairs.closest(pair, found.gap);
-    if (closest.gap >= found.gap) continue;
-    found = {closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2};
+    const double reach = found.gap + 2 * pairs.tolerance();
+    const surface::ClosestPoints closest = pairs.closest(pair, reach);
+    if (closest.gap >= reach) continue;
+    const Candidate next{{closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2},
+                         pair.beyond};
+    if (next.precedes(found, pairs.tolerance())) found = next;
   }
   return found;
 }
@@ -179,7 +203,7 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   if (members.size() == 1 && !cell) return;
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
-  const Nearest found = nearest(members, x, cell, [](std::size_t) { return true; });
+  const Nearest found = nearest(Pairs(members, x, cell), [](std::size_t) { return true; });
   if (found.gap > 10 * gap_accuracy * members.front().body->radius) return check_not_nested(members, x);
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
@@ -200,13 +224,17 @@ void Nearest::add_columns(Columns& to) const {
 
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks,
                      const std::optional<stokes::PeriodicCell>& cell) {
+  const std::vector<Net> own = own_nets(members, x);
+  const Pairs pairs(members, own, cell);
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
-  const Nearest of_rank = nearest(members, own_nets(members, x), cell, mine);
-  const std::array<double, 6> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
-                                   of_rank.place[0], of_rank.place[1], of_rank.place[2]};
-  Nearest found;
-  for (const auto& [gap, first, second, x1, x2, x3] : ranks.gathered(here))
-    if (gap < found.gap) found = {gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}};
+  const Candidate of_rank = nearest(pairs, mine);
+  const std::array<double, 9> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
+                                   of_rank.place[0], of_rank.place[1], of_rank.place[2], of_rank.beyond[0], of_rank.beyond[1], of_rank.beyond[2]};
+  Candidate found;
+  for (const auto& [gap, first, second, x1, x2, x3, b1, b2, b3] : ranks.gathered(here)) {
+    const Candidate next{{gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}}, {b1, b2, b3}};
+    if (next.first && next.precedes(found, pairs.tolerance())) found = next;
+  }
   return found;
 }
 

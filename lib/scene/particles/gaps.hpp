@@ -21,7 +21,6 @@ struct Nearest {
   void add_columns(Columns& to) const;
 };
 
-
 /// Throws UserError if two particles overlap in their initial shapes, or if one is inside another. The message names the particles and the position.
 void check_apart(const std::vector<Member>& members, const std::optional<stokes::PeriodicCell>& cell);
 

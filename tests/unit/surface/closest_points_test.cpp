@@ -89,6 +89,25 @@ TEST(ClosestPoints, OfEqualSurfacesAboveEachOtherAreTheirTops) {
   }
 }
 
+/// Newton's method finds the same two points from two different starts, and the line between them is normal to both surfaces.
+TEST(ClosestPoints, RefinedByNewtonDoNotDependOnTheStart) {
+  const Shape shape;
+  std::mt19937 random(7);
+  const Net a = shape.bumpy(random, Vec3::Zero()), b = shape.bumpy(random, {0.4, 2.5, -0.9});
+  const Patches first(shape.map, a), second(shape.map, b);
+  ClosestPoints start = closest_points(ElementBoxes(first), ElementBoxes(second), 1e-6, 1e9);
+  const auto refined = [&](double shift) {
+    start.sites[0].s += shift, start.sites[1].t -= shift;
+    return nearest_points(first[start.sites[0].element], second[start.sites[1].element], start);
+  };
+  const ClosestPoints found = refined(0), shifted = refined(1e-2);
+  EXPECT_LT((found.first - shifted.first).norm() + (found.second - shifted.second).norm(), 1e-10);
+  const Jet x = jet(first[found.sites[0].element], found.sites[0].s, found.sites[0].t);
+  const Jet y = jet(second[found.sites[1].element], found.sites[1].s, found.sites[1].t);
+  const Vec3 line = (found.second - found.first).normalized();
+  EXPECT_LT(std::abs(line.dot(x.s)) + std::abs(line.dot(x.t)) + std::abs(line.dot(y.s)) + std::abs(line.dot(y.t)), 1e-9);
+}
+
 TEST(ClosestPoints, AreNotSoughtBeyondADistance) {
   const Shape shape;
   const Net other = shape.sphere.rowwise() + Eigen::RowVector3d(3, 0, 0);
