@@ -81,7 +81,8 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   const Net v = flow.velocities(places);
   const std::vector<Mat3> gradients = flow.gradients(places);
   const auto of_lattice = static_cast<Eigen::Index>(3 * lattice.size());
-  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(12 + of_lattice + of_loads.rows(), 6);
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(13 + of_lattice + of_loads.rows(), 6);
+  if (scene.wall.present) change.row(12).head<3>() = scene.rate() * scene.wall.normal.normalized();  // the periods along a wall exclude rotations
   change.bottomRows(of_loads.rows()) = scene.rate() * of_loads;
   change.bottomRightCorner(of_loads.rows(), 3) /= size;
   for (int k = 0; k < 6; ++k) {
@@ -92,7 +93,7 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
       change.block<3, 1>(3 * i, k) =
           unit * (gradients[static_cast<std::size_t>(i)] * moved.row(i).transpose() - motion.angular_velocity.cross(Vec3(v.row(i).transpose())));
     for (std::size_t d = 0; d < lattice.size(); ++d)
-      change.block<3, 1>(12 + 3 * static_cast<Eigen::Index>(d), k) = scene.rate() / size * motion.angular_velocity.cross(lattice[d]);
+      change.block<3, 1>(13 + 3 * static_cast<Eigen::Index>(d), k) = scene.rate() / size * motion.angular_velocity.cross(lattice[d]);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(change, Eigen::ComputeFullV);
   std::vector<coupling::RigidMotion> free;

@@ -100,8 +100,8 @@ void WallOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(scene.quadrature.rule != "adaptive", "Wall",
           {"Quadrature/rule `" + scene.quadrature.rule + "`", "Quadrature/rule `fixed` or `desingularised`"},
           "the film at a wall needs quadrature to a tolerance; give `adaptive`");
-  to.pair(!scene.runs_in_time(), scene.sought(), "Wall",
-          "a deformable particle next to a wall moves away from it or towards it, so that no shape is steady");
+  to.pair(!scene.runs_in_time() && !distance, scene.sought(), {"Wall", "Wall without Wall/distance"},
+          "a deformable particle next to a single wall moves away from it or towards it, so that no shape is steady");
   to.pair(scene.particle.drift == "held", "Wall", "Particle/drift `held`", "the distance from the wall must be free to change");
 }
 
