@@ -20,12 +20,19 @@ void Options::declare(deck::Section& section) {
   section.key("far sum", far_sum, deck::Choice{"auto", "dense", "tree"},
               "evaluation of boundary integrals over elements far from the target point, as sums over quadrature nodes. `dense`: every "
               "target sums over every far node. `tree`: distant targets and nodes interact as clusters, to the same Quadrature/tolerance, "
-              "in a time proportional to the number of elements. `auto`: the faster of the two");
+              "in a time proportional to the number of elements. `auto`: the faster of the two, and `dense` for a Spectrum, whose finite "
+              "differences need sums that are smooth functions of the shape");
   section.key(
       "far precision", far_precision, deck::Choice{"auto", "single", "double"},
       "floating-point precision of the terms of boundary integrals over far elements. `single`: 1.5 times as fast, with errors of about "
       "1e-7 of the sum of the magnitudes of the terms, and of about 1e-8 in the shape; results of a mirrored, reordered or shifted scene "
-      "then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3");
+      "then agree to 1e-8 instead of 1e-10. `double`: no such error. `auto`: `single` if Quadrature/tolerance is at least 1e-3 and "
+      "the deck has no Spectrum");
+}
+
+void Options::choose_smooth_sums() {
+  if (far_sum == "auto") far_sum = "dense";
+  if (far_precision == "auto") far_precision = "double";
 }
 
 void Options::check() const {

@@ -111,9 +111,6 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
-  to.pair(scene.flow.history && (scene.wall.solid || !scene.posts.empty()),
-          {scene.wall.solid ? "Wall" : "Particle/shape `cylinder`", "Wall in a Domain"}, "Flow/history",
-          "the flow between plates and posts must be steady");
   to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
           {told     ? scene.particle.choice()

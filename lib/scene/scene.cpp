@@ -270,6 +270,7 @@ void Scene::declare(deck::Section& root) {
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
   periodic.driven = flow.history.has_value();
+  if (spectrum.present) quadrature.choose_smooth_sums();
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);

@@ -32,7 +32,7 @@ std::vector<Solids::Solid> plates(const Scene& scene, const stokes::PeriodicCell
   return all;
 }
 
-/// x
+/// Returns the directions in which the mean velocity is not given by the walls, the free directions of (2.46).
 std::vector<Vec3> free_directions(const Scene& scene, const stokes::PeriodicCell& cell) {
   std::vector<Vec3> free;
   if (cell.n() == 3)
@@ -128,10 +128,10 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
          both});
 }
 
-SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const Solids::Flow& flow, const Vec3& particle_force, const Vec3& carried) {
-  const stokes::AmbientFlow ambient(scene.flow);
+SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const Solids::Flow& flow,
+                     const Vec3& particle_force, const Vec3& carried) {
   const Solids& solids = *of.solids;
-  const Vec3 gradient = scene.flow.pressure_gradient.value_or(Vec3::Zero());
+  const Vec3 gradient = ambient.change() * scene.flow.pressure_gradient.value_or(Vec3::Zero());
   std::vector<Vec3> forces = solids.forces(flow.force);
   SolidsRow row;
   double volume = solids.cell().volume();

@@ -31,9 +31,9 @@ struct SolidsRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data of plates and posts for the flow `flow` around them. `particle_force`: force of the particles on the fluid. `carried`: integral
+/// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on the fluid. `carried`: integral
 /// over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only if there are two plates.
-SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const coupling::Solids::Flow& flow, const Vec3& particle_force,
-                     const Vec3& carried);
+SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const coupling::Solids::Flow& flow,
+                     const Vec3& particle_force, const Vec3& carried);
 
 }  // namespace tanktread

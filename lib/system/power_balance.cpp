@@ -95,7 +95,8 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   }
   if (SolidResponse* const solids = capsule_.solids(); solids && solids->scene().planes.size() != 1) {
     const Evaluation::SolidFlow found = e.solid_flow();
-    return solids->scene().solids->power(found.caused.force) + solids->scene().driving_gradient.dot(found.caused_carried);
+    const Mat3 change = flow.change();
+    return solids->scene().solids->power(found.caused.force * change) + (change * solids->scene().driving_gradient).dot(found.caused_carried);
   }
   const Net& x = e.x();
   const Net flux = capsule_.geometry().volume_gradient(x);

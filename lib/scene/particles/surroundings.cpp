@@ -35,8 +35,8 @@ void add_surroundings(const Scene& scene, const std::vector<Member>& members, co
                                        stresslet, force);
     if (coupling::SolidResponse* solids = capsule.solids()) {
       const coupling::Evaluation::SolidFlow flow = here.solid_flow();
-      now.pressure_gradient = solids->scene().driving_gradient;
-      solids_row(scene, solids->scene(), flow.flow, force, flow.carried).add_columns(scene, row);
+      now.pressure_gradient = capsule.flow().change() * solids->scene().driving_gradient;
+      solids_row(scene, solids->scene(), capsule.flow(), flow.flow, force, flow.carried).add_columns(scene, row);
     }
     now.add_columns(scene, row);
   }

@@ -70,6 +70,9 @@ class AmbientFlow {
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
+  /// Returns a Q, the amplitude times the rotation at the time set last. Velocities of walls and pressure gradients are multiplied by it.
+  Mat3 change() const { return moment_.amplitude * moment_.turn; }
+
   /// Returns the duct flow; null if there is none.
   const std::shared_ptr<const DuctFlow>& duct() const { return duct_; }
 

@@ -76,7 +76,10 @@ void FlowOptions::declare_registered(deck::Section& section) {
 }
 
 void FlowOptions::reject(Rejections& to) const {
-  to.pair(history && type == "quiescent", "Flow/history", "Flow/type `quiescent`", "a fluid at rest has no flow that could vary in time");
+  const bool driven = pressure_gradient || (plates && (plates->velocity || plates->second_velocity));
+  to.pair(history && type == "quiescent" && !driven, "Flow/history",
+          {"Flow/type `quiescent`", "Flow/type `quiescent` without a pressure gradient or moving plates"},
+          "a fluid at rest has no flow that could vary in time");
   to.pair(history && type == "duct" && history->angles, "Flow/history/angles", "Flow/type `duct`",
           "the flow in a tube or channel cannot be rotated");
 }

@@ -23,8 +23,8 @@ Vec3 along(const stokes::PlaneWall& wall, const Vec3& v) { return v - wall.norma
 Solids::Flow without_particles(const SolidScene& scene, const stokes::AmbientFlow& flow) {
   const Solids& solids = *scene.solids;
   Vec3 force = Vec3::Zero();
-  if (scene.planes.empty()) force = solids.cell().volume() * scene.driving_gradient;
-  return solids.solve(solids.velocities() - flow.velocities(solids.sites()), force);
+  if (scene.planes.empty()) force = solids.cell().volume() * flow.change() * scene.driving_gradient;
+  return solids.solve(solids.velocities() * flow.change().transpose() - flow.velocities(solids.sites()), force);
 }
 
 Vec3 carried(const SolidScene& scene, const Solids::Flow& flow) {
@@ -73,7 +73,7 @@ void SolidResponse::place(const Net& x, const Net& at, std::span<const int> own)
 }
 
 const Solids::Flow& SolidResponse::empty() {
-  if (!empty_) empty_ = without_particles(scene_, flow_);
+  if (!empty_ || change_ != flow_.change()) empty_ = without_particles(scene_, flow_), change_ = flow_.change();
   return *empty_;
 }
 

@@ -17,7 +17,8 @@ namespace tanktread::coupling {
 struct SolidScene {
   std::shared_ptr<Solids> solids;
   std::vector<stokes::PlaneWall> planes;  ///< the plates among the solids, with normals into the fluid
-  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure, force/length^3; between plates, v_inf includes its effect
+  Vec3 driving_gradient = Vec3::Zero();   ///< gradient of the mean pressure at the amplitude 1 of the flow, force/length^3; between plates, v_inf
+                                          ///< includes its effect
   quadrature::Options quadrature;
 };
 
@@ -31,7 +32,7 @@ Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 ///
 ///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
 ///
-/// V is the prescribed velocity of the solids; df and v are load and velocity of the particles. f and U are the solution of (2.46) for the force
+/// V is the prescribed velocity of the solids, which changes in time like the flow; df and v are load and velocity of the particles. f and U are the solution of (2.46) for the force
 /// F = |C| g + int df dG, where |C| is the volume of the cell and g the mean pressure gradient. With this F the forces on the fluid of one cell
 /// balance g. The layers of the particles include all images. `empty` is the part of the solution without particles, and `respond` the part that is
 /// linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
@@ -96,6 +97,7 @@ class SolidResponse {
   std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<Solids::Flow> empty_;
+  Mat3 change_;  // AmbientFlow::change for which empty_ was computed
 };
 
 }  // namespace tanktread::coupling
