@@ -326,6 +326,7 @@ void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pai
   for (int k = 0; k < t.n_nodes; ++k) {
     const int node = panel.first_node + k;
     const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - at;
+    if (r.squaredNorm() <= coincident(at[0], at[1], at[2])) continue;
     const Mat3 g = single() ? Mat3(weight_[node] * stokeslet(r)) : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
     const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
     for (int b = 0; b < t.n_bernstein; ++b)

@@ -52,6 +52,12 @@ enum class Precision { single, full };
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
+/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
+template <class Number>
+Number coincident(const Number& x0, const Number& y0, const Number& z0) {
+  return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
+}
+
 /// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
 /// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
 /// (2^-40 of the target's distance from the origin), is skipped.
