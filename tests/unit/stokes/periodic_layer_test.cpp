@@ -79,10 +79,11 @@ TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
   const auto& [space, x, field, every] = ellipsoid();
   constexpr int points = 3;
   Sites sites;
-  for (int e = 0; e < 16; ++e) sites.push_back({{e, quadrature::gauss(points).nodes[e % points], quadrature::gauss(points).nodes[e / 2 % points]}});
+  const auto node = [&](int k) { return quadrature::gauss(points).nodes[k % points] * (1 + 1e-15); };  // up to rounding
+  for (int e = 0; e < 16; ++e) sites.push_back({{e, node(e), node(e / 2)}});
   std::vector<int> all(sites.size());
   std::iota(all.begin(), all.end(), 0);
-  Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = "fixed", .points = points});
+  Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = "fixed", .points = points, .far_sum = "dense"});
   layer.repeat(cell(), {.assembled = true});
   layer.place(x);
   Net u(static_cast<Eigen::Index>(sites.size()), 3);
