@@ -60,16 +60,11 @@ void Layer::place(const Net& x, Measure measure) {
   if (single()) weight_ = reference_.weight, weight_.resize(static_cast<std::size_t>(n_nodes()));
   for (int e = 0; single() && e < surface_.panels.size(); ++e)
     if (!on_reference(e)) node_weights(surface_.panels, e, surface_.bezier, weight_);
-  if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
+  for (std::vector<double>& values : single() ? std::span(&weight_, 1) : std::span(normal_))
+    for (int e = 0; !factor_.empty() && e < surface_.panels.size(); ++e)
+      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) values[surface_.panels[e].first_node + k] *= factor_[e];
   if (lattice_.cell) place_in_cell();
   if (images_) images_->place(surface_.node);
-}
-
-/// Multiplies values at the far nodes by the factor k_p (2.1) of their panel.
-void Layer::scale(std::span<std::vector<double>> at_nodes) const {
-  for (int e = 0; e < surface_.panels.size(); ++e)
-    for (std::vector<double>& values : at_nodes)
-      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) values[surface_.panels[e].first_node + k] *= factor_[e];
 }
 
 void Layer::values(const Net& field, std::vector<double> (&value)[3]) {

@@ -209,7 +209,6 @@ class Layer {
   Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   void set_density(const Net& f);
-  void scale(std::span<std::vector<double>> at_nodes) const;
   void integrate(const Targets& targets, Net& u);
   void add_far(const Targets& targets, Net& u);
   void place_in_cell();
