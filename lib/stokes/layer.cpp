@@ -60,16 +60,11 @@ void Layer::place(const Net& x, Measure measure) {
   if (single()) weight_ = reference_.weight, weight_.resize(static_cast<std::size_t>(n_nodes()));
   for (int e = 0; single() && e < surface_.panels.size(); ++e)
     if (!on_reference(e)) node_weights(surface_.panels, e, surface_.bezier, weight_);
-  if (!factor_.empty()) scale(single() ? std::span(&weight_, 1) : std::span(normal_));
+  for (std::vector<double>& values : single() ? std::span(&weight_, 1) : std::span(normal_))
+    for (int e = 0; !factor_.empty() && e < surface_.panels.size(); ++e)
+      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) values[surface_.panels[e].first_node + k] *= factor_[e];
   if (lattice_.cell) place_in_cell();
   if (images_) images_->place(surface_.node);
-}
-
-/// Multiplies values at the far nodes by the factor k_p (2.1) of their panel.
-void Layer::scale(std::span<std::vector<double>> at_nodes) const {
-  for (int e = 0; e < surface_.panels.size(); ++e)
-    for (std::vector<double>& values : at_nodes)
-      for (int k = 0; k < surface_.panels[e].table->n_nodes; ++k) values[surface_.panels[e].first_node + k] *= factor_[e];
 }
 
 void Layer::values(const Net& field, std::vector<double> (&value)[3]) {
@@ -326,6 +321,7 @@ void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pai
   for (int k = 0; k < t.n_nodes; ++k) {
     const int node = panel.first_node + k;
     const Vec3 r = Vec3(surface_.node[0][node], surface_.node[1][node], surface_.node[2][node]) - at;
+    if (r.squaredNorm() <= coincident(at[0], at[1], at[2])) continue;
     const Mat3 g = single() ? Mat3(weight_[node] * stokeslet(r)) : stresslet(r, Vec3(normal_[0][node], normal_[1][node], normal_[2][node]));
     const double entries[6] = {g(0, 0), g(0, 1), g(0, 2), g(1, 1), g(1, 2), g(2, 2)};
     for (int b = 0; b < t.n_bernstein; ++b)

@@ -147,9 +147,6 @@ class Layer {
   /// Adds to the assembled rows `a` at `sites` the images of a periodic single layer that are not near (PeriodicSum).
   void assemble_rest(std::span<const int> sites, Rows<double>& a);
 
-  /// Assembles the matrix rows at `sites` of the layer's images in the plane wall. The contribution of the layer itself is not included.
-  void assemble_images(std::span<const int> sites, Rows<double>& a);
-
   /// Assembles only the blocks A_iB of near control points of a single layer: entries[6 j + c], c = 11, 12, 13, 22, 23, 33, for near.point[j].
   /// Consecutive targets should be neighbours, because targets are processed in groups of sixteen, and each group evaluates the panels around the
   /// near points of all its targets.
@@ -212,7 +209,6 @@ class Layer {
   Precision precision() const { return surface_.options.far_in_single() ? Precision::single : Precision::full; }
   double factor(int e) const { return factor_.empty() ? 1 : factor_[static_cast<std::size_t>(e)]; }
   void set_density(const Net& f);
-  void scale(std::span<std::vector<double>> at_nodes) const;
   void integrate(const Targets& targets, Net& u);
   void add_far(const Targets& targets, Net& u);
   void place_in_cell();

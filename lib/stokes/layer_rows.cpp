@@ -14,8 +14,6 @@
 namespace tanktread::stokes {
 namespace {
 
-constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
-
 /// Values of the basis functions of some panels at the far nodes of these panels. Each basis function adds to one row of the sums, the row of its
 /// control point. The number of basis functions is padded to a multiple of `assembly_tile`. Padding, and basis functions of control points that are
 /// not requested, add to a spare row.

@@ -163,10 +163,4 @@ void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<Rea
 template void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<float>& a);
 template void Layer::add_image_rows(std::span<const int> targets, const Net* at, Rows<double>& a);
 
-void Layer::assemble_images(std::span<const int> sites, Rows<double>& a) {
-  const auto clock = phases_.time("assembly");
-  a.setZero(3 * static_cast<Eigen::Index>(sites.size()), 3 * surface_.n_points);
-  add_image_rows(sites, nullptr, a);
-}
-
 }  // namespace tanktread::stokes

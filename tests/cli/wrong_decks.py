@@ -130,6 +130,8 @@ SETTINGS = [
     (["Flow/type=quiescent"], ["Membrane/capillary number", "gradient"]),
     (["Flow/type=four-roll"], ["four-roll", "Flow/roll parameter"]),
     (["Flow/type=linear", "Flow/gradient=[1, 0, 0, 0, 1, 0, 0, 0, 1]"], ["Flow/gradient", "trace", "3"]),
+    (["Flow/type=linear", "Flow/gradient=[1, 0, 0, 0, 1, 0, 0, 0, -2.00000001]"], ["Flow/gradient", "trace", "-1e-08"]),
+    (["Flow/history/type=sine", "Flow/history/frequency=1", "Flow/history/axis=x3"], ["Flow/history/axis", "`table`", "sine"]),
     (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
     (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
     (["Time/initial step=1e-12"], ["Time/initial step", "Time/minimum step", "1e-09", "1e-12"]),
@@ -188,6 +190,8 @@ TEXTS = [
     ("Tanktread:\n  Flow: {type: simple shear}\n  Membrane: {capillary number: 0.3, load: strong}\n"
      "  Surface: {mesh: polar, azimuthal elements: 8, meridional elements: 4, poles: plain}\n  Time: {final time: 1}\n",
      ["Membrane/load", "Surface/poles", "contradict"]),
+    ("Tanktread:\n  Flow: {type: quiescent, shear rate: 2}\n  Membrane: {shear modulus: 1}\n  Time: {final time: 1}\n",
+     ["Flow/shear rate", "quiescent", "no rate"]),
     ("# only a comment\n", ["empty", "Tanktread"]),
     ("Dear reader,\nthis is a letter.\n", ["not YAML", "Dear reader,"]),
     ("<html><body>404</body></html>\n", ["not YAML", "line 1"]),

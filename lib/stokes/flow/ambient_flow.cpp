@@ -28,8 +28,7 @@ Mat3 unit_gradient(const FlowOptions& options) {
 
 AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
   Field field;
-  const bool has_rate = options.type != "linear" && options.type != "parabolic";
-  field.gradient = unit_gradient(options) * (has_rate ? options.shear_rate : 1.);
+  field.gradient = unit_gradient(options) * options.shear_rate;  // the rate is 1 for the types that it does not belong to
   if (options.type == "uniform") field.velocity = options.velocity.value();
   if (options.type == "parabolic") {
     field.velocity[0] = options.maximum_velocity.value();

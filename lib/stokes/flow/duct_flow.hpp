@@ -46,7 +46,6 @@ class DuctFlow {
   virtual std::vector<Mat3> gradients(const Net& x) const;
 
   const surface::Outline& outline() const { return outline_; }
-  const DuctProfile& profile() const { return *profile_; }
   double viscosity() const { return viscosity_; }
   double mean_velocity() const { return mean_velocity_; }
   double flow_rate() const { return mean_velocity_ * outline_.area(); }  ///< returns Q

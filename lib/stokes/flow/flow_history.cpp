@@ -114,6 +114,7 @@ void FlowHistory::check() const {
   belongs("times", times.has_value(), "table");
   belongs("amplitudes", amplitudes.has_value(), "table");
   belongs("angles", angles.has_value(), "table");
+  belongs("axis", axis.has_value(), "table");
   belongs("mean", mean.has_value(), "sine");
   belongs("amplitude", amplitude.has_value(), "sine");
   belongs("frequency", frequency.has_value(), "sine");
@@ -153,8 +154,8 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
 /// amplitude a is linear in time and L is the gradient at amplitude 1.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
-    const double rate = 2 * std::numbers::pi * *frequency, angle = *phase * degree;
-    return exponential((*mean * time + *amplitude / rate * (std::cos(angle) - std::cos(rate * time + angle))) * gradient);
+    const double half = std::numbers::pi * *frequency * time;  // the integral of the sine, without the cancellation of two cosines
+    return exponential((*mean * time + *amplitude / (std::numbers::pi * *frequency) * std::sin(half) * std::sin(half + *phase * degree)) * gradient);
   }
   std::vector<double> ends{0};
   std::ranges::copy_if(*times, std::back_inserter(ends), [&](double end) { return end > 0 && end < time; });

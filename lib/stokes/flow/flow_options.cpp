@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "base/rejections.hpp"
 #include "base/small_matrices.hpp"
 #include "deck/section.hpp"
@@ -23,7 +24,7 @@ void FlowOptions::declare(deck::Section& section) {
               "flow along x1 through a Tube or Channel, with Flow/mean velocity. `quiescent`: fluid at rest");
   section.key("shear rate", shear_rate, deck::positive(), "1/time",
               "shear rate or extension rate of the ambient flow of Flow/type `simple shear`, `planar hyperbolic`, `uniaxial extension` or "
-              "`four-roll`. For `linear`, `parabolic` and `duct` it must stay 1, because other keys set the magnitude of these flows");
+              "`four-roll`. For other types it must stay 1, because they have no rate or other keys set it");
   section.key("viscosity", viscosity, deck::positive(), "stress x time",
               "dynamic viscosity of the outer fluid, which surrounds the particles");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
@@ -98,9 +99,13 @@ void FlowOptions::check() const {
   belongs("maximum velocity", maximum_velocity.has_value(), "parabolic");
   belongs("half width", half_width.has_value(), "parabolic");
   refuse(held != "flow rate" && type != "duct", "Flow/held `" + held + "`", choice(), "it belongs to `duct`");
-  refuse(user && shear_rate != 1.0, "Flow/shear rate", choice(), "the magnitude of that flow is set by its own keys, in Flow/" + type);
-  refuse((type == "duct" || type == "parabolic") && shear_rate != 1.0, "Flow/shear rate", choice(),
-         std::string("give Flow/") + (type == "duct" ? "mean" : "maximum") + " velocity");
+  const bool has_rate = type == "simple shear" || type == "four-roll" || type == "planar hyperbolic" || type == "uniaxial extension";
+  refuse(shear_rate != 1.0 && !has_rate, "Flow/shear rate", choice(),
+         user                  ? "the magnitude of that flow is set by its own keys, in Flow/" + type
+         : type == "duct"      ? "give Flow/mean velocity"
+         : type == "parabolic" ? "give Flow/maximum velocity"
+         : type == "linear"    ? "Flow/gradient already contains its rate"
+                               : "that flow has no rate");
   if (history) {
     Rejections found;
     reject(found);
@@ -109,9 +114,7 @@ void FlowOptions::check() const {
   }
   if (gradient && std::abs(gradient->trace()) > 1e-12 * gradient->norm())
     throw UserError("Flow/gradient must have zero trace, because the fluid is incompressible, but its trace is " +
-                    std::to_string(gradient->trace()) + ".");
-  refuse(type == "linear" && shear_rate != 1.0, "Flow/shear rate", "Flow/gradient",
-         "the gradient of a `linear` flow already contains its rate");
+                    formatted("%.3g.", gradient->trace()));
 }
 
 double FlowOptions::rate_between_plates() const {

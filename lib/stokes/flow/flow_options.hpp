@@ -22,7 +22,7 @@ struct Plates {
 struct FlowOptions {
   std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear,
                                       ///< parabolic, duct, or a registered one
-  double shear_rate = 1.0;            ///< rate of every flow with a gradient except `linear` and `parabolic`, units 1/time
+  double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; otherwise 1
   double viscosity = 1.0;             ///< mu of the outer fluid
   std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (P-48)
   std::optional<Mat3> gradient;          ///< L_ij = dv_i/dx_j; set for `linear`

@@ -1,6 +1,7 @@
 #include "stokes/kernels/assembly_kernel.hpp"
 
 #include "base/kernel.hpp"
+#include "stokes/kernels/far_kernel.hpp"
 
 namespace tanktread::stokes {
 namespace INSTRUCTIONS {
@@ -10,9 +11,12 @@ namespace {
 template <class Real, bool Double>
 void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uint32_t skip, Real* __restrict g) {
   constexpr int n = assembly_block;
-  alignas(register_bytes) Real inverses[n];
+  alignas(register_bytes) Real inverses[n], least[n];
   Real use[n];
-  for (int l = 0; l < n; ++l) use[l] = skip >> l & 1 ? 0 : 1;
+  for (int l = 0; l < n; ++l) {
+    use[l] = skip >> l & 1 ? 0 : 1;
+    least[l] = static_cast<Real>(coincident(target[l], target[n + l], target[2 * n + l]));
+  }
   for (int k = 0; k < panel.n_nodes; ++k, g += 6 * n) {
     const double x = panel.x[k], y = panel.y[k], z = panel.z[k];
     const Real weight = Double ? 0 : static_cast<Real>(panel.weight[k]);
@@ -24,7 +28,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
                  rz = static_cast<Real>(z - target[2 * n + l]);
       inverses[l] = rx * rx + ry * ry + rz * rz;
     }
-    for (int l = 0; l < n; l += RegisterOf<Real>::lanes) store(inverse_root(load(inverses + l)), inverses + l);
+    for (int l = 0; l < n; l += RegisterOf<Real>::lanes) store(inverse_root(load(inverses + l), load(least + l)), inverses + l);
     for (int l = 0; l < n; ++l) {
       const Real rx = static_cast<Real>(x - target[l]), ry = static_cast<Real>(y - target[n + l]),
                  rz = static_cast<Real>(z - target[2 * n + l]);

@@ -23,7 +23,8 @@ struct PanelNodes {
 
 /// Adds sum_k G_c(x_k, x0_l) N_A(x_k) w_k (2.1), for each basis function A and component c = 11, 12, 13, 22, 23, 33 of G, to sums[n (6 rows[A] + c) +
 /// l], with n = assembly_block = 16, unless bit l of `skip` is set. With normals, T_ijk n_k replaces G. Target l has the coordinates target[l],
-/// target[n + l] and target[2 n + l]. Differences x_k - x0_l are computed in double precision. `scratch`: 6 n n_nodes numbers.
+/// target[n + l] and target[2 n + l]. Differences x_k - x0_l are computed in double precision. A node that coincides with the target, up to rounding,
+/// is skipped, as in stokeslet_sum(). `scratch`: 6 n n_nodes numbers.
 void far_moments(const PanelNodes<float>& panel, const double* target, std::uint32_t skip, float* scratch, float* sums);
 void far_moments(const PanelNodes<double>& panel, const double* target, std::uint32_t skip, double* scratch, double* sums);
 

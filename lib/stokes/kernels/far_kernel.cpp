@@ -13,12 +13,6 @@ constexpr int packs = far_block / lanes;
 /// Number of packs of targets that are summed at the same time.
 constexpr int tile = packs < 4 ? packs : 4;
 
-/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
-template <class Number>
-Number coincident(const Number& x0, const Number& y0, const Number& z0) {
-  return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
-}
-
 /// Computes the sums for `tile` packs of targets; a pack fills one register.
 void tile_sum(const Charges& forces, const double* target, double* u) {
   Register x0[tile], y0[tile], z0[tile], least[tile], ux[tile] = {}, uy[tile] = {}, uz[tile] = {};

@@ -52,6 +52,12 @@ enum class Precision { single, full };
 /// Number of targets that are processed together in one pass over the nodes.
 constexpr int far_block = 16;
 
+/// Returns the squared distance below which a node coincides with the target x0 up to the rounding of their coordinates.
+template <class Number>
+Number coincident(const Number& x0, const Number& y0, const Number& z0) {
+  return 0x1p-80 * (x0 * x0 + y0 * y0 + z0 * z0);
+}
+
 /// Computes u_l = sum_k G(x_k, x0_l) f_k (2.1) for l = 0 .. far_block - 1. Target l has the coordinates target[l], target[far_block + l],
 /// target[2 far_block + l]; u has the same layout. Each sum runs over the nodes in their order. A node that coincides with the target, up to rounding
 /// (2^-40 of the target's distance from the origin), is skipped.
@@ -93,6 +99,8 @@ struct StokesletKernel {  ///< kernel for TreeSum: maps forces f to the velociti
   static constexpr int in = 3, out = 3;
   static constexpr auto *sum = stokeslet_sum, *single = stokeslet_sum_in_single;
 };
+/// Order of the six components of a Stokeslet and of assembled rows: 11, 12, 13, 22, 23, 33.
+constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
 /// Order of the six components of a symmetric stress: 11, 22, 33, 12, 13, 23.
 constexpr int stresses[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 

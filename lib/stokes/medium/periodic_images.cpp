@@ -16,7 +16,6 @@ namespace tanktread::stokes {
 namespace {
 
 using std::numbers::pi;
-constexpr int pairs[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};  // index pairs of the Stokeslet's components
 
 double delta(int i, int j) { return i == j ? 1 : 0; }
 
@@ -141,7 +140,7 @@ std::vector<double> PeriodicKernel::waves(const std::array<std::vector<double>, 
         const double square = k.squaredNorm(), quarter = square / (4 * xi_ * xi_);
         const double e = square > 0 ? 8 * pi / volume * std::exp(-quarter) / square : 0, w = square > 0 ? (1 + quarter) * e / square : 0;
         if (kind_ == Kind::stokeslet) {
-          for (const auto& [a, b] : pairs) sums.emplace_back(w * (square * delta(a, b) - k[a] * k[b]));
+          for (const auto& [a, b] : upper) sums.emplace_back(w * (square * delta(a, b) - k[a] * k[b]));
           continue;
         }
         for (int a = 0; a < 3; ++a)
@@ -168,7 +167,7 @@ void PeriodicKernel::add_smooth_images(const Vec3& r0, double* values) const {
     const Vec3 r = r0 + image;
     const Smooth of(xi_, r.norm());
     if (kind_ == Kind::stokeslet) {
-      for (int c = 0; c < 6; ++c) values[c] -= of.a * delta(pairs[c][0], pairs[c][1]) + of.b * r[pairs[c][0]] * r[pairs[c][1]];
+      for (int c = 0; c < 6; ++c) values[c] -= of.a * delta(upper[c][0], upper[c][1]) + of.b * r[upper[c][0]] * r[upper[c][1]];
       continue;
     }
     const double straight = -2 * xi_ * xi_ * of.g;
@@ -187,7 +186,7 @@ void PeriodicKernel::add_mode_across(const Vec3& r, double* values) const {
   const double z = e.dot(r), scale = 4 * pi / std::abs(periods_.determinant());
   if (kind_ == Kind::stokeslet) {
     const double mode = scale * (z * z + periods_.col(2).squaredNorm() / 6);
-    for (int c = 0; c < 6; ++c) values[c] -= mode * (delta(pairs[c][0], pairs[c][1]) - e[pairs[c][0]] * e[pairs[c][1]]);
+    for (int c = 0; c < 6; ++c) values[c] -= mode * (delta(upper[c][0], upper[c][1]) - e[upper[c][0]] * e[upper[c][1]]);
     return;
   }
   for (int i = 0; i < 3; ++i)
@@ -202,7 +201,7 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
   const double over = 1 / r.norm();
   if (kind_ == Kind::stokeslet) {
     for (int c = 0; c < 6; ++c)
-      values[c] += factor * over * (delta(pairs[c][0], pairs[c][1]) + over * over * r[pairs[c][0]] * r[pairs[c][1]]);
+      values[c] += factor * over * (delta(upper[c][0], upper[c][1]) + over * over * r[upper[c][0]] * r[upper[c][1]]);
     return;
   }
   const double scale = -6 * factor * std::pow(over, 5);
@@ -220,7 +219,7 @@ void PeriodicKernel::add_row(const Vec3& r, double* values) const {
     add_free(r + n * h, factor, values);
     add_free(r - n * h, factor, values);
     if (kind_ == Kind::stresslet) return;
-    for (int c = 0; c < 6; ++c) values[c] -= 2 * factor / (n * h.norm()) * (delta(pairs[c][0], pairs[c][1]) + e[pairs[c][0]] * e[pairs[c][1]]);
+    for (int c = 0; c < 6; ++c) values[c] -= 2 * factor / (n * h.norm()) * (delta(upper[c][0], upper[c][1]) + e[upper[c][0]] * e[upper[c][1]]);
   };
   const double end = near_[0] + direct + 0.5;
   for (int n = near_[0] + 1; n < end; ++n) add(n, 1);
@@ -239,7 +238,7 @@ void PeriodicKernel::add_constant(double* values) const {
   const Vec3 e = cell_.vectors().col(0) / h;
   double factor = 2 / h * (std::log(cell_.reference() / (2 * h)) + std::numbers::egamma + 0.5);
   for (int n = 1; n <= near_[0]; ++n) factor -= 2 / (n * h);
-  for (int c = 0; c < 6; ++c) values[c] += factor * (delta(pairs[c][0], pairs[c][1]) + e[pairs[c][0]] * e[pairs[c][1]]);
+  for (int c = 0; c < 6; ++c) values[c] += factor * (delta(upper[c][0], upper[c][1]) + e[upper[c][0]] * e[upper[c][1]]);
 }
 
 std::vector<double> PeriodicKernel::values(const std::array<std::vector<double>, 3>& s) const {

@@ -173,9 +173,4 @@ void Clusters::enclose(Cluster& cluster) {
   chebyshev_nodes(cluster, &node_[0][all - n], &node_[1][all - n], &node_[2][all - n]);
 }
 
-std::size_t Clusters::bytes() const {
-  return clusters_.capacity() * sizeof(Cluster) + groups_.capacity() * sizeof(Group) + order_.capacity() * sizeof(int) +
-         3 * sizeof(double) * (point_[0].capacity() + node_[0].capacity());
-}
-
 }  // namespace tanktread::stokes

@@ -52,7 +52,6 @@ class Clusters {
   const std::vector<double> (&nodes() const)[3] { return node_; }    ///< positions of the Chebyshev nodes
   int n_nodes() const { return static_cast<int>(node_[0].size()); }
   int n_blocks() const { return n_blocks_; }
-  std::size_t bytes() const;
 
  private:
   struct Group {

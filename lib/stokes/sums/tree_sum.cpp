@@ -255,10 +255,4 @@ void TreeSum::hand_down() {
   }
 }
 
-std::size_t TreeSum::bytes() const {
-  std::size_t doubles = target_at_.capacity() + node_at_.capacity() + target_u_.capacity() + node_u_.capacity();
-  for (int c = 0; c < 6; ++c) doubles += q_[c].capacity() + node_q_[c].capacity();
-  return sizeof(double) * doubles + sources_.bytes() + target_tree_.bytes() + sizeof(Cluster) * targets_.capacity();
-}
-
 }  // namespace tanktread::stokes

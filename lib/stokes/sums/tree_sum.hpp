@@ -43,19 +43,11 @@ class TreeSum {
     sum(carried, values);
   }
 
-  /// Selects rows and computes the sum.
-  template <class Kernel>
-  void sum(const std::array<const double*, 6>& carried, std::span<const int> wanted, double* values) {
-    want(wanted);
-    sum<Kernel>(carried, values);
-  }
-
   /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, source strengths and rows add up to
   /// the complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
-  std::size_t bytes() const;
 
  private:
   void sum(const std::array<const double*, 6>& carried, double* values);

@@ -11,8 +11,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int upper[6][2] = {{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}};
-
 /// First constant: tolerance of the sum by clusters, a tenth of the error of the trapezoidal rule. Second constant: number of nodes above which the
 /// sum by clusters is faster than the direct sum. Both were chosen from measurements on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
@@ -87,7 +85,7 @@ void NodalOperator::subtract_rule(const Surface& surface) {
       Mat3 rule = Mat3::Zero();
       for (Eigen::SparseMatrix<double>::InnerIterator entry(surface.values, near_.point[j]); entry; ++entry)
         rule += weights_[entry.row()] * entry.value() * stokes::stokeslet(surface.sites.row(entry.row()).transpose() - at_[k]);
-      for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(upper[c][0], upper[c][1]);
+      for (std::size_t c = 0; c < 6; ++c) entries_[6 * j + c] -= rule(stokes::upper[c][0], stokes::upper[c][1]);
     }
   }
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "quadrature/gauss.hpp"
 #include "spline/extraction.hpp"
 #include "spline/space.hpp"
 #include "surface/shapes.hpp"
@@ -72,6 +73,26 @@ TEST(PeriodicLayer, DoubleLayersOfRigidMotionsVanish) {
       for (int i = 0; i < space.n_points; ++i) rotation.row(i) = Vec3(1, 2, -1).cross(Vec3(x.row(i).transpose() - Vec3(3, 1, 2))).transpose();
       EXPECT_LT(double_layer(x, rotation, cell(n), tolerance).cwiseAbs().maxCoeff(), tolerance) << n;
     }
+}
+
+TEST(PeriodicLayer, AssembledRowsOfTargetsAtFarNodesAreTheSum) {
+  const auto& [space, x, field, every] = ellipsoid();
+  constexpr int points = 3;
+  Sites sites;
+  const auto node = [&](int k) { return quadrature::gauss(points).nodes[k % points] * (1 + 1e-15); };  // up to rounding
+  for (int e = 0; e < 16; ++e) sites.push_back({{e, node(e), node(e / 2)}});
+  std::vector<int> all(sites.size());
+  std::iota(all.begin(), all.end(), 0);
+  Layer layer(Layer::Kernel::single_layer, space, sites, {.rule = "fixed", .points = points, .far_sum = "dense"});
+  layer.repeat(cell(), {.assembled = true});
+  layer.place(x);
+  Net u(static_cast<Eigen::Index>(sites.size()), 3);
+  layer.apply(field, all, u);
+  Rows<double> rows;
+  layer.assemble(all, rows);
+  layer.assemble_rest(all, rows);
+  const Eigen::VectorXd product = rows * Eigen::Map<const Eigen::VectorXd>(field.data(), field.size());
+  EXPECT_LT((product - Eigen::Map<const Eigen::VectorXd>(u.data(), u.size())).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 TEST(PeriodicLayer, WhatCrossesTheFacesOfACellIsAsInside) {

@@ -40,7 +40,8 @@ struct Cloud {
   Net sum(TreeSum& tree, const std::vector<int>& wanted) const {
     Net u = Net::Zero(static_cast<Eigen::Index>(targets.size()), 3);
     tree.place(x, starts, targets);
-    tree.sum<StokesletKernel>({f[0].data(), f[1].data(), f[2].data()}, wanted, u.data());
+    tree.want(wanted);
+    tree.sum<StokesletKernel>({f[0].data(), f[1].data(), f[2].data()}, u.data());
     return u;
   }
 
