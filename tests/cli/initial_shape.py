@@ -81,6 +81,12 @@ def copies_move_and_turn_a_shape_from_a_file_or_run():
                 close(series("then", f"many {copy}/length_x{k + 1}")[0], series("first", f"length_x{axes[k]}")[-1], 1e-9, "length")
 
 
+def random_copies_have_room_for_their_initial_shape():
+    places = "initial shape: { stretch: [1, 1, 1.8], volume: own }\n      copies: { number: 8, box: [9, 9, 9], seed: 2 }"
+    text = COPIES.replace("initial shape: { %s }\n      copies: { file: positions.csv }", places).replace("center: [0.5, 0, 0]", "radius: 1")
+    run(deck(text), "--check", "--quiet")
+
+
 def a_volume_of_its_own_is_kept_and_found_again():
     run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "own", "--quiet", "--set", "Time/final time=0.02")
     run("--resume", "own", "--quiet", "--set", "Time/final time=0.05")
