@@ -40,7 +40,6 @@ Channel::Channel(const TubeOptions& options)
     : options_(options), own_(options.channel.value()), outline_(surface::outline(options)) {
   const auto [low, high] = outline_.box();
   for (int d = 0; d < 2; ++d) half_[d] = (high[d] - low[d]) / 2;
-  inwards_ = high[0];
   height_ = own_.directions == "x2" ? half_[0] : own_.directions == "x3" ? half_[1] : outline_.radius();
   if (own_.points) read_points();
   find_ends();
@@ -107,7 +106,7 @@ void Channel::check() {
                                   d + 2, width, 0.01 * radius));
       smallest_ = k + d == 0 ? width : std::min(smallest_, width);
     }
-    inwards = std::max(inwards, inwards_ * factor[0]);
+    inwards = std::max(inwards, outline_.box()[1][0] * factor[0]);
   }
   const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
   if (options_.period > 0)
@@ -295,7 +294,7 @@ std::vector<double> Channel::sizes(const std::vector<double>& u) const {
     const Vec2 out(after.s - at[k].s, height_ * (after.factor - at[k].factor).cwiseAbs().maxCoeff());
     const double turn = std::abs(std::atan2(in[0] * out[1] - in[1] * out[0], in.dot(out)));
     if (k > 0 && k + 1 < u.size() && turn > 0) h = std::min(h, 0.35 * finer * out.norm() / turn);
-    if (own_.bend_radius) h = std::min(h, 0.35 * finer * (*own_.bend_radius - inwards_ * at[k].factor[0]));
+    if (own_.bend_radius) h = std::min(h, 0.35 * finer * (*own_.bend_radius - outline_.box()[1][0] * at[k].factor[0]));
     if (changes && (at[k].s < first_ - 2.5 * radius || at[k].s > last_ + 2.5 * radius)) h *= 2.5;
     size.push_back(h);
   }

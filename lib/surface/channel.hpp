@@ -72,8 +72,7 @@ class Channel {
   Outline outline_;
   std::optional<CubicCurve> factors_;
   // half_: half widths of the outline along x2 and x3. height_: length to which the relative depth of a `step` refers (a half width, or the radius)
-  // inwards_: largest coordinate y2 of the outline, on the side to which the centre line bends
-  double half_[2] = {1, 1}, height_ = 1, inwards_ = 1;
+  double half_[2] = {1, 1}, height_ = 1;
   double first_ = 0, last_ = 0;           // smallest (first_) and largest (last_) arc length s at which the cross-section or the direction of the
                                           // channel changes
   double start_ = 0, end_ = 0, smallest_ = 1;

@@ -82,7 +82,7 @@ def copies_move_and_turn_a_shape_from_a_file_or_run():
 
 
 def random_copies_have_room_for_their_initial_shape():
-    places = "initial shape: { stretch: [1, 1, 1.8], volume: own }\n      copies: { number: 8, box: [9, 9, 9], seed: 2 }"
+    places = "initial shape: { stretch: [1, 1, 1.8], volume: own }\n      copies: { number: 4, box: [8, 8, 8], seed: 2 }"
     text = COPIES.replace("initial shape: { %s }\n      copies: { file: positions.csv }", places).replace("center: [0.5, 0, 0]", "radius: 1")
     run(deck(text), "--check", "--quiet")
 
