@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
 #include "spline/basis.hpp"
@@ -136,8 +137,26 @@ constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// Returns a description of the fault if a surface is not closed or not oriented outwards, to be used as the end of an error message; empty if
-/// there is no fault.
+/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
+/// points. `places`: candidate points, as numbered_places() returns them.
+int separate_element(const Space& space, const std::vector<int>& places) {
+  std::vector<int> towards = indices(space.n_points + places.size());  // leads from a point to a connected point, finally to the root of its part
+  const auto root = [&](int point) {
+    while (towards[point] != point) point = towards[point] = towards[towards[point]];
+    return point;
+  };
+  for (std::size_t k = 0; k < space.elements.size(); ++k) {
+    const std::vector<int>& points = space.elements[k].points;
+    for (const int point : points) towards[root(point)] = root(points[0]);
+    for (std::size_t p = 9 * k; p < 9 * (k + 1); ++p) towards[root(space.n_points + places[p])] = root(points[0]);
+  }
+  for (std::size_t k = 1; k < space.elements.size(); ++k)
+    if (root(space.elements[k].points[0]) != root(space.elements[0].points[0])) return int(k);
+  return -1;
+}
+
+/// Returns a description of the fault if a surface is not closed or not oriented outwards, or has several parts, to be used as the end of an error
+/// message; empty if there is no fault.
 ///
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
@@ -179,6 +198,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
     }
   if (!open.empty() && sum.cwiseAbs().maxCoeff() > 1e-5 * length)
     return "the surface is not closed: element " + std::to_string(open.begin()->second.first) + " is among those beside a hole.";
+  if (const int other = separate_element(space, places); other >= 0)
+    return "the surface has separate parts, but a particle has one closed surface: element " + std::to_string(other) +
+           " is not connected with element 0.";
 
   double volume = 0;
   for (int k = 0; k < int(space.elements.size()); ++k)
