@@ -111,7 +111,7 @@ void Channel::check() {
   const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
   if (options_.period > 0)
     check_period();
-  else if (before > first_ || after < last_ || start_ >= end_)
+  else if (start_ >= end_ || (last_ > first_ && (before > first_ || after < last_)))
     throw UserError(
         formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
                   "but the computed part extends from %.4g to %.4g.",

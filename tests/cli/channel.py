@@ -64,6 +64,11 @@ def what_is_no_channel_is_refused():
     refused(["closed at s = -3.4"], deck(lines, "file.yaml"))
 
 
+def a_straight_channel_may_begin_anywhere():
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: straight").replace("end when past: -0.7", "end when past: 4")
+    run(deck(lines), "--check", "--quiet", *_words(["Channel/start=0", "Channel/end=6.8", "Particle/center=[3.4, 0, 0]"]))
+
+
 def a_run_ends_when_it_is_past():
     run(deck(DECK), "--output", "past", "--quiet")
     x = series("past", "centroid_x1")
