@@ -161,9 +161,8 @@ int separate_element(const Space& space, const std::vector<int>& places) {
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
 /// not 0. The volume must be positive.
-std::string fault_of_closed_surface(const Space& space, const Net& net) {
+std::string fault_of_closed_surface(const Space& space, const Net& net, const std::vector<int>& places) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
-  const std::vector<int> places = numbered_places(space, net);
   // Sides of elements without a matching side so far, by the indices of their end points and midpoint. The matching side runs in the opposite
   // direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
@@ -216,8 +215,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
 /// Returns a collocation point for each control point, where its function is large. A point is given by its local coordinates on every element that
 /// contains it. Candidate points are assigned in descending order of the value of the function, each to one function. Throws UserError if no
 /// candidate is left for a function.
-std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net& net) {
-  const std::vector<int> places = numbered_places(space, net);
+std::vector<std::vector<Site>> largest_value_sites(const Space& space, const std::vector<int>& places) {
   std::vector<std::vector<Site>> at_place(places.size());
   struct Candidate {
     double value;
@@ -291,9 +289,10 @@ SplineSurface read_iga(const std::filesystem::path& file) {
   out.space.n_points = nodes;
   out.net.resize(nodes, 3);
   for (int i = 0; i < nodes; ++i) out.net.row(i) = points[i];
-  if (const std::string fault = fault_of_closed_surface(out.space, out.net); !fault.empty())
+  const std::vector<int> places = numbered_places(out.space, out.net);
+  if (const std::string fault = fault_of_closed_surface(out.space, out.net, places); !fault.empty())
     throw UserError("Surface file " + file.string() + ": " + fault);
-  out.space.collocation = largest_value_sites(out.space, out.net);
+  out.space.collocation = largest_value_sites(out.space, places);
   out.space.description =
       std::to_string(n_elements) + " Bezier elements, " + std::to_string(nodes) + " control points, from " + file.filename().string();
   return out;
