@@ -140,8 +140,6 @@ void InitialShape::declare(deck::Section& section) {
   section.key("mode amplitude", mode_amplitude, deck::any(), "R_C",
               "largest displacement by the eigenmode Particle/initial shape/mode that is added to the shape of the earlier run, divided "
               "by R_C, the radius of the sphere with the particle's volume");
-  if (section.given("mode amplitude") && !mode)
-    throw UserError(section.path("mode amplitude") + " needs " + section.path("mode") + ", the mode to add.");
   section.key("volume", volume, deck::Choice{"resting", "own"},
               "volume of the particle during the run. `resting`: volume of the resting shape, and the initial shape is scaled to this "
               "volume. `own`: volume of the initial shape as given");

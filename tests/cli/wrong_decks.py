@@ -49,7 +49,6 @@ SETTINGS = [
     (["Zebra/stripes=1"], ["Tube"]),
     # unknown words
     (["Surface/axial elements=8"], ["Surface/axial elements", "`cylinder`"]),
-    (["Particle/initial shape/stretch=[1, 1, 1.1]", "Particle/initial shape/mode amplitude=0.1"], ["initial shape/mode amplitude", "shape/mode,"]),
     (["Surface/mesh=icosahedron"], ["Surface/mesh", "cube", "icosahedron"]),
     (["Flow/type=waterfall"], ["Flow/type", "simple shear", "waterfall"]),
     (["Particle/motion=backwards"], ["Particle/motion", "deforming", "backwards"]),
