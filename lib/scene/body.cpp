@@ -1,6 +1,7 @@
 #include "scene/body.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -126,13 +127,17 @@ Body body(const Scene& scene, const Member* alike) {
     b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   }
   const auto before = run_before(scene);
+  std::optional<Body> first;  // body on the mesh of the deck, if the run before has refined it
   if (before && scene.adaptation.enabled) {
+    first = b;
     lay_out(scene, stored_mesh(b.mesh, *before), b);
     b.rest = before->arrays.at("initial");
   }
   b.initial = initial_shape(scene, b, before ? &*before : nullptr);
   const Vec3& center = scene.particle.shape.center;
-  b.unstressed = scene.particle.rigid() ? b.rest : membrane::unstressed(stress_free_shape(scene, b), center, scene.membrane.pre_inflation);
+  b.unstressed = b.rest;
+  if (!scene.particle.rigid())
+    b.unstressed = membrane::unstressed(stress_free_shape(scene, b, first ? *first : b), center, scene.membrane.pre_inflation);
   b.duct = duct(scene);
   b.flow = stokes::AmbientFlow(scene.flow, scene.flow.type == "duct" ? b.duct : nullptr);
   b.plane = flow_plane(scene.flow);

@@ -9,6 +9,7 @@
 #include "deck/document.hpp"
 #include "deck/words.hpp"
 #include "spline/iga.hpp"
+#include "spline/transfer.hpp"
 #include "surface/geometry.hpp"
 #include "surface/shapes.hpp"
 #include "surface/stress_free.hpp"
@@ -110,17 +111,18 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   return image(x, measures.centroid, scale * Mat3::Identity());
 }
 
-Net stress_free_shape(const Scene& scene, const Body& body) {
+Net stress_free_shape(const Scene& scene, const Body& body, const Body& first) {
   const membrane::Options& membrane = scene.membrane;
   if (membrane.stress_free == "resting") return body.rest;
   if (membrane.stress_free == "file") return net_of_file(body.space, membrane.stress_free_file.value(), "Membrane/stress-free file");
   if (scene.particle.shape.imported)
     throw UserError(
         "Membrane/stress-free shape must be `resting` or `file` if Particle/shape is `file`, because the axis of that shape is not known.");
-  const surface::LeastSquaresFit fit(body.space);
-  const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), body.space, scene.surface.axis())
-                                           : surface::unit_sphere(body.mesh, fit);
-  return surface::stress_free_spheroid(fit, sphere, scene.particle.shape, membrane.reduced_volume.value_or(1));
+  const surface::LeastSquaresFit fit(first.space);
+  const Net sphere = scene.surface.polar() ? surface::unit_sphere(scene.surface.polar_mesh(), first.space, scene.surface.axis())
+                                           : surface::unit_sphere(first.mesh, fit);
+  const Net spheroid = surface::stress_free_spheroid(fit, sphere, scene.particle.shape, membrane.reduced_volume.value_or(1));
+  return &first == &body ? spheroid : spline::Transfer(first.nested(), body.nested())(spheroid).net;
 }
 
 }  // namespace tanktread

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.hpp"
 #include "base/formatted.hpp"
@@ -19,6 +20,8 @@ void check_keys(const ParticleKind& kind, const Post& post) {
   const auto refuse_key = [&](const char* key, bool given) {
     refuse(given, post.path(key), "Particle/shape `cylinder`", "a cylinder is a fixed post, which does not move or deform");
   };
+  for (const auto& [key, given] : {std::pair("semi-axes", particle.shape.semi_axes.has_value()), std::pair("file", particle.shape.file.has_value())})
+    refuse(given, post.path(key), "Particle/shape `cylinder`", "its radius determines the size of a cylinder");
   refuse_key("motion", particle.motion != Motion::deforming);
   refuse_key("velocity", particle.velocity.has_value());
   refuse_key("angular velocity", particle.angular_velocity.has_value());

@@ -32,7 +32,6 @@ struct Remover {
   TMesh mesh;
   std::vector<std::uint8_t> removable;
   const std::vector<LatticeMap>& images;
-  int bays = 0, doublings = 0;
 
   const Lattice& lattice() const { return *mesh.lattice; }
   bool may_go(Ray e) const { return removable[e.vertex] >> e.slot & 1; }
@@ -82,7 +81,6 @@ struct Remover {
       for (Ray e : gone) mesh.set(e, true);
       return false;
     }
-    bays += !gone.empty();
     return !gone.empty();
   }
 
@@ -154,7 +152,6 @@ struct Remover {
         for (Ray e : ring_edges(p)) edges.push_back(e);
       for (Ray e : edges) mesh.set(e, false);
       for (int p : group) mesh.spacing[p] *= 2;
-      doublings += int(group.size());
       any = any || !group.empty();
     }
     return any;
@@ -163,7 +160,7 @@ struct Remover {
 
 }  // namespace
 
-Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules) {
+TMesh take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules) {
   Remover r{mesh, removable, rules.images};
   bool going = true;
   while (going) {
@@ -172,11 +169,11 @@ Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removabl
   }
   r.restore_ends();
   ExtendedMesh extended(std::move(r.mesh));
-  const int repairs = repair(extended, rules).first;
-  return {std::move(extended).take(), r.bays, r.doublings, repairs};
+  repair(extended, rules);
+  return std::move(extended).take();
 }
 
-Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
+TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
   // Largest width and height that an element may grow to, as powers of two, in lattice cells. A mesh line is not removed if its coordinate is a

@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
 #include "spline/basis.hpp"
@@ -136,15 +137,32 @@ constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
 
-/// Returns a description of the fault if a surface is not closed or not oriented outwards, to be used as the end of an error message; empty if
-/// there is no fault.
+/// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
+/// points. `places`: candidate points, as numbered_places() returns them.
+int separate_element(const Space& space, const std::vector<int>& places) {
+  std::vector<int> towards = indices(space.n_points + places.size());  // leads from a point to a connected point, finally to the root of its part
+  const auto root = [&](int point) {
+    while (towards[point] != point) point = towards[point] = towards[towards[point]];
+    return point;
+  };
+  for (std::size_t k = 0; k < space.elements.size(); ++k) {
+    const std::vector<int>& points = space.elements[k].points;
+    for (const int point : points) towards[root(point)] = root(points[0]);
+    for (std::size_t p = 9 * k; p < 9 * (k + 1); ++p) towards[root(space.n_points + places[p])] = root(points[0]);
+  }
+  for (std::size_t k = 1; k < space.elements.size(); ++k)
+    if (root(space.elements[k].points[0]) != root(space.elements[0].points[0])) return int(k);
+  return -1;
+}
+
+/// Returns a description of the fault if a surface is not closed or not oriented outwards, or has several parts, to be used as the end of an error
+/// message; empty if there is no fault.
 ///
 /// Sides of elements are matched by their end points and midpoints. Sides without a matching side (at T-junctions or holes) must cancel as curves:
 /// the sum of the line integrals of a few smooth fields along them must be 0. If there is a hole, or an element is missing or inverted, the sum is
 /// not 0. The volume must be positive.
-std::string fault_of_closed_surface(const Space& space, const Net& net) {
+std::string fault_of_closed_surface(const Space& space, const Net& net, const std::vector<int>& places) {
   constexpr int along_edge[4][3] = {{0, 1, 2}, {2, 5, 8}, {8, 7, 6}, {6, 3, 0}};
-  const std::vector<int> places = numbered_places(space, net);
   // Sides of elements without a matching side so far, by the indices of their end points and midpoint. The matching side runs in the opposite
   // direction.
   std::map<std::array<int, 3>, std::pair<int, int>> open;
@@ -179,6 +197,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
     }
   if (!open.empty() && sum.cwiseAbs().maxCoeff() > 1e-5 * length)
     return "the surface is not closed: element " + std::to_string(open.begin()->second.first) + " is among those beside a hole.";
+  if (const int other = separate_element(space, places); other >= 0)
+    return "the surface has separate parts, but a particle has one closed surface: element " + std::to_string(other) +
+           " is not connected with element 0.";
 
   double volume = 0;
   for (int k = 0; k < int(space.elements.size()); ++k)
@@ -194,8 +215,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net) {
 /// Returns a collocation point for each control point, where its function is large. A point is given by its local coordinates on every element that
 /// contains it. Candidate points are assigned in descending order of the value of the function, each to one function. Throws UserError if no
 /// candidate is left for a function.
-std::vector<std::vector<Site>> largest_value_sites(const Space& space, const Net& net) {
-  const std::vector<int> places = numbered_places(space, net);
+std::vector<std::vector<Site>> largest_value_sites(const Space& space, const std::vector<int>& places) {
   std::vector<std::vector<Site>> at_place(places.size());
   struct Candidate {
     double value;
@@ -269,9 +289,10 @@ SplineSurface read_iga(const std::filesystem::path& file) {
   out.space.n_points = nodes;
   out.net.resize(nodes, 3);
   for (int i = 0; i < nodes; ++i) out.net.row(i) = points[i];
-  if (const std::string fault = fault_of_closed_surface(out.space, out.net); !fault.empty())
+  const std::vector<int> places = numbered_places(out.space, out.net);
+  if (const std::string fault = fault_of_closed_surface(out.space, out.net, places); !fault.empty())
     throw UserError("Surface file " + file.string() + ": " + fault);
-  out.space.collocation = largest_value_sites(out.space, out.net);
+  out.space.collocation = largest_value_sites(out.space, places);
   out.space.description =
       std::to_string(n_elements) + " Bezier elements, " + std::to_string(nodes) + " control points, from " + file.filename().string();
   return out;

@@ -103,8 +103,8 @@ Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, co
 
 }  // namespace
 
-std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
-  int bays = 0, halvings = 0, cursor = -1;
+int repair(ExtendedMesh& extended, const RepairRules& rules) {
+  int halvings = 0, cursor = -1;
   while (true) {
     std::vector<Ray> bay;
     if (extended.crossings() > 0) {
@@ -117,11 +117,10 @@ std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules) {
       bay = first_bay(extended.mesh(), overlap[0].first);
       if (auto other = first_bay(extended.mesh(), overlap[0].second); other.size() < bay.size()) bay = std::move(other);
     } else {
-      return {bays, halvings};
+      return halvings;
     }
     std::vector<std::vector<Ray>> paths;
     insert(extended, std::move(bay), rules, paths);
-    ++bays;
     halvings += restore_zones(extended, std::move(paths), rules.rings);
   }
 }
@@ -144,9 +143,7 @@ Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const Repai
       insert(extended, mid_line(*mesh.lattice, r, cut.across_s), rules, paths);
   }
   out.halvings = restore_zones(extended, std::move(paths), rules.rings);
-  const auto [bays, halvings] = repair(extended, rules);
-  out.repairs = bays;
-  out.halvings += halvings;
+  out.halvings += repair(extended, rules);
   out.mesh = std::move(extended).take();
   return out;
 }

@@ -55,7 +55,6 @@ struct RepairRules {
 struct Refinement {
   TMesh mesh;
   int refused = 0;   ///< number of bisections not done because the lattice is too coarse
-  int repairs = 0;   ///< number of line segments (bays) added by the repair, each between two successive perpendicular edges
   int halvings = 0;  ///< number of times that the spacing around an extraordinary point was halved
 };
 
@@ -71,17 +70,9 @@ struct Refinement {
 Refinement refine(const TMesh& mesh, const std::vector<Mark>& marks, const RepairRules& rules = {});
 
 class ExtendedMesh;
-/// Adds edges until the mesh satisfies the rules, without bisecting elements. Returns the number of added line segments between perpendicular edges
-/// and the number of times that the spacing around an extraordinary point was halved.
-std::pair<int, int> repair(ExtendedMesh& extended, const RepairRules& rules);
-
-/// Result of `coarsen`. A bay is the part of a mesh line between two successive perpendicular edges.
-struct Coarsening {
-  TMesh mesh;
-  int bays = 0;       ///< number of bays removed
-  int doublings = 0;  ///< number of times that the spacing around an extraordinary point was doubled
-  int repairs = 0;    ///< number of line segments inserted after the removal to satisfy the rules again
-};
+/// Adds edges until the mesh satisfies the rules, without bisecting elements. Returns the number of times that the spacing around an extraordinary
+/// point was halved.
+int repair(ExtendedMesh& extended, const RepairRules& rules);
 
 /// Permission for an element of elements(mesh) to grow: `s` and `t` are the numbers of times that its width and its height may be doubled.
 struct Merge {
@@ -96,10 +87,10 @@ struct Merge {
 /// All these lines are removed together, and the mesh is repaired afterwards. If they were removed one by one, many lines would have to stay because
 /// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With
 /// `rules.images`, an element may grow as far as all of its images may, and a line is removed with all of its images or not at all.
-Coarsening coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
+TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 
 /// Coarsens a mesh by removing edges of a given set of unit edges (bits as in TMesh::edges). An edge is removed if all edges between the same two
 /// perpendicular edges may be removed.
-Coarsening take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules = {});
+TMesh take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules = {});
 
 }  // namespace tanktread::spline

@@ -95,15 +95,7 @@ void Channel::check() {
       throw UserError(formatted("Channel/corner radius must be at most %.4g for a step of height %.4g and half length %.4g, but is %.4g.", most, rise,
                                 *own_.half_length, edge));
   }
-  const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
-  if (options_.period > 0)
-    check_period();
-  else if (before > first_ || after < last_ || start_ >= end_)
-    throw UserError(
-        formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
-                  "but the computed part extends from %.4g to %.4g.",
-                  straight_end * radius, first_, last_, start_, end_));
-  double widest = 0;
+  double inwards = 0;  // largest distance of the wall from the centre line on the side to which the centre line bends
   for (int k = 0; k <= n_samples; ++k) {
     const double s = start_ + (end_ - start_) * k / n_samples;
     const Vec2 factor = section(s).factor;
@@ -113,14 +105,22 @@ void Channel::check() {
         throw UserError(formatted("The channel is closed at s = %.4g: half its width along x%d is %.3g, and must be more than 0.01 R_T = %.3g.", s,
                                   d + 2, width, 0.01 * radius));
       smallest_ = k + d == 0 ? width : std::min(smallest_, width);
-      if (d == 0) widest = std::max(widest, width);
     }
+    inwards = std::max(inwards, outline_.box()[1][0] * factor[0]);
   }
-  if (own_.bend_radius && *own_.bend_radius <= 1.05 * widest)
+  const double before = start_ + straight_end * outline(start_).radius(), after = end_ - straight_end * outline(end_).radius();
+  if (options_.period > 0)
+    check_period();
+  else if (start_ >= end_ || (last_ > first_ && (before > first_ || after < last_)))
     throw UserError(
-        formatted("Channel/bend radius must exceed half the channel's width, %.4g, by at least 5 %%, because otherwise its cross-sections "
-                  "intersect, but is %.4g.",
-                  widest, *own_.bend_radius));
+        formatted("Channel/start and Channel/end must leave straight ends of 1.7 R_T = %.4g: the channel changes from s = %.4g to %.4g, "
+                  "but the computed part extends from %.4g to %.4g.",
+                  straight_end * radius, first_, last_, start_, end_));
+  if (own_.bend_radius && *own_.bend_radius <= 1.05 * inwards)
+    throw UserError(
+        formatted("Channel/bend radius must exceed the width of the channel from its centre line to the inner wall of the bend, %.4g, by at least "
+                  "5 %%, because otherwise its cross-sections intersect, but is %.4g.",
+                  inwards, *own_.bend_radius));
 }
 
 void Channel::check_period() {
@@ -294,7 +294,7 @@ std::vector<double> Channel::sizes(const std::vector<double>& u) const {
     const Vec2 out(after.s - at[k].s, height_ * (after.factor - at[k].factor).cwiseAbs().maxCoeff());
     const double turn = std::abs(std::atan2(in[0] * out[1] - in[1] * out[0], in.dot(out)));
     if (k > 0 && k + 1 < u.size() && turn > 0) h = std::min(h, 0.35 * finer * out.norm() / turn);
-    if (own_.bend_radius) h = std::min(h, 0.35 * finer * (*own_.bend_radius - half_[0] * at[k].factor[0]));
+    if (own_.bend_radius) h = std::min(h, 0.35 * finer * (*own_.bend_radius - outline_.box()[1][0] * at[k].factor[0]));
     if (changes && (at[k].s < first_ - 2.5 * radius || at[k].s > last_ + 2.5 * radius)) h *= 2.5;
     size.push_back(h);
   }

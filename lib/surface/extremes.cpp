@@ -67,13 +67,15 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
   return {here.value, at};
 }
 
-/// Returns the parameters of the Bezier point with the largest sign * x_c.
+/// Returns the parameters of the point with the largest sign * x_c on the grid of sample(). The Bezier point with the largest sign * x_c may be far
+/// from the maximum.
 Vec2 start(const Patch& patch, int c, double sign) {
-  const int p = patch.degree;
+  const Grid x = sample(patch);
   int highest = 0;
-  for (int b = 0; b < patch.n_bezier(); ++b)
-    if (sign * patch.coordinate(c, b) > sign * patch.coordinate(c, highest)) highest = b;
-  return {double(highest % (p + 1)) / p, double(highest / (p + 1)) / p};
+  const auto height = [&](int k) { return sign * x[k / (cells + 1)][k % (cells + 1)][c]; };
+  for (int k = 1; k < (cells + 1) * (cells + 1); ++k)
+    if (height(k) > height(highest)) highest = k;
+  return Vec2(highest % (cells + 1), highest / (cells + 1)) / cells;
 }
 
 /// Returns the maximum of sign * x_c over the surface. `reached`: a known lower bound of the maximum. bounds[e]: an upper bound on element e.

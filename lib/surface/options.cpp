@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include "base/errors.hpp"
 #include "deck/section.hpp"
@@ -62,7 +63,7 @@ void MeshOptions::check() const {
   };
   misplaced(polar() && elements_per_side, "elements per side");
   misplaced(polar() && extraordinary_points, "extraordinary points");
-  misplaced(axial_elements.has_value(), "axial elements");
+  refuse(axial_elements.has_value(), "Surface/axial elements", "Particle/shape other than `cylinder`", "it belongs to `cylinder`");
   misplaced(!polar() && azimuthal_elements, "azimuthal elements");
   misplaced(!polar() && meridional_elements, "meridional elements");
   misplaced(!polar() && pole_axis, "pole axis");
@@ -204,8 +205,12 @@ bool ParticleShape::sized() const {
 }
 
 double ParticleShape::circumscribed_radius() const {
-  if (imported) return (imported->net.rowwise() - measures(imported->space, imported->net).centroid.transpose()).rowwise().norm().maxCoeff();
-  return radius ? *radius : semi_axes.value().maxCoeff();
+  double stretched = 1;
+  if (const auto map = initial ? initial->affine(rotation()) : std::nullopt)
+    stretched = map->jacobiSvd().singularValues()[0] / (initial->volume == "own" ? 1 : std::cbrt(map->determinant()));
+  if (imported)
+    return stretched * (imported->net.rowwise() - measures(imported->space, imported->net).centroid.transpose()).rowwise().norm().maxCoeff();
+  return stretched * (radius ? *radius : semi_axes.value().maxCoeff());
 }
 
 double ParticleShape::equivalent_radius() const {

@@ -2,6 +2,7 @@
 
 #include "base/text_file.hpp"
 #include "base/errors.hpp"
+#include "base/formatted.hpp"
 #include "deck/words.hpp"
 #include "surface/outline.hpp"
 
@@ -60,15 +61,18 @@ class File {
       throw UserError(name_ + " must hold at least " + std::to_string(fewest) + " points" + (corners ? "" : " without corners") +
                       ", but holds " + std::to_string(n) + ".");
     const double longest = longest_step();
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i)
-      if ((rows_[i + 1].x - rows_[i].x).norm() <= same_point * longest)
-        throw UserError(at(rows_[i + 1].line) + "the point of line " + std::to_string(rows_[i].line) + " stands here once more.");
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const Row &one = rows_[i], &next = rows_[(i + 1) % rows_.size()];
+      if ((next.x - one.x).norm() <= same_point * longest)
+        throw UserError(at(std::max(one.line, next.line)) + "the point of line " + std::to_string(std::min(one.line, next.line)) +
+                        " stands here once more.");
+    }
     const double gap = (rows_.front().x - rows_.back().x).norm();
     const bool straight = rows_.front().corner && rows_.back().corner;
     if (gap > 3 * longest && !straight)
-      throw UserError(name_ + " is open: its last point is " + std::to_string(gap) +
-                      " from its first, but no two others that follow each other are " + "more than " + std::to_string(longest) +
-                      " apart.");
+      throw UserError(name_ + formatted(" is open: its last point is %.4g from its first, but no two others that follow each other are more than "
+                                        "%.4g apart.",
+                                        gap, longest));
   }
 
   std::string name_;

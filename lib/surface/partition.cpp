@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "base/errors.hpp"
-#include "base/indices.hpp"
 
 namespace tanktread::surface {
 namespace {
@@ -54,8 +53,7 @@ std::vector<idx_t> scaled(std::span<const double> cost) {
 
 std::vector<int> element_owners(Graph graph, int parts, std::span<const double> cost) {
   idx_t n = static_cast<idx_t>(graph.start.size()) - 1, constraints = 1, k = parts, cut = 0;
-  std::vector<idx_t> weights = cost.empty() ? std::vector<idx_t>(n, 1) : scaled(cost);
-  std::vector<idx_t> owner(n);
+  std::vector<idx_t> weights = scaled(cost), owner(n);
   idx_t options[METIS_NOPTIONS];
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
@@ -93,32 +91,26 @@ std::vector<int> point_owners(const std::vector<std::vector<int>>& elements_of, 
   return owner;
 }
 
-/// Returns a partition into parts of nearly equal cost. The given points are distributed among the parts; all other points have no owner.
-Partition shared(const spline::Space& space, int parts, std::span<const double> cost, std::span<const int> points) {
-  const int n = static_cast<int>(space.elements.size());
-  if (parts > n)
+}  // namespace
+
+Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {
+  const std::size_t n = space.elements.size();
+  if (static_cast<std::size_t>(parts) > n)
     throw UserError("A surface of " + std::to_string(n) + " elements cannot be shared among " + std::to_string(parts) +
                     " ranks; use at most one rank an element.");
   const std::vector<std::vector<int>> elements_of = elements_of_points(space);
-  const std::vector<int> owner = parts == 1 ? std::vector<int>(n, 0) : element_owners(common_points(space, elements_of), parts, cost);
-  return {parts, owner, point_owners(elements_of, owner, parts, points)};
-}
-
-}  // namespace
-
-Partition partition(const spline::Space& space, int parts, std::span<const double> cost) {
-  return shared(space, parts, cost, indices(space.n_points));
-}
-
-Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points) {
-  std::vector<char> wanted(space.n_points, 0);
-  for (const int a : points) wanted[a] = 1;
-  std::vector<double> cost;
-  for (const auto& e : space.elements) {
-    const auto n = std::ranges::count_if(e.points, [&](int a) { return wanted[a] != 0; });
-    cost.push_back(static_cast<double>(n) / static_cast<double>(e.points.size()));
+  std::vector<int> owner(n, 0);
+  if (parts > 1) {
+    std::vector<char> wanted(space.n_points, 0);
+    for (const int a : points) wanted[a] = 1;
+    std::vector<double> cost;
+    for (const auto& e : space.elements) {
+      const auto count = std::ranges::count_if(e.points, [&](int a) { return wanted[a] != 0; });
+      cost.push_back(static_cast<double>(count) / static_cast<double>(e.points.size()));
+    }
+    owner = element_owners(common_points(space, elements_of), parts, cost);
   }
-  return shared(space, parts, cost, points);
+  return {parts, owner, point_owners(elements_of, owner, parts, points)};
 }
 
 Share share(const spline::Space& space, const Partition& partition, int rank) {

@@ -14,14 +14,11 @@ struct Partition {
   std::vector<int> element_owner, point_owner;
 };
 
-/// Divides the elements into connected parts of nearly equal cost, by METIS. Elements that share control points are neighbours in the graph, and the
-/// number of shared points is the weight of the graph's edge. A control point belongs to the part that owns most of the elements around it, as long
-/// as the numbers of points stay balanced too. The result is deterministic. `cost`: cost of each element; if empty, every element costs 1. Throws
-/// UserError if there are more parts than elements.
-Partition partition(const spline::Space& space, int parts, std::span<const double> cost = {});
-
-/// Returns a partition for the case that only some control points cause work, for example the fundamental points of a symmetric surface. Only these
-/// points are balanced; the other points have no owner (-1).
+/// Divides the elements into connected parts of nearly equal cost, by METIS. Only some control points cause work: `points`, for example the
+/// fundamental points of a symmetric surface. The cost of an element is the fraction of its control points that are among them; the other points have
+/// no owner (-1). Elements that share control points are neighbours in the graph, and the number of shared points is the weight of the graph's edge. A
+/// control point belongs to the part that owns most of the elements around it, as long as the numbers of points stay balanced too. The result is
+/// deterministic. Throws UserError if there are more parts than elements.
 Partition partition_of_points(const spline::Space& space, int parts, std::span<const int> points);
 
 /// Work of one rank: the points it owns, and all elements that touch them; both ascending.

@@ -26,7 +26,7 @@ Net smooth_sphere(const spline::TMesh& mesh);
 /// start from the projected cube.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
-/// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at +1 comes first. `space` is the space of the mesh.
+/// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at -1 comes first. `space` is the space of the mesh.
 ///
 /// All rows are circles. Their radii and heights minimise (by Gauss-Newton iteration)
 ///

@@ -40,6 +40,14 @@ def what_is_no_channel_is_refused():
     turns = numpy.linspace(0, 2 * numpy.pi, 24, endpoint=False)
     numpy.savetxt("eight.csv", numpy.column_stack([numpy.sin(turns), numpy.sin(2 * turns)]), delimiter=",")
     _refused(["Channel/outline", "eight.csv", "crosses itself"], "Channel/section=file", "Channel/outline=eight.csv")
+    circle = numpy.column_stack([numpy.cos(turns), numpy.sin(turns)])
+    for name, rows, words in (("twice", circle[[*range(24), 0, 0]], ["line 25", "the point of line 1 stands"]), ("open", 1e-6 * circle[:16], ["open", "e-06"])):
+        numpy.savetxt(f"{name}.csv", rows, delimiter=",")
+        _refused([f"{name}.csv", *words], "Channel/section=file", f"Channel/outline={name}.csv")
+    numpy.savetxt("aside.csv", circle + [0.5, 0], delimiter=",")
+    bend = "profile: straight, bend radius: 1.4, section: file, outline: aside.csv"
+    bent = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", bend).replace("end: 3.4", "end: 6")
+    refused(["Channel/bend radius", "1.5", "1.4"], deck(bent, "bent.yaml"))
     _refused(["Channel/repulsion range", "belong together"], "Channel/repulsion=10")
     _refused(["Channel/repulsion", "circular"], "Channel/repulsion=10", "Channel/repulsion range=0.01", "Channel/directions=x3")
     for setting, mistakes in ("Membrane/load=strong", 1), ("Particle/motion=prescribed", 2):  # the latter also contradicts Membrane
@@ -51,8 +59,14 @@ def what_is_no_channel_is_refused():
     _refused(["Flow/held", "quiescent"], "Flow/type=quiescent", "Flow/held=pressure drop", "Membrane/shear modulus=1")
     pathlib.Path("rows.csv").write_text("s,f\n-1,1\n0,0.7\n0,0.6\n1,1\n")
     lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: file, points: rows.csv")
-    said = run(deck(lines, "file.yaml"), "--output", "results", code=2).stderr
-    check("line 4" in said and "ascend" in said, said)
+    refused(["line 4", "ascend"], deck(lines, "file.yaml"))
+    pathlib.Path("rows.csv").write_text("s,f\n-1,0\n1,1\n")
+    refused(["closed at s = -3.4"], deck(lines, "file.yaml"))
+
+
+def a_straight_channel_may_begin_anywhere():
+    lines = DECK.replace("profile: constriction, depth: 0.3, half length: 1.0", "profile: straight").replace("end when past: -0.7", "end when past: 4")
+    run(deck(lines), "--check", "--quiet", *_words(["Channel/start=0", "Channel/end=6.8", "Particle/center=[3.4, 0, 0]"]))
 
 
 def a_run_ends_when_it_is_past():

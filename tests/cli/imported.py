@@ -57,6 +57,11 @@ def files_that_hold_no_closed_surface_are_refused_in_one_sentence():
     _refused("hole.iga", [f"elemN {elements - 1}" if i == count else line for i, line in enumerate(without)], "closed")
     mirrored = [" ".join([w[0], w[1], w[2], str(-float(w[3])), w[4]]) if (w := line.split())[0] == "node" else line for line in lines]
     _refused("inverted.iga", mirrored, "inside out")
+    nodes = [line.split() for line in lines if line.startswith("node ")]
+    moved = [f"node {float(x) + 3} {y} {z} {weight}" for _, x, y, z, weight in nodes]
+    ids = [first + 1 for first in starts[:-1]]
+    again = [" ".join(str(int(a) + len(nodes)) for a in line.split()) if i in ids else line for i, line in enumerate(lines) if i >= starts[0]]
+    _refused("two.iga", [f"nodeN {2 * len(nodes)}", f"elemN {2 * elements}", *map(" ".join, nodes), *moved, *lines[starts[0]:], *again], "separate parts")
     words = lines[starts[0] + 2].split()
     spoilt = [str(float(words[0]) + 0.1), *words[1:]]
     _refused("sum.iga", [" ".join(spoilt) if i == starts[0] + 2 else line for i, line in enumerate(lines)], "sum to 1")

@@ -37,6 +37,17 @@ Tanktread:
 """
 ADAPTS = "  Adaptation: { enabled: true, interval: 1, surface tolerance: 1.0e-4 }\n"
 
+SPHEROID = """
+Tanktread:
+  Flow: { type: simple shear }
+  Particle: { shape: red cell }
+  Membrane: { law: Skalak, capillary number: 0.3, stress-free shape: spheroid, stress-free reduced volume: 0.95 }
+  Surface: { %s }
+  Adaptation: { enabled: true, levels: 2, surface tolerance: 3.0e-4 }
+  Quadrature: { tolerance: 1.0e-3 }
+  Time: { scheme: bs3, fixed step: 0.001, final time: 0.002 }
+"""
+
 
 def _same_start(then, first):
     """not a test"""
@@ -70,6 +81,12 @@ def copies_move_and_turn_a_shape_from_a_file_or_run():
                 close(series("then", f"many {copy}/length_x{k + 1}")[0], series("first", f"length_x{axes[k]}")[-1], 1e-9, "length")
 
 
+def random_copies_have_room_for_their_initial_shape():
+    places = "initial shape: { stretch: [1, 1, 1.8], volume: own }\n      copies: { number: 4, box: [8, 8, 8], seed: 2 }"
+    text = COPIES.replace("initial shape: { %s }\n      copies: { file: positions.csv }", places).replace("center: [0.5, 0, 0]", "radius: 1")
+    run(deck(text), "--check", "--quiet")
+
+
 def a_volume_of_its_own_is_kept_and_found_again():
     run(deck(THEN % "stretch: [1.2, 0.9, 0.8], volume: own"), "--output", "own", "--quiet", "--set", "Time/final time=0.02")
     run("--resume", "own", "--quiet", "--set", "Time/final time=0.05")
@@ -84,6 +101,16 @@ def another_run_s_mesh_is_taken_where_it_was_adapted():
     check(series("first", "n_control_points")[-1] > 98, "the first run refines")
     run(deck(THEN % "run: first" + ADAPTS), "--output", "then", "--quiet")
     _same_start("then", "first")
+
+
+def a_stress_free_spheroid_keeps_its_points_on_an_adapted_mesh():
+    for surface in "extraordinary points: catmull-clark, elements per side: 3", "mesh: polar, poles: c1, azimuthal elements: 8, meridional elements: 6":
+        text = SPHEROID % surface
+        run(deck(text), "--output", "first", "--overwrite", "--quiet")
+        points = series("first", "n_control_points")
+        check(points[-1] > points[0], "the first run refines")
+        run(deck(text), "--output", "then", "--overwrite", "--quiet", "--set", "Particle/initial shape/run=first")
+        close(series("then", "energy")[0] / series("first", "energy")[-1], 1, 1e-9, f"energy on {surface}")
 
 
 def another_mesh_is_refused_in_one_sentence():

@@ -224,6 +224,7 @@ def what_no_deck_may_ask_for():
     refused(["touches its own image"], deck(POST), "--set", "Particle/radius=0.5")
     refused(["Flow/pressure gradient", "posts"], deck(CAPSULE.replace("  Wall:", "  Ignored:").replace("  Ignored: {point: [0.0, 0.0, -1.5], distance: 3.0, velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0], elements per period: 10}\n", "")))
     refused(["Particle/velocity", "cylinder"], deck(POST), "--set", "Particle/velocity=[1, 0, 0]")
+    refused(["Particle/semi-axes", "cylinder"], deck(POST), "--set", "Particle/semi-axes=[1, 1, 2]")
 
 
 main()

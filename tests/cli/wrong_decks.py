@@ -48,6 +48,7 @@ SETTINGS = [
     (["Domain/periodic=true"], ["Domain", "periodic"]),
     (["Zebra/stripes=1"], ["Tube"]),
     # unknown words
+    (["Surface/axial elements=8"], ["Surface/axial elements", "`cylinder`"]),
     (["Surface/mesh=icosahedron"], ["Surface/mesh", "cube", "icosahedron"]),
     (["Flow/type=waterfall"], ["Flow/type", "simple shear", "waterfall"]),
     (["Particle/motion=backwards"], ["Particle/motion", "deforming", "backwards"]),

@@ -80,7 +80,7 @@ double error_of_return(const TMesh& base, unsigned seed, int steps, const SpaceO
   for (int round = 0; round < 10 && mesh.edges != base.edges; ++round) {
     std::vector<Merge> all;
     for (int i = 0; i < int(elements(mesh).tiles.size()); ++i) all.push_back({i, steps, steps});
-    mesh = coarsen(mesh, all).mesh;
+    mesh = coarsen(mesh, all);
     auto next = std::make_unique<Space>(space_of(mesh));
     net = Projection(*now, *next)(net).net;
     now = std::move(next);

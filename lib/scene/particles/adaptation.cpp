@@ -202,8 +202,7 @@ Adapted refined(const Subject& of, const Findings& found) {
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
   const auto& [scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {
-    spline::Coarsening coarsening = spline::coarsen(body.mesh, merges, rules(body));
-    auto target = on_mesh(of, std::move(coarsening.mesh));
+    auto target = on_mesh(of, spline::coarsen(body.mesh, merges, rules(body)));
     if (target->space.n_points >= body.space.n_points) return {};
     const spline::Projection projection(body.nested(), target->nested());
     const std::vector<double> defect = coupling::decided([&] {

@@ -26,9 +26,9 @@ TEST(Coarsening, TakingBackTheLastRefinementGivesTheMeshAndTheControlPointsBack)
       const TMesh after = refine(before, random_marks(before, 10, 1, generator)).mesh;
       std::vector<std::uint8_t> added(after.edges.size());
       for (std::size_t v = 0; v < added.size(); ++v) added[v] = std::uint8_t(after.edges[v] & ~before.edges[v]);
-      const Coarsening back = take_out(after, added);
-      ASSERT_EQ(back.mesh.edges, before.edges);
-      EXPECT_EQ(back.mesh.spacing, before.spacing);
+      const TMesh back = take_out(after, added);
+      ASSERT_EQ(back.edges, before.edges);
+      EXPECT_EQ(back.spacing, before.spacing);
 
       const Space a = space(before, rule), b = space(after, rule);
       const Net net = random_net(a.n_points, seed);
@@ -62,7 +62,7 @@ TEST(Coarsening, HalfTheSurfaceLeavesAValidMesh) {
       const Tiling tiling = elements(mesh);
       for (int i = 0; i < int(tiling.tiles.size()); ++i)
         if (tiling.tiles[i].face < 4) half.push_back({i});
-      mesh = coarsen(mesh, half).mesh;
+      mesh = coarsen(mesh, half);
       const Suitability s = suitability(mesh);
       EXPECT_EQ(s.crossings + s.overlaps + s.broken_zones, 0);
       const Space sp = space(mesh, rule);
@@ -98,7 +98,7 @@ TEST(Coarsening, AMovingFeatureKeepsTheNumberOfControlPointsBounded) {
     std::vector<Merge> merges;
     for (int i = 0; i < int(tiling.tiles.size()); ++i)
       if (!near(*mesh.lattice, tiling.tiles[i], angle, 0.5)) merges.push_back({i, 3, 3});
-    mesh = coarsen(mesh, merges).mesh;
+    mesh = coarsen(mesh, merges);
     const Suitability s = suitability(mesh);
     ASSERT_EQ(s.crossings + s.overlaps + s.broken_zones, 0);
     const int points = int(anchors(mesh).size());

@@ -19,7 +19,7 @@ TMesh merged_wherever_allowed(TMesh mesh, const TMesh& base) {
   for (int round = 0; round < 8 && mesh.edges != base.edges; ++round) {
     std::vector<Merge> all;
     for (int i = 0; i < int(elements(mesh).tiles.size()); ++i) all.push_back({i, 3, 3});
-    mesh = coarsen(mesh, all).mesh;
+    mesh = coarsen(mesh, all);
     EXPECT_EQ(suitability(mesh).crossings, 0);
   }
   return mesh;

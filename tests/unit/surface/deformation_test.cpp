@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include "base/indices.hpp"
 #include "surface/geometry.hpp"
 #include "surfaces.hpp"
 
@@ -23,6 +24,18 @@ Axes ellipse(const Eigen::Matrix2d& a) {
   return {1 / std::sqrt(solver.eigenvalues()[0]), 1 / std::sqrt(solver.eigenvalues()[1]), angle};
 }
 Eigen::Matrix2d in_plane(const Mat3& m) { return (Eigen::Matrix2d() << m(0, 0), m(0, 2), m(2, 0), m(2, 2)).finished(); }
+
+TEST(Deformation, TheLargestCoordinateIsNotSoughtAtTheHighestBezierPoint) {
+  spline::Space space;
+  space.n_points = 16;
+  space.elements.emplace_back();
+  space.elements[0].points = indices(16);
+  space.elements[0].extraction = std::make_shared<const Eigen::MatrixXd>(Eigen::MatrixXd::Identity(16, 16));
+  Net net = Net::Zero(16, 3);
+  net.col(0) << -5, -7, 0, -5, -5, -4, -3, -5, -6, -3, -2, -1, -12, -1, -4, -6;  // the highest one is on a side, the maximum is inside
+  const Patches patches(BezierMap(space), net);
+  EXPECT_NEAR(coordinate_range(patches, 0).largest, place(patches[0], 0.7336, 0.5846)[0], 1e-6);
+}
 
 TEST(Deformation, OfAnEllipsoidInAnyPositionIsThatOfItsSectionAndItsMoments) {
   ParticleShape shape;

@@ -1,21 +1,17 @@
 #include "surface/partition.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include <gtest/gtest.h>
 
 #include "base/errors.hpp"
+#include "base/indices.hpp"
 #include "surfaces.hpp"
 
 namespace tanktread::surface {
 namespace {
 
-std::vector<double> cost_by_part(const Partition& p, const std::vector<double>& cost) {
-  std::vector<double> result(p.parts, 0.);
-  for (std::size_t e = 0; e < cost.size(); ++e) result[p.element_owner[e]] += cost[e];
-  return result;
-}
+Partition partition(const spline::Space& space, int parts) { return partition_of_points(space, parts, indices(space.n_points)); }
 
 TEST(Partition, OnePartOwnsEverything) {
   const CubeMesh cube(3);
@@ -24,18 +20,14 @@ TEST(Partition, OnePartOwnsEverything) {
   EXPECT_EQ(all.elements.size(), cube.space.elements.size());
 }
 
-TEST(Partition, BalancesElementsPointsAndCost) {
+TEST(Partition, BalancesElementsAndPoints) {
   const CubeMesh cube(8);
-  const int n = static_cast<int>(cube.space.elements.size());
-  std::vector<double> cost(n, 1.);
-  for (int e = 0; e < n; ++e)
-    if (cube.space.elements[e].degree == 4) cost[e] = 3;
+  const double n = static_cast<double>(cube.space.elements.size());
   for (const int parts : {2, 3, 4, 7, 12}) {
-    const Partition p = partition(cube.space, parts, cost);
-    const std::vector<double> costs = cost_by_part(p, cost);
-    const double mean = std::accumulate(costs.begin(), costs.end(), 0.) / parts;
-    EXPECT_LT(*std::max_element(costs.begin(), costs.end()), 1.08 * mean) << parts;  // an element of cost 3 is a tenth of a part of cost 36
-    std::vector<int> points(parts, 0);
+    const Partition p = partition(cube.space, parts);
+    std::vector<int> elements(parts, 0), points(parts, 0);
+    for (const int owner : p.element_owner) ++elements[owner];
+    EXPECT_LT(*std::max_element(elements.begin(), elements.end()), 1.08 * n / parts) << parts;
     for (const int owner : p.point_owner) ++points[owner];
     EXPECT_LT(*std::max_element(points.begin(), points.end()), 1.05 * cube.space.n_points / parts) << parts;
   }
