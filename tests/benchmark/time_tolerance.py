@@ -12,7 +12,8 @@ printed. Runs are made once, under results/time_tolerance.
 """
 
 
-from package import RATIO, SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, scenes_of, studies, style, table
+from package import (RATIO, SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, scenes_of, studies,
+                     style, table)
 
 BASE = {SIDE: 6, "Quadrature/tolerance": 1e-6}
 LONG = {"Output/interval": 1e3, "Time/steady tolerance": 1e-13}  # pictures and an early end would shorten steps
