@@ -24,7 +24,7 @@ struct Split {
   }
 };
 
-/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. They are divided by the distance of the farthest
+/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. They are scaled by the distance of the farthest
 /// target, so that powers of distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
