@@ -178,7 +178,7 @@ class SteadyRun {
            (second ? formatted(", %s %.8g", second->c_str(), parameters[1]) : "");
   }
 
-  /// Makes this system the current one. The results refer to its mesh, and not to the mesh of the one before, which may be deleted.
+  /// Makes this system the current one. The results then refer to its mesh; the previous system and its mesh may be deleted.
   void use(std::shared_ptr<System> system) {
     system_ = std::move(system);
     results_.remesh(system_->particle->body(), system_->particle->bezier());

@@ -43,7 +43,7 @@ class Field {
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
 
-  /// Stores the shape x for solve(), in addition to the state that linearise() has stored. May replace the state that was set last.
+  /// Stores the shape x for solve(); the state stored by linearise() is kept. Afterwards set_state() may have to be called again.
   virtual void freeze(const Net& /*x*/) {}
 
   /// Returns an approximation of (1 - shift A)^-1 r, with the Jacobian A = d(rate)/dq.

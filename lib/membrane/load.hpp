@@ -46,7 +46,7 @@ class Load {
 
   virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller sums over ranks, in addition to `work`
 
-  /// Adds contributions of these elements: to dE/dx in `work`, and to the nets that the global phase needs in `sums`. Shape of each net: (N, 3).
+  /// Adds the contributions of these elements to dE/dx (`work`), and to the nets that the global phase needs (`sums`). Each net has the shape (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
   /// Adds to dE/dx the terms of the global phase (see above), which depend on the sums over all ranks.
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}

@@ -44,7 +44,7 @@ class Channel {
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
   /// this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< number of elements along the wall for which elements are about as long as wide
+  int elements() const;  ///< number of elements along the wall that makes them about as long as wide
   Section at(double u) const;
 
  private:

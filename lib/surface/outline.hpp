@@ -57,7 +57,7 @@ struct Nearest {
   int side = 0;
   double u = 0;
   Vec2 x;               ///< nearest point
-  double distance = 0;  ///< distance from the given point to the nearest one; positive inside the outline, negative outside
+  double distance = 0;  ///< distance of the given point from the outline; positive inside, negative outside
 };
 
 /// Closed curve without crossings in the plane x2 x3 (Vec2: x2, x3), traversed in the direction of rotation from x2 towards x3. The curve has either

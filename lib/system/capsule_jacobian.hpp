@@ -35,8 +35,8 @@ class CapsuleJacobian {
   /// Linearises at x. `sums`: surface integrals that Membranes::work computed at x.
   void linearise(const Net& x, const std::vector<Net>& sums);
 
-  /// Returns whether all points move with the fluid and the velocity is the solution of a linear system. The Jacobian then includes the volume
-  /// projection P (2.8). The projection is needed because a step of TR-BDF2 adds a correction, e2 of (4.30), that is computed with the Jacobian.
+  /// Returns whether all control points move with the fluid and the velocity is the solution of a linear system. The Jacobian then includes the
+  /// volume projection P (2.8), so that the correction e2 of (4.30), which TR-BDF2 computes with the Jacobian, conserves the volumes.
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v, or v if control points slide along an interface.

@@ -138,7 +138,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   return v;
 }
 
-/// Returns the first moment int df r dG of the load df on particle p, a rigid body whose unknown is its traction, at the shape of `at`.
+/// Returns the first moment int df r dG of the load df on particle p, a rigid body whose unknown is its traction. `at`: evaluation of the shape.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   at.rigid();
   const Mat3 moment = tractions_->moment(static_cast<std::size_t>(std::ranges::count_if(

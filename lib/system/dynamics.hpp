@@ -49,15 +49,15 @@ class Dynamics {
   /// Returns true if the velocity requires a linear solve that the defect of a given velocity does not require.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity of the current shape and u a given velocity. The argument is the
-  /// `defect` of u, so that v need not be computed.
+  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity at the current shape and u a given velocity. The caller passes the
+  /// `defect` B (v - u) instead of u, so that v need not be computed.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns the error B (dv - J delta) of the Jacobian J at the last linearisation, where dv is the velocity change that the displacement delta
-  /// caused. B is the operator of `defect`. The argument `change` is the change of the defect of the velocity u = (x - c)/shift, where c is a
-  /// constant net. If B is the identity, `change` is dv - delta/shift. Used by Secants.
+  /// Returns B (dv - J delta), the error of the Jacobian J of the last linearisation for the displacement delta, which changes the velocity by dv. B
+  /// is the operator of `defect`. Used by Secants. `change` is the change of the defect B (v - u) due to delta, where u = (x - c)/shift with a
+  /// constant net c: if B is the identity, it is dv - delta/shift.
   virtual Net missed(const Net& change, const Net& delta, double shift) = 0;
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if

@@ -34,11 +34,11 @@ class Targets {
   /// Gathers the velocity at the targets on all ranks. `shared`: see Layout::gather. Collective.
   void gather(bool shared, Net& at_targets) const;
 
-  /// Return the control values of a velocity at the targets. `control_values` divides the work among the ranks and is collective.
+  /// Return the control values of the velocity that has the values `at_targets`. `control_values` divides the work among the ranks and is collective.
   Net control_values(Net at_targets) const;
   Net serial_control_values(const Net& at_targets) const;
 
-  /// Returns the control values of a field at the collocation sites. Collective.
+  /// Returns the control values of the field that has the values `at_sites` at the collocation sites. Collective.
   Net collocated(Net at_sites) const { return layout_.solved(collocation_, std::move(at_sites)); }
 
  private:

@@ -12,7 +12,6 @@ from a finer run, relative to the largest value. Kernel evaluations are the same
 are printed as multiples of those that the first deck takes.
 """
 
-import pathlib
 
 from package import SHEAR, SIDE, answer, command_line, expect, numpy, studies, table, tanktread
 from tanktread.interpolation import difference
@@ -52,7 +51,7 @@ def main():
                         help="key of that deck's mesh and its values, coarse to fine; the reference has 1.5 times the "
                              "last one (default: %(default)s)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="another key of that deck")
-    studies.arguments(parser, pathlib.Path("results/accuracy"))
+    studies.arguments(parser, "results/accuracy")
     parsed = parser.parse_args()
     study, scenes = studies.study(parsed), {name: SCENES[name] for name in parsed.scene}
     if parsed.deck:

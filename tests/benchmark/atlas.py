@@ -47,14 +47,13 @@ def main():
     parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS), metavar="NAME",
                         help="which (default: all)")
     parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")
-    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default: %(default)s)")
-    studies.arguments(parser, "results/atlas")
+    studies.arguments(parser, "results/atlas", jobs=1)
     parsed = parser.parse_args()
     if parsed.list:
         for name in parsed.map:
             print(f"{name:22}{MAPS[name].__doc__.splitlines()[0]}")
         return
-    study = studies.study(parsed, parsed.jobs)
+    study = studies.study(parsed)
     for name in parsed.map:
         draw(name, study, parsed.output)
 

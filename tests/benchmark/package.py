@@ -23,8 +23,14 @@ INPUTS = tanktread.SOURCE / "inputs"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]
 __all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "command_line", "draw", "expect",
-           "final", "interpolation", "line", "numpy", "plt", "studies", "style", "table", "tanktread", "ticks",
-           "worst", "yaml"]
+           "final", "interpolation", "line", "numpy", "plt", "scenes_of", "studies", "style", "table", "tanktread",
+           "ticks", "worst", "yaml"]
+
+
+def scenes_of(script):
+    """Returns the content of scenes/<name of the script>.yaml."""
+    path = pathlib.Path(script)
+    return tanktread.files.parsed(path.parent / "scenes" / f"{path.stem}.yaml", kind=dict)
 
 
 def table(head, rows):

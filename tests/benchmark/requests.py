@@ -14,76 +14,25 @@ of accuracy.py. The cost is the number of processor seconds.
 """
 
 import collections
-import pathlib
 import shutil
 
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
-from package import SIDE, answer, command_line, expect, numpy, studies, table, tanktread
+from package import SIDE, answer, command_line, expect, numpy, scenes_of, studies, table, tanktread, yaml
 from tanktread.figures.accuracy import largest, values
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
-D, ENERGY, STRESS = "taylor_inertia", "energy", "stresslet_13"
-TREADING, LENGTH, AREA, V1 = "tank_treading_velocity", "length_x1", "area", "velocity_x1"
-# name: deck, settings, series
-SHIPPED = {
-    "shear": ("shear_neo_hookean", {}, [D, TREADING, STRESS]),
-    "skalak": ("shear_skalak", {}, [D, ENERGY, LENGTH]),
-    "bending": ("shear_bending", {"Time/final time": 2.0}, [D, ENERGY, "inclination"]),
-    "oblate": ("oblate_shear", {"Time/final time": 4.0, "Output/interval": 0.2}, [D, STRESS, AREA]),
-    "extension": ("uniaxial_extension", {}, [D, "stresslet_11", "energy@end"]),
-    "drop": ("drop_uniaxial", {}, [D, "stresslet_11", "area@end"]),
-    "parabolic": ("parabolic_capsule", {}, [D, V1, "inclination"]),
-    "oscillating": ("oscillating_shear", {}, [D, STRESS, "energy@mean"]),
-    "relaxation": ("relaxation", {}, [D, ENERGY, AREA]),
-    "viscous": ("viscous_membrane", {}, [D, STRESS, "membrane_dissipation"]),
-    "adaptive": ("hyperbolic_skalak", {}, [D, LENGTH, ENERGY]),
-    "drop_steady": ("drop_steady", {}, [D, "leading_rate", "stresslet_11"]),
-    "capsule_steady": ("capsule_steady", {}, [D, "leading_rate", ENERGY]),
-    "jeffery": ("jeffery", {"Time/final time": 6.0}, ["inclination", "stresslet_13", "angular_velocity_x2"]),
-    "sphere_array": ("sphere_array", {}, ["sphere/drag_x1", "pressure_gradient_x1", "sphere/torque_x2"]),
-    "settling": ("settling_spheres", {}, ["left/velocity_x3", "left/centroid_x3", "left/stresslet_33"]),
-    "tube": ("capsule_in_tube", {"Time/final time": 2.0}, [V1, "disturbed_pressure_drop", LENGTH]),
-    "fold": ("drop_branch", {}, ["parameter", "taylor_inertia", "area"]),
-}
-END = {f"{end:g}": f"Time: {{final time: {end:g}}}, Output: {{interval: {end / 20:g}}}" for end in (1.0, 2.0)}
-CAPSULE = f"Membrane: {{law: neo-Hookean, capillary number: 0.2}}, {END['2']}"
-SHEARED, DROP = "Flow: {type: simple shear}, ", "law: surface tension, capillary number:"
-OWN = {  # name: deck, series
-    "weak": (f"{SHEARED} Membrane: {{law: neo-Hookean, capillary number: 0.05}}, {END['1']}", [D, ENERGY, STRESS]),
-    "thin": (f"{SHEARED} Particle: {{viscosity ratio: 0.1}}, {CAPSULE}", [D, AREA, TREADING]),
-    "thick": (f"{SHEARED} Particle: {{viscosity ratio: 8.0}}, {CAPSULE}", [D, STRESS, TREADING]),
-    "planar": (f"Flow: {{type: planar hyperbolic}}, {CAPSULE}", [D, "stresslet_11", ENERGY]),
-    "red_cell": (f"{SHEARED} Particle: {{shape: red cell}}, Membrane: {{law: Skalak, capillary number: 0.5, "
-                 f"bending modulus: 0.01, bending reference: flat}}, {END['1']}", [D, AREA, "inclination"]),
-    "pair": (f"{SHEARED} Particles: {{defaults: {{Membrane: {{law: neo-Hookean, capillary number: 0.3}}}}, "
-             f"a: {{center: [-1.5, 0.0, 0.4]}}, b: {{center: [1.5, 0.0, -0.4]}}}}, {END['2']}",
-             ["a/taylor_inertia", "b/velocity_x3", "smallest_gap"]),
-    "tube_drop": (f"Flow: {{type: duct, mean velocity: 1.0}}, Tube: {{section: circle}}, Particle: {{radius: 0.5}}, "
-                  f"Membrane: {{{DROP} 0.1}}, Time: {{final time: 1.0}}, Output: {{interval: 0.1}}",
-                  [D, V1, "disturbed_pressure_drop"]),
-    "lattice": (f"{SHEARED} Domain: {{side lengths: [3.0, 3.0, 3.0]}}, " + CAPSULE.replace("time: 2", "time: 1"),
-                ["relative_viscosity", D, "normal_stress_difference_1"]),
-    "surfactant": (f"{SHEARED} Membrane: {{{DROP} 0.1}}, Interface: {{surfactant: {{elasticity number: 0.3, "
-                   f"Peclet number: 5.0}}}}, {END['1']}", [D, "largest_concentration", AREA]),
-    "refined": ("Flow: {type: planar hyperbolic}, Membrane: {law: Skalak, capillary number: 0.5}, "
-                f"Adaptation: {{enabled: true}}, {END['2']}", [D, LENGTH, ENERGY]),
-    "steady_drop": (f"{SHEARED} Membrane: {{{DROP} 0.15}}, Steady: {{}}", [D, "inclination", STRESS]),
-    "polar": (f"{SHEARED} Surface: {{mesh: polar, poles: c1}}, {CAPSULE}", [D, ENERGY, STRESS]),
-    "held": (f"{SHEARED} Particle: {{shape: spheroid, semi-axes: [1.0, 1.0, 2.0], motion: prescribed, "
-             "velocity: [0.0, 0.0, 1.0]}", ["drag_x3", "torque_x2", "stresslet_13"]),
-}
+SCENES = scenes_of(__file__)
 COLUMNS = ["scene", "request", "level", "allowed", "true error", "estimate", "estimate/true", "result", "ladder, s",
            "cheapest, s"]
 
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("--scene", nargs="+", default=[*SHIPPED, *OWN], choices=[*SHIPPED, *OWN], metavar="NAME",
-                        help=f"of {', '.join([*SHIPPED, *OWN])} (default: all)")
+    parser.add_argument("--scene", nargs="+", default=list(SCENES), choices=SCENES, metavar="NAME",
+                        help=f"of {', '.join(SCENES)} (default: all)")
     parser.add_argument("--search", action="store_true", help="also search the cheapest single run")
-    studies.arguments(parser, pathlib.Path("results/requests"))
-    parser.set_defaults(limit=60)
+    studies.arguments(parser, "results/requests", limit=60)
     parsed = parser.parse_args()
     limit, parsed.limit = parsed.limit, 6 * parsed.limit  # references may take five times as long as the ladders
     study, rows = studies.study(parsed), []
@@ -105,15 +54,14 @@ class Scene:
     """A scene, its ladders and its reference."""
 
     def __init__(self, name, folder, study, limit):
-        self.name, self.study, self.limit, self.settings = name, study, limit, {}
+        self.name, self.study, self.limit = name, study, limit
+        deck, self.series, self.settings = (SCENES[name].get(key, {}) for key in ("deck", "series", "set"))
         folder.mkdir(parents=True, exist_ok=True)
-        if name in SHIPPED:
-            deck, self.settings, self.series = SHIPPED[name]
+        if isinstance(deck, str):
             self.deck = tanktread.deck_at(f"inputs/{deck}.yaml")
         else:
-            text, self.series = OWN[name]
             self.deck = folder / f"{name}.yaml"
-            self.deck.write_text(f"Tanktread: {{{text}}}\n", encoding="utf-8")
+            self.deck.write_text(yaml.safe_dump({"Tanktread": deck}), encoding="utf-8")
         self.directory = folder / name
 
     def run(self, words, settings):

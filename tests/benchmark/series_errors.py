@@ -104,11 +104,9 @@ def text(number):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), help="(default: all)")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (default: %(default)s)")
-    studies.arguments(parser, "results/series_errors")
-    parser.set_defaults(limit=1800)
+    studies.arguments(parser, "results/series_errors", limit=1800, jobs=2)
     parsed = parser.parse_args()
-    study = studies.study(parsed, parsed.jobs)
+    study = studies.study(parsed)
     found = study.map(lambda name: errors_of(study, name), parsed.scenes)
     names = dict.fromkeys(series for one in found for series in one)
     rows = {series: [one.get(series, numpy.nan) for one in found] for series in names}

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""The paper's section 4.1: Figures 8, 9 and 10, Table 1, and error against work, for every surface and every way to
-take the integrals.
+"""The paper's section 4.1: Figures 8, 9 and 10 and Table 1, for every surface and every way to take the integrals.
 
 Runs inputs/spheroid_cube.yaml and inputs/spheroid_polar.yaml with one key or another changed; a run that has been made
-already is not made again. The largest meshes take minutes; `--largest 2` leaves them out.
+already is not made again. The largest meshes take minutes; `--largest 2` leaves them out. Error against work is the
+study spheroid.yaml of work_precision.py.
 """
 
 import pathlib
@@ -172,40 +172,6 @@ def table_of_options(found):
     table(["option", "series", "coarse to fine", "slopes", "paper"], rows)
 
 
-def work(study, path):
-    """Draws the error of drag and pressure against seconds and kernel evaluations, for one option after another, at 866
-    or 546 control points."""
-    tolerances = {"tolerance": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-10]}
-    sweeps = [("unstructured, tolerance", "cube", {}, "tolerance"), ("structured, C1 poles", "polar", C1, "tolerance"),
-              ("structured, plain poles", "polar", PLAIN, "tolerance"),
-              ("structured, Bézier transformation", "polar", TRANSFORM, "tolerance"),
-              ("unstructured, fixed rule", "cube", {"Quadrature/rule": "fixed"}, "points"),
-              ("unstructured, desingularised", "cube", {"Quadrature/rule": "desingularised"}, "points"),
-              ("structured, plain poles, fixed rule", "polar", {"Quadrature/rule": "fixed"} | PLAIN, "points"),
-              ("structured, C1 poles, desingularised", "polar", {"Quadrature/rule": "desingularised"} | C1, "points")]
-    figure, grid = plt.subplots(2, 2, figsize=(10.5, 7.6), sharey="row")
-    rows = []
-    for i, (label, mesh, settings, key) in enumerate(sweeps):
-        runs = {value: made(study, mesh, settings | {"Particle/forces": "integral", f"Quadrature/{key}": value})
-                for value in tolerances.get(key, [4, 6, 8, 12, 16])}
-        runs = {value: one for value, one in runs.items() if one}
-        look = {"color": style.RUNS[i % 4], "linestyle": "-" if key == "tolerance" else "--",
-                "marker": style.MARKS[i // 4], "ms": 4, "label": f"{label}, {key}"}
-        costs, errors = ("kernel_evaluations", "wall_seconds"), ("pressure_l2_error", "drag_error")
-        for row, error in zip(grid, errors):
-            for axes, cost in zip(row, costs):
-                axes.loglog(column(runs.values(), cost), column(runs.values(), error), **look)
-        rows += [[label, key, value, *(f"{one[name]:.3g}" for name in errors + costs)] for value, one in runs.items()]
-    table(["option", "key", "value", "pressure", "drag", "kernel evaluations", "seconds"], rows)
-    for row, name in zip(grid, ("L2 error of the pressure", "error of the drag (integral of the traction)")):
-        row[0].set_ylabel(name)
-    grid[1][0].set_xlabel("kernel evaluations")
-    grid[1][1].set_xlabel("seconds, one core")
-    grid[0][0].set_title("866 control points unstructured, 546 structured")
-    legend_below(figure, grid[0][0])
-    style.save(figure, path)
-
-
 def main():
     parser = command_line(__doc__)
     parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="of runs (default: %(default)s)")
@@ -221,7 +187,6 @@ def main():
     figure_8(found, arguments.output / "spheroid_figure_8.png")
     figure_9(found, arguments.output / "spheroid_figure_9.png")
     figure_10(found, arguments.output / "spheroid_figure_10.png")
-    work(study, arguments.output / "spheroid_work.png")
 
 
 if __name__ == "__main__":

@@ -11,9 +11,9 @@ reference on the same mesh with the same integrals. Two references by different 
 printed. Runs are made once, under results/time_tolerance.
 """
 
-import pathlib
 
-from package import RATIO, SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style, table
+from package import (RATIO, SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, scenes_of, studies,
+                     style, table)
 
 BASE = {SIDE: 6, "Quadrature/tolerance": 1e-6}
 LONG = {"Output/interval": 1e3, "Time/steady tolerance": 1e-13}  # pictures and an early end would shorten steps
@@ -26,46 +26,17 @@ def shear(ratio, **more):
     return SHEAR, BASE | {RATIO: ratio} | more
 
 
-def of(deck, ratio=None, end=None, **more):
-    """Returns the deck and the settings of a scene."""
-    settings = {SIDE: 6} if deck in ("drop_uniaxial", "capsule_in_tube") else {}
-    settings |= ({RATIO: ratio} if ratio else {}) | ({"Time/final time": end} if end else {})
-    return f"inputs/{deck}.yaml", settings | more
+def scene(given):
+    """Returns the deck and the settings of a scene in scenes/time_tolerance.yaml."""
+    settings = dict(given)
+    return f"inputs/{settings.pop('deck')}.yaml", settings
 
 
-SKALAK = {"Membrane/law": "Skalak"}
-SCENES = {  # name: deck, settings
-    "flow that oscillates, ratio 5": of("oscillating_shear", 5),
-    "flow that oscillates, ratio 0.2": of("oscillating_shear", 0.2),
-    "drop in extension, ratio 5": of("drop_uniaxial", 5, 4),
-    "drop in extension, ratio 0.1": of("drop_uniaxial", 0.1, 4),
-    "drop in shear, ratio 2": of("drop_uniaxial", 2, 4, **{
-        "Flow/type": "simple shear", "Membrane/capillary number": 0.2}),
-    "red cell stretched": of("red_cell_si"),
-    "red cell in shear, ratio 5": of("shear_bending", 5, 3, **SKALAK | {
-        "Particle/shape": "red cell", SIDE: 8, "Membrane/capillary number": 0.5}),
-    "adaptive mesh": of("hyperbolic_skalak"),
-    "adaptive mesh, ratio 5": of("hyperbolic_skalak", 5),
-    "drop, adaptive mesh": of("drop_four_roll", None, 3),
-    "two capsules, ratio 5": of("capsule_pair", None, 8, **{
-        "Particles/defaults/viscosity ratio": 5, "Particles/defaults/Surface/elements per side": 4,
-        "Particles/first/center": [-2, 0, 0.25], "Particles/second/center": [2, 0, -0.25]}),
-    "lattice, ratio 5": of("sheared_lattice", None, 3, **{"Particles/capsule/viscosity ratio": 5}),
-    "lattice, ratio 0.2": of("sheared_lattice", None, 3, **{"Particles/capsule/viscosity ratio": 0.2}),
-    "viscous membrane": of("viscous_membrane", None, 6),
-    "viscous membrane, ratio 5": of("viscous_membrane", 5, 6),
-    "tube, ratio 5": of("capsule_in_tube", 5, 1),
-    "tube, ratio 0.2": of("capsule_in_tube", 0.2, 1),
-    "next to a wall, ratio 10": of("capsule_lifted_from_wall", 10, 3),
-    "parabolic flow, ratio 5": of("parabolic_capsule", 5),
-    "oblate, ratio 20": of("oblate_shear", 20, 6),
-}
+GIVEN = scenes_of(__file__)
+SCENES = {name: scene(given) for name, given in GIVEN["scenes"].items()}
 SCHEMES = {f"ratio {ratio:g}": shear(ratio) for ratio in RATIOS} | {
-    "Ca = 0.02": shear(1, **{"Membrane/capillary number": 0.02, "Membrane/pre-inflation": 0.05, "Time/final time": 2}),
-    "Ca = 2, Skalak": shear(1, **SKALAK | {"Membrane/capillary number": 2, "Time/final time": 3}),
-    "Skalak, C = 100": shear(1, **SKALAK | {"Membrane/area dilatation": 100, "Time/final time": 3}),
-    **{name: SCENES[name] for name in ("tube, ratio 5", "lattice, ratio 5", "two capsules, ratio 5",
-                                       "drop in extension, ratio 5")}}
+    name: shear(1, **given) for name, given in GIVEN["sheared"].items()} | {
+    name: SCENES[name] for name in GIVEN["compared"]}
 
 
 def many(study, scene, variants):
@@ -154,11 +125,9 @@ def main():
     tables = {one.__name__: one for one in (ratios, scenes, schemes, figure)}
     parser = command_line(__doc__)
     parser.add_argument("what", choices=tables)
-    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (default: %(default)s)")
-    studies.arguments(parser, pathlib.Path("results/time_tolerance"))
-    parser.set_defaults(limit=900)
+    studies.arguments(parser, "results/time_tolerance", limit=900, jobs=1)
     parsed = parser.parse_args()
-    tables[parsed.what](studies.study(parsed, parsed.jobs), parsed)
+    tables[parsed.what](studies.study(parsed), parsed)
 
 
 if __name__ == "__main__":

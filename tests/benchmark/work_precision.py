@@ -167,7 +167,7 @@ def main():
     parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR",
                         help="folder of reference curves (default: none, a run of the study's `reference` instead)")
-    studies.arguments(parser, pathlib.Path("results/work_precision"))
+    studies.arguments(parser, "results/work_precision")
     parsed = parser.parse_args()
     scene = Scene(parsed.study, parsed.curves)
     points, rows = scene.points(studies.study(parsed), parsed.differences, parsed.only)

@@ -10,7 +10,6 @@ waves are degrees of 9 and more, which the flow does not force. Membranes withou
 unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
 """
 
-import pathlib
 
 from package import SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style
 import waves
@@ -80,7 +79,7 @@ def main():
                         help="bending moduli over R^2 G_s (default: 0, 0.0005, 0.005)")
     parser.add_argument("--ca", type=float, default=0.1, help="default: %(default)s")
     parser.add_argument("--time", type=float, default=5.0, help="end of the runs (default: %(default)s)")
-    studies.arguments(parser, pathlib.Path("results/wrinkles"))
+    studies.arguments(parser, "results/wrinkles")
     parsed = parser.parse_args()
     study, count = studies.study(parsed), len(parsed.modulus)
     figure, grid = plt.subplots(count, 3, figsize=(10.8, 3.4 * count), squeeze=False)

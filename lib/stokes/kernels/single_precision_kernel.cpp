@@ -24,8 +24,8 @@ struct Split {
   }
 };
 
-/// A run of nodes and a block of targets relative to the first node of the run. Coordinates are scaled by the distance of the farthest target, so
-/// that powers of distances stay within the range of single precision in any units.
+/// Coordinates of consecutive nodes and of a block of targets, relative to the first of these nodes. They are scaled by the distance of the farthest
+/// target, so that powers of distances stay within the range of single precision in any units.
 struct Sight {
   Split<single_run> nodes;
   Split<far_block> targets;

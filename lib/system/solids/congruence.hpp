@@ -21,9 +21,9 @@ struct Congruence {
 /// A(Q i, Q p) = Q A(i, p) Q^T.
 std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites);
 
-/// Point of a ring whose rows are assembled in place of those of another point of the ring.
+/// For a point of a ring: another point of the ring that a map moves to it. The matrix rows of only this other point are assembled.
 struct Original {
-  int point;               ///< smallest index in the ring that a map takes to the other point
+  int point;               ///< index in the ring; the smallest that a map moves to the given point
   const Congruence* from;  ///< this map; it points into the list given to originals()
 };
 

@@ -27,7 +27,7 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   return solution_;
 }
 
-/// Corrects for the collocation error (2.41). This takes no further solve: for a free body, the residual is weighted with the solution itself.
+/// Returns the pressure drop, corrected for the collocation error (2.41). This takes no further solve: the residual is weighted with the solution.
 double FreeBodyInTube::pressure_drop(const Net& place) const {
   Tube* const tube = body_.tube();
   if (!tube) return 0;

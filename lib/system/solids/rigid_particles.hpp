@@ -65,9 +65,9 @@ class RigidParticles {
   void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
                                              ///< df of a body induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< in the rows of bodies: subtracts w and adds the collocation-error correction (OwnLacking) of its
-                                              ///< double layer. If force and torque are given, adds the rigid motion <w> (2.23); otherwise adds the
-                                              ///< collocation-error correction of the load completing_load()
+  void complete(const Net& w, Net& v) const;  ///< completes the double layer (2.23) in the rows of bodies. Subtracts w, and adds the correction
+                                              ///< of the collocation error (OwnLacking). In addition, adds the rigid motion <w> if the force and
+                                              ///< torque are given, and otherwise the correction of the load completing_load()
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
                                              ///< in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V

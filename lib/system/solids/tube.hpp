@@ -86,7 +86,7 @@ class Tube {
 
   struct Response {
     Net velocity;       ///< u at the particle's collocation points, shape (N, 3)
-    Net wall_traction;  ///< f^D, control values on the wall
+    Net wall_traction;  ///< disturbance f^D of the traction on the wall, control values
     double pressure_drop = 0;
     Net load, moves;  ///< load f and velocity v of the particle; set in a periodic duct only
   };

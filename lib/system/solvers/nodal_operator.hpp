@@ -1,5 +1,5 @@
 #pragma once
-// The single layer that the Jacobian keeps frozen, by one node per control point with corrections for near control points.
+// The frozen single layer of the Jacobian: the trapezoidal rule with one node per control point, corrected for control points near the target.
 
 #include <functional>
 #include <optional>

@@ -21,7 +21,7 @@ class Secants {
   explicit Secants(std::vector<Net> pairs);
   Secants() = default;
 
-  /// Adds a pair. At most `most` pairs are kept.
+  /// Adds the correction d_i = `correction` with its error e_i = `missed`. Only the last `most` pairs (d_i, e_i) are kept.
   void add(const Net& correction, const Net& missed, int most);
 
   /// Returns E w.

@@ -4,6 +4,7 @@ import pathlib
 
 import numpy
 import scipy.interpolate
+import scipy.optimize
 
 from ..files import table
 from ..interpolation import difference
@@ -149,12 +150,8 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
 
 
 def power():
-    """Returns the power 2 q of the radius of an edge, by fixed-point iteration, each step of which divides the error by
-    four."""
-    q = 0.5
-    for _ in range(60):
-        q = (numpy.pi - numpy.arcsin(q)) / (1.5 * numpy.pi)
-    return 2 * q
+    """Returns the power 2 q of the radius of an edge."""
+    return 2 * scipy.optimize.brentq(lambda q: numpy.sin(1.5 * numpy.pi * q) - q, 0.5, 0.6, xtol=1e-15)
 
 
 def sharp_edges(of_large, of_small, ratio):

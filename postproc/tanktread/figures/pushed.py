@@ -27,6 +27,11 @@ def highest(way, pressure):
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
 
 
+def hessians(gradient, at):
+    """Returns the derivatives (n, 4, 4) of a gradient (n, 4), exact to round-off (complex step)."""
+    return numpy.stack([gradient(at + 1e-30j * one).imag / 1e-30 for one in numpy.eye(4)], axis=2)
+
+
 class Pushed:
     """The membrane as cones between rings: x and r of each, from the rear to the front; in units of the shear
     modulus."""
@@ -53,34 +58,27 @@ class Pushed:
         return (self.mouth - inside * half * (1 + numpy.cos(k * x)), inside * half * k * numpy.sin(k * x),
                 inside * half * k * k * numpy.cos(k * x))
 
-    def energy(self, x, r):
-        """Returns gradient (cones, 4) and Hessian (cones, 4, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3)
-        times the unstressed area of each cone."""
-        d = numpy.stack([numpy.diff(x), numpy.diff(r)], 1)
-        length = numpy.linalg.norm(d, axis=1)
-        u = d / length[:, None]
-        s, t = length / self.length, (r[1:] + r[:-1]) / (2 * self.ring)
-        ds = numpy.hstack([-u, u]) / self.length[:, None]
-        dt = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
-        bend = (numpy.eye(2) - u[:, :, None] * u[:, None, :]) / (length * self.length)[:, None, None]
-        dds = numpy.block([[bend, -bend], [-bend, bend]])
-        outer = lambda a, b: a[:, :, None] * b[:, None, :]
-        by = lambda f, a: (self.area * f)[(slice(None),) + (None,) * (a.ndim - 1)] * a
-        first = s - 1 / (s**3 * t**2)
-        gradient = by(first, ds) + by(t - 1 / (t**3 * s**2), dt)
-        matrix = by(first, dds) + by(1 + 3 / (s**4 * t**2), outer(ds, ds)) + by(1 + 3 / (t**4 * s**2), outer(dt, dt))
-        return gradient, matrix + by(2 / (s * t)**3, outer(ds, dt) + outer(dt, ds))
+    def by_energy(self, ends):
+        """Returns the gradient (cones, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed
+        area of each cone by the coordinates x, r of its two rings (cones, 4)."""
+        d = ends[:, 2:] - ends[:, :2]
+        length = numpy.sqrt((d**2).sum(1))
+        s, t = length / self.length, (ends[:, 1] + ends[:, 3]) / (2 * self.ring)
+        by_s = numpy.hstack([-d, d]) / (length * self.length)[:, None]
+        by_t = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
+        return self.area[:, None] * ((s - 1 / (s**3 * t**2))[:, None] * by_s + (t - 1 / (t**3 * s**2))[:, None] * by_t)
 
     @staticmethod
     def volumes(x, r):
-        """Returns the volume of each cone (cones,) with gradient (cones, 4) and Hessian (cones, 4, 4)."""
-        h, a, b = numpy.diff(x), r[:-1], r[1:]
-        square, zero = a * a + a * b + b * b, 0 * a
-        da, db = h * (2 * a + b), h * (a + 2 * b)
-        gradient = numpy.stack([-square, da, square, db], 1)
-        matrix = numpy.stack([zero, -(2 * a + b), zero, -(a + 2 * b), -(2 * a + b), 2 * h, 2 * a + b, h,
-                              zero, 2 * a + b, zero, a + 2 * b, -(a + 2 * b), h, a + 2 * b, 2 * h], 1).reshape(-1, 4, 4)
-        return numpy.pi / 3 * h * square, numpy.pi / 3 * gradient, numpy.pi / 3 * matrix
+        """Returns the volume of each cone (cones,)."""
+        return numpy.pi / 3 * numpy.diff(x) * (r[1:]**2 + r[1:] * r[:-1] + r[:-1]**2)
+
+    @staticmethod
+    def by_volumes(ends):
+        """Returns the gradient (cones, 4) of the volume of each cone by the coordinates of its two rings."""
+        h, a, b = ends[:, 2] - ends[:, 0], ends[:, 1], ends[:, 3]
+        square = a * a + a * b + b * b
+        return numpy.pi / 3 * numpy.stack([-square, h * (2 * a + b), square, h * (a + 2 * b)], 1)
 
     def channel(self, x):
         """Returns the volume of the channel from the mouth to x."""
@@ -90,7 +88,7 @@ class Pushed:
 
     def behind(self, x, r, closed):
         """Returns the volume of the fluid behind the ring that closes the channel."""
-        return self.channel(x[closed]) - self.volumes(x, r)[0][:closed].sum()
+        return self.channel(x[closed]) - self.volumes(x, r)[:closed].sum()
 
     def system(self, z, closed):
         """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
@@ -98,13 +96,12 @@ class Pushed:
         x, r = z.T
         size = z.size
         gradient, matrix = numpy.zeros((3, size)), numpy.zeros((3, size, size))
-        volume, of_volume, of_of_volume = self.volumes(x, r)
         before = -1.0 * (numpy.arange(self.n) < closed)[:, None]
+        ends = numpy.hstack([z[:-1], z[1:]])
         rows, columns = numpy.broadcast_arrays(self.numbers[:, :, None], self.numbers[:, None, :])
-        for k, (g, m) in enumerate([self.energy(x, r), (of_volume, of_of_volume),
-                                    (before * of_volume, before[:, :, None] * of_of_volume)]):
-            numpy.add.at(gradient[k], self.numbers, g)
-            numpy.add.at(matrix[k], (rows, columns), m)
+        for k, by in enumerate((self.by_energy, self.by_volumes, lambda ends: before * self.by_volumes(ends))):
+            numpy.add.at(gradient[k], self.numbers, by(ends))
+            numpy.add.at(matrix[k], (rows, columns), hessians(by, ends))
         w, dw, ddw = self.wall(x)
         gradient[2][2 * closed] += numpy.pi * w[closed]**2
         matrix[2][2 * closed, 2 * closed] += 2 * numpy.pi * w[closed] * dw[closed]
@@ -117,7 +114,7 @@ class Pushed:
         matrix[0][i + 1, i + 1] += stiff
         matrix[0][i, i + 1] -= stiff * dw
         matrix[0][i + 1, i] -= stiff * dw
-        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], volume.sum(), gap, push
+        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], self.volumes(x, r).sum(), gap, push
 
     def rest(self, z, pressures, closed, behind):
         """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
@@ -166,7 +163,7 @@ class Pushed:
                 continue
             z, pressures = rest
             gradient, _, _, _, push = self.system(z, closed)
-            volume = self.volumes(*z.T)[0]
+            volume = self.volumes(*z.T)
             centroid = volume @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
             found.append((centroid, pressures[1]))
             if centroid > 0:

@@ -5,10 +5,11 @@ from typing import Literal
 
 import numpy
 
+from ..files import table
 from ..interpolation import difference
 from ..mistakes import expect, log
 from ..results import time_label
-from . import literature, style
+from . import style
 from .register import figure
 
 EXPECTED = "expected by the deck"
@@ -16,12 +17,13 @@ Deformation = Literal["taylor_inertia", "taylor_surface"]
 
 
 @figure
-def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformation: Deformation = "taylor_inertia"):
-    """Deformation and inclination over time, beside curves of the literature; of several particles, of each.
+def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
+                deformation: Deformation = "taylor_inertia"):
+    """Deformation and inclination over time, beside published curves; of several particles, of each.
 
     Bands are the estimated errors of a run with requested accuracy.
 
-    curves: folder of literature curves, named as figures/literature.py says
+    curves: published curves, CSV files with the columns t, taylor_inertia and, if known, inclination
     deformation: which Taylor parameter"""
     inclined = any(has_inclination(run) for run in runs)
     width = 6.4 if len(runs) == 1 else 9.8
@@ -30,16 +32,14 @@ def deformation(runs, axes=None, *, curves: pathlib.Path | None = None, deformat
     else:
         figure, (upper,) = style.panels(axes, 1, 1, width, 4.2)
         lower = None
-    known: list = []
+    known = {path.stem: curve_of(path) for path in map(pathlib.Path, curves or [])}
     for run, color in zip(runs, style.RUNS * len(runs)):
-        found = literature.curves(run, curves)
-        known += [curve for curve in found if curve.label not in [one.label for one in known]]
         if run.several:
             draw_particles(upper, lower, run, deformation, style.RUNS if len(runs) == 1 else [color])
         else:
             draw_run(upper, lower, run, deformation, color)
-            report(run, found)
-    draw_literature(upper, lower, known, end=max(run.time[-1] for run in runs))
+            report(run, known)
+    draw_curves(upper, lower, known, end=max(run.time[-1] for run in runs))
     upper.set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""), ylim=(0, None),
               title=title(runs))
     if len(runs) == 1:
@@ -109,33 +109,28 @@ def unbroken(t, angle):
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
 
-def draw_literature(upper, lower, known, end):
-    marks = iter(style.MARKS)
-    for curve in known:
-        inside = curve.t <= end * 1.001
-        if curve.exact:
-            pen = {"color": style.INK, "linestyle": (0, (1, 1.6)), "linewidth": 2.2, "zorder": 5}
-            upper.plot(curve.t, curve.d, label=curve.label, **pen)
-            if lower:
-                lower.plot(curve.t, curve.inclination, **pen)
-            continue
-        every = max(1, inside.sum() // 40)
-        pen = {"linestyle": "none", "marker": next(marks), "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
-               "zorder": 2, "markevery": every}
-        upper.plot(curve.t[inside], curve.d[inside], label=curve.label, **pen)
-        if lower and curve.inclination is not None:
-            formed = inside & (curve.t > 0.05)
-            lower.plot(curve.t[formed], curve.inclination[formed], **pen)
+def curve_of(path):
+    """Returns the rows of a published curve in the order of time, as a structured array."""
+    found = table(path, ("t", "taylor_inertia"))
+    expect(all(numpy.isfinite(found[name]).all() for name in ("t", "taylor_inertia")), f"{path} has NaN")
+    return numpy.sort(found, order="t")
+
+
+def draw_curves(upper, lower, known, end):
+    for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
+        inside = curve[curve["t"] <= end * 1.001]
+        pen = {"linestyle": "none", "marker": mark, "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
+               "zorder": 2, "markevery": max(1, len(inside) // 40)}
+        upper.plot(inside["t"], inside["taylor_inertia"], label=label, **pen)
+        if lower and "inclination" in curve.dtype.names:
+            lower.plot(inside["t"], inside["inclination"], **pen)
 
 
 def report(run, known):
-    t = run.time
-    for curve in known:
-        if not curve.exact:
-            continue
-        d = difference(t, run.series["taylor_inertia"], curve.t, curve.d)
-        angle = difference(t, run.series["inclination"], curve.t, curve.inclination)
-        log.info(f"{run.name}: largest difference from the {curve.label}: {d:.2e} in D, {angle:.2e} degrees")
+    for label, curve in known.items():
+        apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {words}" for name, words in
+                 (("taylor_inertia", "in D"), ("inclination", "degrees")) if name in curve.dtype.names]
+        log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
 
 
 @figure

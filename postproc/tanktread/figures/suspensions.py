@@ -127,8 +127,10 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
-            slope, off = straight_line(fraction, (mean - 1) / fraction, error / fraction)
-            log.info(f"  per volume fraction, extrapolated to 0: {slope:.3f} ± {off:.3f}; one capsule: {alone:.4f}")
+            (_, limit), covariance = numpy.polyfit(fraction, (mean - 1) / fraction, 1, w=fraction / error,
+                                                   cov="unscaled")
+            log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
+                     f"one capsule: {alone:.4f}")
     upper.set_ylabel("relative viscosity μ_eff/μ")
     upper.legend()
     lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
@@ -158,13 +160,6 @@ def intrinsic(study, single, ca, one):
         "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]})
     expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
     return stresses(outcome.run)[0][-1]
-
-
-def straight_line(x, y, error):
-    """Returns the value at 0 of the straight line through y (n,) and its standard error, from the errors of y."""
-    table = numpy.column_stack([numpy.ones_like(x), x]) / error[:, None]
-    covariance = numpy.linalg.inv(table.T @ table)
-    return (covariance @ table.T @ (y / error))[0], covariance[0, 0] ** 0.5
 
 
 @figure

@@ -53,10 +53,13 @@ def duct_of(run):
 
 
 def draw_section(axis, d, levels):
-    """Draws contours up to the wall, and returns them. The grid's edge is clipped by the wall's polygon."""
-    velocity = spread(d["velocity"] / d["mean_velocity"])
-    filled = axis.contourf(d["x2"], d["x3"], velocity, levels, cmap=style.FIELD)
-    lines = axis.contour(d["x2"], d["x3"], velocity, levels[1:-1], colors="white", linewidths=0.5, alpha=0.7)
+    """Draws contours up to the wall, where the velocity is zero, and returns them."""
+    velocity = d["velocity"] / d["mean_velocity"]
+    inside = numpy.isfinite(velocity)
+    grid = numpy.stack(numpy.meshgrid(d["x2"], d["x3"]), axis=-1)[inside]
+    field = *numpy.concatenate([grid, d["outline"]]).T, numpy.append(velocity[inside], numpy.zeros(len(d["outline"])))
+    filled = axis.tricontourf(*field, levels, cmap=style.FIELD)
+    lines = axis.tricontour(*field, levels[1:-1], colors="white", linewidths=0.5, alpha=0.7)
     wall = plt.Polygon(d["outline"], facecolor="none", edgecolor=style.INK, linewidth=1.6)
     axis.add_patch(wall)
     for artist in filled.collections + lines.collections if hasattr(filled, "collections") else [filled, lines]:
@@ -67,25 +70,6 @@ def draw_section(axis, d, levels):
     axis.spines[:].set_visible(False)
     axis.set_xlabel("x₂ / R$_T$")
     return filled
-
-
-def spread(velocity):
-    """Returns the velocities with values beyond the wall, extrapolated from the inside, so that contours reach the
-    wall."""
-    v = velocity.copy()
-    for _ in range(2):
-        padded = numpy.pad(v, 2, constant_values=numpy.nan)
-        middle = slice(2, -2)
-        guesses = []
-        for d2, d3 in (0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1):
-            near = padded[2 + d3:padded.shape[0] - 2 + d3, 2 + d2:padded.shape[1] - 2 + d2]
-            far = numpy.roll(padded, (-2 * d3, -2 * d2), (0, 1))[middle, middle]
-            guesses.append(2 * near - far)
-        guesses = numpy.array(guesses)
-        known = numpy.isfinite(guesses)
-        mean = numpy.where(known, guesses, 0).sum(0) / numpy.maximum(known.sum(0), 1)
-        v = numpy.where(numpy.isfinite(v), v, numpy.where(known.any(0), numpy.minimum(mean, 0), numpy.nan))
-    return v
 
 
 def draw_path(axis, run, radius):

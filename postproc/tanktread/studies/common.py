@@ -23,18 +23,20 @@ def edge(holds, low, high, factor=1.05):
     return low, "edge"
 
 
-def arguments(parser, results):
-    """Adds the options that all studies share to a parser."""
+def arguments(parser, results, limit=300, jobs=None):
+    """Adds the options that all studies share to a parser; `--jobs` if there is a default for it."""
     parser.add_argument("--program", default=PROGRAM, type=pathlib.Path, help="default: %(default)s")
     parser.add_argument("--output", default=results, type=pathlib.Path, metavar="DIR",
                         help="of pictures, tables and, under runs/, results (default: %(default)s)")
     parser.add_argument("--fresh", action="store_true", help="make every run anew, also those that are there")
-    parser.add_argument("--limit", type=float, default=300, metavar="SECONDS",
+    parser.add_argument("--limit", type=float, default=limit, metavar="SECONDS",
                         help="of processor time that one run may take (default: %(default)s)")
+    if jobs:
+        parser.add_argument("--jobs", type=int, default=jobs, help="runs at a time (default: %(default)s)")
 
 
-def study(parsed, jobs=1):
-    return Study(parsed.program, parsed.output / "runs", parsed.limit, jobs, parsed.fresh)
+def study(parsed):
+    return Study(parsed.program, parsed.output / "runs", parsed.limit, getattr(parsed, "jobs", 1), parsed.fresh)
 
 
 def write_table(path, head, rows):

@@ -72,8 +72,7 @@ def main():
     parser.add_argument("--past", type=float, required=True, metavar="X1", help="where it has passed")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                         help="another key of all runs; may be there many times")
-    common.arguments(parser, pathlib.Path("results/critical"))
-    parser.set_defaults(limit=None)
+    common.arguments(parser, "results/critical", limit=None)
     parsed = parser.parse_args()
     low, high = parsed.between
     expect(0 < low < high, f"--between needs two positive values that ascend, but is given {low:g} and {high:g}")

@@ -222,8 +222,7 @@ class Diagram:
 def main():
     parser = command_line(__doc__)
     parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
-    common.arguments(parser, pathlib.Path("results/phases"))
-    parser.set_defaults(limit=None)
+    common.arguments(parser, "results/phases", limit=None)
     parsed = parser.parse_args()
     diagram = Diagram(parsed.study, common.study(parsed))
     try:
