@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -23,7 +24,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   const coupling::SolidScene around = *solids(scene, phases);
   coupling::Solids& all = *around.solids;
   clock.reset();
-  stop_where_told();
+  stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
   const coupling::Solids::Flow flow = coupling::without_particles(around, stokes::AmbientFlow(scene.flow));
   const Vec3 carried = coupling::carried(around, flow);
   Columns row;

@@ -76,12 +76,14 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   return sizes;
 }
 
-/// Returns the largest magnitude of all series with this unit. Differences that are tiny compared with it are round-off. The magnitude of a single
-/// series is not suitable, because a component may vanish by symmetry.
-double magnitude_of_unit(const output::RunRecord& record, const std::string& unit) {
+/// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of a
+/// single series is not suitable, because a component may vanish by symmetry.
+double scale_of(const output::RunRecord& record, const std::string& series) {
+  const auto one = std::ranges::find(record.series(), series, &output::Series::name);
   double most = 0;
-  for (const output::Series& series : record.series())
-    if (series.unit == unit && has_error(series.name)) most = std::max(most, magnitude(curve(record, series.name)));
+  for (const output::Series& other : record.series())
+    if (one != record.series().end() && other.unit == one->unit && has_error(other.name))
+      most = std::max(most, magnitude(curve(record, other.name)));
   return most;
 }
 
@@ -148,11 +150,12 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   Answer found{request, {}, 0, 0, false, unknown};
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
-  found.allowed = request.relative ? request.value * magnitude(whole) : request.value;
+  const double scale = scale_of(levels.back().record, request.series);
+  found.allowed = request.relative ? std::max(request.value * magnitude(whole), round_off * scale) : request.value;
   const std::vector<Curve> all = differences(request.series, request.of, levels);
   const std::vector<double> sizes = norms(all);
-  found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels, request, magnitude(whole), looser));
-  const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
+  found.estimate = estimated(sizes, scale, expected_errors(levels, request, scale, looser));
+  const bool tiny = sizes.size() > 1 && sizes.back() <= found.allowed / 10 && sizes[sizes.size() - 2] <= found.allowed / 10;
   if (tiny && !found.estimate.trusted()) {
     const double before = sizes[sizes.size() - 2];
     found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
@@ -172,7 +175,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     SeriesError one{series.name, series.unit, series.si, {}, {}};
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
-    const double scale = magnitude_of_unit(finest, series.unit);
+    const double scale = scale_of(finest, series.name);
     const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {

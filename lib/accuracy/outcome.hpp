@@ -40,7 +40,7 @@ struct Answer {
   Request request;
   Estimate estimate;
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
-  double allowed = 0;    ///< requested bound of the error, in the unit of the series
+  double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
   bool met = false;
   double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
 };

@@ -166,7 +166,7 @@ void check_motion(const Scene& scene) {
     throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
-  if (std::isnan(scene.time.final_time) && !scene.only_solids && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
+  if (std::isnan(scene.time.final_time) && scene.has_time())
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
@@ -274,6 +274,19 @@ void Scene::declare(deck::Section& root) {
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
   if (!root.documenting()) take_posts(*this);
+}
+
+std::string_view Scene::why_in_system() const {
+  if (only_solids) return {};
+  if (!particles.empty() || !name.empty()) return "Particles";
+  if (!particle.rigid()) return "Particle/motion";
+  if (domain.present) return "Domain";
+  if (output.power_balance) return "Output/power balance";
+  if (steady.present || periodic.present || spectrum.present) return "Steady, Periodic or Spectrum";
+  if (tube.repulsion) return "repulsion";
+  if (flow.history && particle.motion == Motion::prescribed) return "Flow/history";
+  if (!series.empty()) return "Output/series";
+  return flow.user && !flow.user->affine() ? "Flow/type" : "";
 }
 
 std::vector<Scene> Scene::alone() const {
