@@ -303,7 +303,7 @@ class Ladder {
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
-  double seconds_ = 0;                              // wall seconds of all runs, on the first rank; of finished runs including those of an earlier part
+  double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs also count those of earlier parts
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
   std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it

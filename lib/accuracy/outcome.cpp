@@ -76,8 +76,8 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   return sizes;
 }
 
-/// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of a
-/// single series is not suitable, because a component may vanish by symmetry.
+/// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of
+/// a single series is not suitable, because a component may vanish by symmetry.
 double scale_of(const output::RunRecord& record, const std::string& series) {
   const auto one = std::ranges::find(record.series(), series, &output::Series::name);
   double most = 0;

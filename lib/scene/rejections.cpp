@@ -6,7 +6,6 @@
 #include "scene/scene.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
-#include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread {
 
@@ -23,12 +22,13 @@ void reject_registered(const Scene& scene, Rejections& to) {
 }  // namespace
 
 void Scene::reject_power(Rejections& to) const {
-  const bool asked = output.power_balance && name.empty(), between_plates = wall.solid && wall.distance && (!flow.user || flow.user->affine());
+  const bool asked = output.power_balance && name.empty();
   const std::string word = "Output/power balance";
-  to.pair(
-      asked && flow.type != "duct" && !tube.present && !between_plates && !stokes::AmbientFlow(flow).affine(), word,
-      {flow.choice(), "Flow/type `parabolic`"},
-      "it is available in flows with a uniform gradient, in tubes, and between two plates if the pressure gradient of the flow is known");
+  to.pair(asked && flow.type == "parabolic" && domain.present && !(wall.solid && wall.distance), word,
+          {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
+          "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
+  to.pair(asked && !tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
+          "the pressure of an added flow is not known unless its gradient is uniform");
   to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
 
