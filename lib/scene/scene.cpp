@@ -60,6 +60,8 @@ struct Kinds {
         "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
+          if (name.find_first_of("/=") != name.npos)
+            throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`, which divide the names of series and settings.");
           all.emplace_back().name = name;
           all.back().registry = registry;
           all.back().declare(inner);

@@ -129,6 +129,7 @@ SETTINGS = [
     (["Particle/shape=spheroid", "Particle/semi-axes=[1, 2, 3]"], ["Particle/semi-axes", "spheroid", "two equal"]),
     (["Flow/type=quiescent"], ["Membrane/capillary number", "gradient"]),
     (["Flow/type=four-roll"], ["four-roll", "Flow/roll parameter"]),
+    (["Flow/type=parabolic", "Output/power balance=true"], ["parabolic", "Flow/half width"]),
     (["Flow/type=linear", "Flow/gradient=[1, 0, 0, 0, 1, 0, 0, 0, 1]"], ["Flow/gradient", "trace", "3"]),
     (["Volume/constraint=none"], ["Volume/constraint", "none", "Membrane/load measure"]),
     (["Time/fixed step=0.1", "Time/initial step=0.1"], ["Time/fixed step", "Time/initial step", "contradict"]),
@@ -246,6 +247,8 @@ def all_mistakes_are_told_at_once():
                            "  Particles: {one: {radius: -1, Membrane: {law: rubber}}, two: {center: [4, 0, 0], shape: cube}}\n")
     lines = run(deck(several), "--output", "refused", code=2).stderr.splitlines()
     check(len(lines) == 3 and all("Particles/" in line for line in lines), lines)
+    for name in "../one", "one=1":
+        refused([f"Particles/{name}", "name"], deck(shared.replace("radius: -1, colour: 3", "").replace("one:", f"'{name}':")))
 
 
 def solvers_and_their_lists_are_tried_before_a_run():
