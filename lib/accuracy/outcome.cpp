@@ -140,7 +140,9 @@ std::string obstacle(const std::vector<Outcome>& levels) {
   for (const output::Series& series : finest.record.series())
     if (series.name == "contact_impulse" && series.values.back() > 0)
       return "Contact/limiter holds particles apart by forces that depend on the time step";
-  if (summary_of(finest.directory).find(wrinkles) != std::string::npos)
+  const std::string summary = summary_of(finest.directory);
+  if (summary.find(full_mesh) != std::string::npos) return "the mesh has reached Adaptation/largest number of points: increase it";
+  if (summary.find(wrinkles) != std::string::npos)
     return "the membrane is compressed and resists bending too little for its mesh, so that wrinkles can have grown that the mesh does not represent";
   return {};
 }

@@ -55,7 +55,7 @@ double part_error(const Request& request, const Outcome& level, const Outcome& l
 
 /// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. The finest level is checked for
 /// - forces of the contact limiter, because they depend on the time step;
-/// - a warning of wrinkles that its mesh does not represent.
+/// - a warning of wrinkles that its mesh does not represent, or of a mesh that has reached its largest size.
 std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.

@@ -133,6 +133,16 @@ def points_of_a_branch_have_no_error_of_position():
         check("position error" not in shot.fields, sorted(shot.fields))
 
 
+def levels_that_a_deck_does_not_allow_are_failed_levels():
+    deck(DROP.replace("final time: 1.0", "final time: 0.1") + "  Surface: {elements per side: 3}\n  Adaptation: {enabled: true, largest number of points: 100}\n")
+    words = ("--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "few")
+    said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # meshes of 56, 98 and 152 points
+    check("level 2 failed: Adaptation/largest number of points must be above" in said, said)
+    check(len(summary("few")["accuracy"]["levels"]) == 2, summary("few")["accuracy"])
+    run("deck.yaml", *words, "--overwrite", "--set", "Adaptation/largest number of points=153", "--set", "Adaptation/surface tolerance=1e-9", code=1)
+    check("largest number of points" in summary("few")["accuracy"]["requests"][0]["untrusted"], summary("few")["accuracy"])
+
+
 def a_signal_in_a_search_stops_the_levels_and_the_finished_ones_are_published():
     deck(BRANCH)
     process = start("deck.yaml", "--accuracy", "taylor_surface@end=1e-9", "--quiet", "--output", "levels")
