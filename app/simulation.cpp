@@ -344,7 +344,7 @@ class Run {
     if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
-    if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
+    if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
     if (!last.whole && !request_.of_ladder) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return last.whole ? code : stopped;

@@ -243,11 +243,16 @@ class Ladder {
     return Start::anew;
   }
 
+  /// Answers all requests from the finished levels, on the first rank.
+  void answer_all() {
+    answers_.clear();
+    for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+  }
+
   /// Estimates the errors of the finest level k and prints them next to the requests. Returns whether all requests are met.
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
-      answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+      answer_all();
       return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
     });
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
@@ -256,12 +261,14 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether `obstacle` finds, on both of the two finest levels, that no error can be estimated. Finer levels are then not expected to help.
+  /// Returns whether finer levels are not expected to help: `obstacle` finds, on both of the two finest levels, that no error can be estimated, or all
+  /// requests that are not met are for series that vanish.
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};
       const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
-      return std::vector<double>{double(!obstacle(levels_).empty() && !obstacle(before).empty())};
+      return std::vector<double>{double((!obstacle(levels_).empty() && !obstacle(before).empty()) ||
+                                        std::ranges::all_of(answers_, [](const Answer& one) { return one.met || one.vanishes; }))};
     })[0] != 0;
   }
 
@@ -275,8 +282,7 @@ class Ladder {
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
     const auto outcome = coupling::decided([&] {
-      answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+      answer_all();
       const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_), why, seconds_);
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};

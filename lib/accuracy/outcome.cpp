@@ -149,7 +149,7 @@ std::string obstacle(const std::vector<Outcome>& levels) {
 
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  Answer found{request, {}, 0, 0, false, unknown};
+  Answer found{.request = request, .statistical = unknown};
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
   const double scale = scale_of(levels.back().record, request.series);
@@ -163,6 +163,9 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
     found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
   }
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
+  const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
+  found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2;
+  if (found.vanishes) found.estimate.untrusted = "the series is not larger than its differences between levels: request an absolute accuracy";
   if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
   found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;
   return found;

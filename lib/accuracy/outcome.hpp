@@ -42,6 +42,7 @@ struct Answer {
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
   bool met = false;
+  bool vanishes = false;  ///< true if a relative request cannot be met, because the series is not larger than its differences between levels
   double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
 };
 
