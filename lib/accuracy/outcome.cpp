@@ -148,8 +148,8 @@ std::string obstacle(const std::vector<Outcome>& levels) {
 }
 
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  Answer found{.request = request, .statistical = unknown};
+  Answer found;
+  found.request = request;
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
   const double scale = scale_of(levels.back().record, request.series);

@@ -2,6 +2,7 @@
 // Results of one deck on several levels of refinement, and the errors estimated from them.
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,8 @@ struct Answer {
   double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
   bool met = false;
   bool vanishes = false;  ///< true if a relative request cannot be met, because the series is not larger than its differences between levels
-  double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
+  double statistical = std::numeric_limits<double>::quiet_NaN();  ///< statistical error of a time average over several particles, not included in
+                                                                  ///< `estimate`; NaN if unknown
 };
 
 /// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: result of level 2 with a looser time tolerance, if it

@@ -150,7 +150,9 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
   const std::filesystem::path place = directory_ / name;
   std::error_code error;
   if (std::filesystem::equivalent(file, place, error)) return;
-  if (!std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing, error))
+  const std::filesystem::path part = place.string() + ".part";  // so that a run that is killed here leaves no incomplete copy
+  if (std::filesystem::copy_file(file, part, std::filesystem::copy_options::overwrite_existing, error)) std::filesystem::rename(part, place, error);
+  if (error)
     throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
 }
 
@@ -338,8 +340,10 @@ std::vector<std::string> check_expectations(const Scene& scene) {
   return deck::too_late(scene.expect.all, scene.has_time() ? scene.time.final_time : last);
 }
 
-std::string stored_deck(const std::string& directory) {
+std::string stored_deck(const std::string& directory) try {
   return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
+} catch (const std::out_of_range&) {
+  throw another_version(directory);
 }
 
 }  // namespace tanktread

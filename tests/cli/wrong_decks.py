@@ -284,6 +284,8 @@ def wrong_files_arerefused():
     refused(["missing.yaml", "does not exist"], "missing.yaml")
     os.mkdir("folder.yaml")
     refused(["folder.yaml", "directory"], "folder.yaml")
+    pathlib.Path("latin.yaml").write_bytes(GOOD.encode() + "  Expect: {area: {value: 1, tolerance: 99, source: Müller}}\n".encode("latin-1"))
+    refused(["latin.yaml, line 6", "UTF-8"], "latin.yaml")
     pathlib.Path("binary.yaml").write_bytes(bytes(range(256)))
     refused(["binary.yaml", "not text"], "binary.yaml")
     refused(["/dev/zero", "no regular file"], "/dev/zero")
