@@ -261,8 +261,8 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether finer levels are not expected to help: `obstacle` finds, on both of the two finest levels, that no error can be estimated, or all
-  /// requests that are not met are for series that vanish.
+  /// Returns whether finer levels are not expected to help: `obstacle` finds, on both of the two finest levels, that no error can be estimated, or
+  /// all requests that are not met are for series that vanish.
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};

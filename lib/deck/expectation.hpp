@@ -58,8 +58,8 @@ using UndefinedSeries = std::map<std::string, std::string>;
 /// Between rows the value is interpolated by the cubic through the four nearest rows (see `interpolated`).
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
 
-/// Returns one line that lists the missed binding expectations; empty if there are none. Calls `warn` with a sentence for each missed expectation that
-/// is not binding.
+/// Returns one line that lists the missed binding expectations; empty if there are none. Calls `warn` with a sentence for each missed expectation
+/// that is not binding.
 std::string missed(const std::vector<Verdict>& verdicts, const std::function<void(const std::string&)>& warn);
 
 /// Returns the value at the time t of the polynomial of degree <= 3 through the points nearest to t, at most four. `times` ascend and t is in their

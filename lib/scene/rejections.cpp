@@ -1,4 +1,4 @@
-// Combinations of choices that the program rejects.
+// Combinations of choices that the program rejects, and choices for which particles are solved for in one system.
 
 #include <algorithm>
 
@@ -20,6 +20,19 @@ void reject_registered(const Scene& scene, Rejections& to) {
 }
 
 }  // namespace
+
+std::string_view Scene::why_in_system() const {
+  if (only_solids) return {};
+  if (!particles.empty() || !name.empty()) return "Particles";
+  if (!particle.rigid()) return "Particle/motion";
+  if (domain.present) return "Domain";
+  if (output.power_balance) return "Output/power balance";
+  if (steady.present || periodic.present || spectrum.present) return "Steady, Periodic or Spectrum";
+  if (tube.repulsion) return "repulsion";
+  if (flow.history && particle.motion == Motion::prescribed) return "Flow/history";
+  if (!series.empty()) return "Output/series";
+  return flow.user && !flow.user->affine() ? "Flow/type" : "";
+}
 
 void Scene::reject_power(Rejections& to) const {
   const bool asked = output.power_balance && name.empty();

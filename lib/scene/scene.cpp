@@ -60,8 +60,7 @@ struct Kinds {
         "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
-          if (name.find_first_of("/=") != name.npos)
-            throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`, which divide the names of series and settings.");
+          if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
           all.emplace_back().name = name;
           all.back().registry = registry;
           all.back().declare(inner);
@@ -276,19 +275,6 @@ void Scene::declare(deck::Section& root) {
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
   if (!root.documenting()) take_posts(*this);
-}
-
-std::string_view Scene::why_in_system() const {
-  if (only_solids) return {};
-  if (!particles.empty() || !name.empty()) return "Particles";
-  if (!particle.rigid()) return "Particle/motion";
-  if (domain.present) return "Domain";
-  if (output.power_balance) return "Output/power balance";
-  if (steady.present || periodic.present || spectrum.present) return "Steady, Periodic or Spectrum";
-  if (tube.repulsion) return "repulsion";
-  if (flow.history && particle.motion == Motion::prescribed) return "Flow/history";
-  if (!series.empty()) return "Output/series";
-  return flow.user && !flow.user->affine() ? "Flow/type" : "";
 }
 
 std::vector<Scene> Scene::alone() const {
