@@ -163,8 +163,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run or of level 0 of
-/// a resumed ladder, the path relative to the working directory, and the path relative to each deck. If none exists, returns `name`.
+/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run or of level 0
+/// of a resumed ladder, the path relative to the working directory, and the path relative to each deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;

@@ -241,7 +241,6 @@ void Scene::declare(deck::Section& root) {
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
-  const bool deforming = !particle.rigid();
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
   ChannelList channel{root.given("Channel") ? tube : documented};
@@ -256,7 +255,7 @@ void Scene::declare(deck::Section& root) {
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
-  if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
+  if (!particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
   root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");
