@@ -132,8 +132,8 @@ class Ladder {
   }
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. Runs level 2 again with a looser
-  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met. Returns `stopped`
-  /// if a run was interrupted and can be resumed, otherwise 0.
+  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met and whose series
+  /// do not vanish. Returns `stopped` if a run was interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -143,7 +143,7 @@ class Ladder {
       for (const Request& request : task_.options.requests) {
         const Answer finest = answer(request, levels_);
         const double whole = finest.estimate.error;
-        if (finest.met || !(whole > 0) || !looser_ || !quadrature) continue;
+        if (finest.met || finest.vanishes || !(whole > 0) || !looser_ || !quadrature) continue;
         const double of_time = part_error(request, levels_[2], *looser_, time_ratio) / whole;
         const double of_quadrature = part_error(request, levels_[2], *quadrature, quadrature_ratio) / whole;
         most = most.empty() ? std::vector{of_time, of_quadrature} : std::vector{std::max(most[0], of_time), std::max(most[1], of_quadrature)};
