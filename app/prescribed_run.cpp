@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -53,7 +54,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::RigidTractions tractions = tractions_of(scene, body, ranks, around.get());
   clock.reset();
-  stop_where_told();
+  stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
   const RigidSolution solution = rigid_solution(scene, body, tractions, phases);
   stop_where_told();
   const double seconds = ranks.seconds_since(start);
@@ -68,22 +69,24 @@ int resist(const Scene& scene, const RunRequest& request) {
   if (const auto walls = scene.wall.planes(); !walls.empty()) wall_row(walls, body, body.rest).add_columns(scene, row);
   finish(row);
 
-  clock.emplace(phases, "output");
+  Account account;
+  account.plan = chosen;
+  account.counts = {{"unknowns", 3L * body.space.n_points}, {"solver_iterations", solution.iterations}};
+  account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
+  return record_steady(scene, request, body, ranks, phases, row, picture(scene, body, solution), std::move(account), kernel);
+}
+
+int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
+                  const SurfacePicture& picture, Account account, const stokes::Evaluations& kernel) {
+  std::optional<Phases::Scope> clock(std::in_place, phases, "output");
   Results results(scene, request, body, surface::BezierMap(body.space), ranks);
   results.record(row);
   motion::State state;
   state.x = body.rest;
-  results.save({}, state, {}, results.sample(picture(scene, body, solution), state.time));
+  results.save({}, state, {}, results.sample(picture, state.time));
   clock.reset();
-  Account account;
-  account.plan = chosen;
-  account.counts = {{"unknowns", 3L * body.space.n_points},
-                    {"solver_iterations", solution.iterations},
-                    {"solver_iterations_in_all", solution.iterations},
-                    {"kernel_evaluations_far", static_cast<long>(kernel.far)},
-                    {"kernel_evaluations_near", static_cast<long>(kernel.near)},
-                    {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
-  account.vectors = {{"drag", solution.force}, {"torque", solution.torque}};
+  for (const auto& [name, count] : {std::pair("far", kernel.far), {"near", kernel.near}, {"self", kernel.self}})
+    account.counts.emplace_back(std::string("kernel_evaluations_") + name, static_cast<long>(count));
   return results.close(account, phases);
 }
 

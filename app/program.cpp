@@ -163,12 +163,13 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run, the path
-/// relative to the working directory, and the path relative to the directory of a deck. If none exists, returns `name`.
+/// Returns the path of a file or directory that a deck names. Tries, in this order, the copy `kept` in the directory of a resumed run or of level 0
+/// of a resumed ladder, the path relative to the working directory, and the path relative to each deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
-  if (!arguments.resume.empty()) places.push_back(std::filesystem::path(arguments.resume) / kept);
+  if (!arguments.resume.empty() && !kept.empty())
+    places = {std::filesystem::path(arguments.resume) / kept, std::filesystem::path(arguments.resume) / "level_0" / kept};
   places.push_back(path);
   for (const std::string& deck : arguments.decks) places.push_back(std::filesystem::path(deck).parent_path() / path);
   for (const auto& place : places)
@@ -240,11 +241,10 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   const RunRequest whole = run_request(arguments, deck.effective(), registry);
   if (!arguments.check) check_vacant(whole);
   accuracy::Task task{scene.accuracy, scene.expect, deck.values(), deck.effective(), whole.output, whole.resume, whole.overwrite, whole.quiet,
-                      scene.in_system() && scene.runs_in_time()};
+                      scene.has_time()};
   accuracy::check_levels(task.values);
   std::string base = accuracy::without_section(accuracy::without_section(task.deck, "Accuracy"), "Expect");
   arguments.accuracy.clear();
-  if (whole.resume) arguments.resume += "/level_0";  // files named by the deck have copies in the results of level 0
   accuracy::Program program;
   program.deck = [&](const std::vector<std::string>& settings) {
     deck::Document level = deck::read({}, settings, base);
@@ -256,7 +256,7 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
     Scene of_level = scene_of(text, {}, arguments, registry);
     if (limit) of_level.output.wall_clock_limit = std::min(*limit, of_level.output.wall_clock_limit.value_or(*limit));
     RunRequest request = run_request(arguments, text, registry);
-    request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true;
+    request.output = directory, request.resume = resume, request.overwrite = true, request.quiet = true, request.of_ladder = true;
     return simulate(of_level, request);
   };
   if (!arguments.check) return accuracy::climb(task, program);

@@ -33,8 +33,8 @@ void catch_signals() {
 
 bool told_to_stop() { return signalled != 0; }
 
-void stop_where_told() {
-  if (coupling::any_told_to_stop(told_to_stop())) throw motion::Stopped();
+void stop_where_told(bool too_late) {
+  if (coupling::any_told_to_stop(told_to_stop() || too_late)) throw motion::Stopped();
 }
 
 std::string reason_of_stop() { return coupling::any_told_to_stop(told_to_stop()) ? by_signal : by_clock; }

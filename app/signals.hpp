@@ -13,8 +13,8 @@ void catch_signals();
 /// Returns whether this process has received a stop signal.
 bool told_to_stop();
 
-/// Throws motion::Stopped on every rank if any rank has received a stop signal. Collective.
-void stop_where_told();
+/// Throws motion::Stopped on every rank if any rank has received a stop signal or is `too_late`. Collective.
+void stop_where_told(bool too_late = false);
 
 /// Reasons for which a run is stopped, as written to `status` of the summary.
 inline const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit";

@@ -344,8 +344,8 @@ class Run {
     if (scene_.output.surface_text) results_.write_surface(particle_->picture(state_).surface);
     Account last = account(reason.empty() ? "done" : reason);
     last.whole = reason.empty() || reason == steady || reason == past;
-    if (!reason.empty()) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
-    if (!last.whole) last.remark += "; --resume " + results_.directory().string() + " continues the run";
+    if (!reason.empty() && !request_.of_ladder) last.remark = formatted("%s at time %g", spoken(reason).c_str(), state_.time);
+    if (!last.whole && !request_.of_ladder) last.remark += "; --resume " + results_.directory().string() + " continues the run";
     const int code = results_.close(last, phases_);
     return last.whole ? code : stopped;
   }
@@ -385,7 +385,7 @@ class Run {
 int simulate(const Scene& scene, const RunRequest& request) {
   check_vacant(request);
   if (scene.only_solids) return flow_past_solids(scene, request);
-  if (!scene.in_system() && scene.particle.motion == Motion::prescribed) return resist(scene, request);
+  if (scene.is_resistance_problem()) return resist(scene, request);
   if (!scene.runs_in_time()) return find_steady(scene, request);
   return Run(scene, request).go();
 }

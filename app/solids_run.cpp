@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -23,7 +24,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   const coupling::SolidScene around = *solids(scene, phases);
   coupling::Solids& all = *around.solids;
   clock.reset();
-  stop_where_told();
+  stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
   stokes::AmbientFlow ambient(scene.flow);
   ambient.at(0, 0);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
@@ -35,25 +36,14 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   now.add_columns(scene, row);
   finish(row);
 
-  clock.emplace(phases, "output");
   Body body;
   body.space = all.surface().space, body.rest = body.initial = body.unstressed = all.surface().net;
   const Net force = all.on_space(flow.force);
-  Results results(scene, request, body, surface::BezierMap(body.space), ranks);
-  results.record(row);
-  motion::State state;
-  state.x = body.rest;
   const SurfacePicture picture{body.rest, [&](const auto& nodes) { return std::vector<output::Field>{{"traction", -nodes.values(force)}}; }};
-  results.save({}, state, {}, results.sample(picture, state.time));
-  clock.reset();
-  const stokes::Evaluations kernel = ranks.of_all(all.evaluations());
   Account account;
   account.plan = chosen;
-  account.counts = {{"unknowns", 3L * all.surface().n_points()},
-                    {"kernel_evaluations_far", static_cast<long>(kernel.far)},
-                    {"kernel_evaluations_near", static_cast<long>(kernel.near)},
-                    {"kernel_evaluations_self", static_cast<long>(kernel.self)}};
-  return results.close(account, phases);
+  account.counts = {{"unknowns", 3L * all.surface().n_points()}};
+  return record_steady(scene, request, body, ranks, phases, row, picture, std::move(account), ranks.of_all(all.evaluations()));
 }
 
 }  // namespace tanktread

@@ -12,7 +12,6 @@ namespace tanktread::accuracy {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double round_off = 1e-10;
 
 }  // namespace
 

@@ -28,12 +28,14 @@ constexpr double safety = 1.2;
 /// Second safety factor: a request is met if the estimated error times this factor is at most the requested error.
 constexpr double margin = 1.5;
 
+/// Differences below this number times the scale of a series are round-off.
+constexpr double round_off = 1e-10;
+
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
 /// Returns the estimate. `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected size of the error of
-/// each level; it has one entry more than `differences`. `scale`: largest magnitude of the series; differences below 1e-10 times `scale` are
-/// round-off.
+/// each level; it has one entry more than `differences`. `scale`: magnitude for which differences below `round_off` times `scale` are round-off.
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected);
 
 /// A quantity as a function of time, or of another abscissa. Abscissas ascend.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <random>
 
@@ -51,7 +52,7 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
     const Level level{k, k, k};
     const std::string text = program.deck(settings(task.values, level));
     const fs::path place = directory.path / ("level_" + std::to_string(k));
-    if (program.run(text, place, false, task.options.wall_clock_limit) == stopped && !task.options.wall_clock_limit) throw motion::Stopped();
+    if (program.run(text, place, false, task.options.wall_clock_limit) == stopped) throw motion::Stopped();
     coupling::decided([&] {
       std::optional<Outcome> outcome = finished(place, level, text);
       if (!outcome) throw RunFailure("the pilot run failed before its final time");
@@ -63,6 +64,10 @@ std::vector<std::string> forecast(const Task& task, const Program& program) {
     int most = 2;
     for (const Request& request : task.options.requests) {
       const Answer one = answer(request, outcomes);
+      if (std::isnan(one.estimate.error)) {
+        lines.push_back("  accuracy    " + request.text() + ": no level can be predicted, because " + one.estimate.untrusted);
+        continue;
+      }
       const int level = needed(one, one.estimate.error, task.options.levels);
       most = std::max(most, level);
       lines.push_back("  accuracy    " + request.text() +

@@ -47,6 +47,7 @@ class Ladder {
       if (hopeless()) return conclude(missed, "finer levels do not help");
     }
     if (count_ == 0) throw RunFailure("no accuracy level was completed: " + failure_);
+    if (!failure_of_last_.empty()) return conclude(missed, formatted("level %d failed: ", task_.options.levels - 1) + failure_);
     return conclude(missed, formatted("level %d is the finest one that Accuracy/levels allows", task_.options.levels - 1));
   }
 
@@ -131,8 +132,8 @@ class Ladder {
   }
 
   /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. Runs level 2 again with a looser
-  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met. Returns `stopped`
-  /// if a run was interrupted and can be resumed, otherwise 0.
+  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met and whose series
+  /// do not vanish. Returns `stopped` if a run was interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -142,7 +143,7 @@ class Ladder {
       for (const Request& request : task_.options.requests) {
         const Answer finest = answer(request, levels_);
         const double whole = finest.estimate.error;
-        if (finest.met || !(whole > 0) || !looser_ || !quadrature) continue;
+        if (finest.met || finest.vanishes || !(whole > 0) || !looser_ || !quadrature) continue;
         const double of_time = part_error(request, levels_[2], *looser_, time_ratio) / whole;
         const double of_quadrature = part_error(request, levels_[2], *quadrature, quadrature_ratio) / whole;
         most = most.empty() ? std::vector{of_time, of_quadrature} : std::vector{std::max(most[0], of_time), std::max(most[1], of_quadrature)};
@@ -154,43 +155,59 @@ class Ladder {
   }
 
   /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if the run ended or failed.
-  int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) {
+  /// and can be resumed, or 0 if the run ended or failed. A level that its scene does not allow counts as failed if a coarser level is finished.
+  int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
     const std::string deck = program_.deck(settings(task_.values, level));
-    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck))}; });
+    std::string failure;  // of an earlier run of this deck, on the first rank
+    const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck, failure))}; });
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
-    const auto began = Clock::now();
     if (start == Start::failed) {
-      const std::string why = ranks_.rank() == 0 ? kept_failure(directory(name), deck) : "";
-      fail(name, why.empty() ? "it failed before" : why + " (found before; without " + failure_file + " it is searched for again)");
+      fail(name, failure + " (found before; without " + failure_file + " it is searched for again)");
       return 0;
     }
+    double seconds = 0;
     if (start != Start::finished) {
       const auto limit = task_.options.wall_clock_limit;
-      const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - seconds_here()) : 0}; })[0];
-      try {
-        if (program_.run(deck, directory(name), start == Start::resume, limit ? std::optional(left) : std::nullopt) == stopped) return stopped;
-      } catch (const motion::Stopped&) {
-        return stopped;
-      } catch (const RunFailure& failure) {
-        fail(name, failure.what());
-        if (!task_.runs_in_time)
-          serially([&] {
-            fs::create_directories(directory(name));
-            output::write_whole(directory(name) / failure_file, deck + before_reason + failure_);
-          });
-        return 0;
+      const double before = seconds_here();
+      const double left = coupling::decided([&] { return std::vector<double>{limit ? std::max(1e-3, *limit - before) : 0}; })[0];
+      const int code = run(name, deck, start == Start::resume, limit ? std::optional(left) : std::nullopt);
+      seconds = seconds_here() - before;
+      if (code == stopped || !failure_of_last_.empty()) {
+        seconds_ += seconds;
+        return code;
       }
     }
-    const double seconds = std::chrono::duration<double>(Clock::now() - began).count();
     serially([&] {
       outcome = finished(directory(name), level, deck);
       if (!outcome)
         throw RunFailure("the results of " + directory(name).string() +
                          " have changed since they were written: start again with --overwrite");
-      if (start != Start::finished) outcome->seconds = std::max(seconds, outcome->seconds);
+      outcome->seconds = std::max(seconds, outcome->seconds);
+      seconds_ += outcome->seconds;
     });
+    return 0;
+  } catch (const UserError& error) {
+    if (count_ == 0) throw;
+    fail(name, error.what());
+    return 0;
+  }
+
+  /// Runs a deck. Keeps the reason if a search fails. Returns `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
+  int run(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
+    try {
+      if (program_.run(deck, directory(name), resume, limit) == stopped) return stopped;
+      return 0;
+    } catch (const motion::Stopped&) {
+      return stopped;
+    } catch (const RunFailure& failure) {
+      fail(name, failure.what());
+    }
+    if (!task_.runs_in_time)
+      serially([&] {
+        fs::create_directories(directory(name));
+        output::write_whole(directory(name) / failure_file, deck + before_reason + failure_);
+      });
     return 0;
   }
 
@@ -209,10 +226,11 @@ class Ladder {
     }
   }
 
-  Start start_of(const fs::path& place, const Level& level, const std::string& deck) const {
+  /// Sets `failure` to the reason if the result is Start::failed.
+  Start start_of(const fs::path& place, const Level& level, const std::string& deck, std::string& failure) const {
     if (!task_.resume) return Start::anew;
     if (finished(place, level, deck)) return Start::finished;
-    if (!kept_failure(place, deck).empty()) return Start::failed;
+    if (failure = kept_failure(place, deck); !failure.empty()) return Start::failed;
     std::error_code absent;
     if (!task_.runs_in_time || !fs::is_directory(place, absent)) return Start::anew;
     try {
@@ -225,11 +243,16 @@ class Ladder {
     return Start::anew;
   }
 
+  /// Answers all requests from the finished levels, on the first rank.
+  void answer_all() {
+    answers_.clear();
+    for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+  }
+
   /// Estimates the errors of the finest level k and prints them next to the requests. Returns whether all requests are met.
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
-      answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
+      answer_all();
       return std::vector<double>{double(std::ranges::all_of(answers_, &Answer::met))};
     });
     say(formatted("  level %-5d %d elements per side, tolerance %.2g, %.3g s", k, elements_per_side(k),
@@ -238,12 +261,14 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether `obstacle` finds, on both of the two finest levels, that no error can be estimated. Finer levels are then not expected to help.
+  /// Returns whether finer levels are not expected to help: `obstacle` finds, on both of the two finest levels, that no error can be estimated, or
+  /// all requests that are not met are for series that vanish.
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};
       const std::vector<Outcome> before(levels_.begin(), levels_.end() - 1);
-      return std::vector<double>{double(!obstacle(levels_).empty() && !obstacle(before).empty())};
+      return std::vector<double>{double((!obstacle(levels_).empty() && !obstacle(before).empty()) ||
+                                        std::ranges::all_of(answers_, [](const Answer& one) { return one.met || one.vanishes; }))};
     })[0] != 0;
   }
 
@@ -257,9 +282,8 @@ class Ladder {
       throw RunFailure("no accuracy level was completed" + (failure_.empty() ? "" : ": " + failure_));
     }
     const auto outcome = coupling::decided([&] {
-      answers_.clear();
-      for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_), why, seconds_here());
+      answer_all();
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_), why, seconds_);
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });
@@ -285,6 +309,7 @@ class Ladder {
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
+  double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs also count those of earlier parts
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
   std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it

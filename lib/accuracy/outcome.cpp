@@ -76,12 +76,14 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
   return sizes;
 }
 
-/// Returns the largest magnitude of all series with this unit. Differences that are tiny compared with it are round-off. The magnitude of a single
-/// series is not suitable, because a component may vanish by symmetry.
-double magnitude_of_unit(const output::RunRecord& record, const std::string& unit) {
+/// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of
+/// a single series is not suitable, because a component may vanish by symmetry.
+double scale_of(const output::RunRecord& record, const std::string& series) {
+  const auto one = std::ranges::find(record.series(), series, &output::Series::name);
   double most = 0;
-  for (const output::Series& series : record.series())
-    if (series.unit == unit && has_error(series.name)) most = std::max(most, magnitude(curve(record, series.name)));
+  for (const output::Series& other : record.series())
+    if (one != record.series().end() && other.unit == one->unit && has_error(other.name))
+      most = std::max(most, magnitude(curve(record, other.name)));
   return most;
 }
 
@@ -138,26 +140,32 @@ std::string obstacle(const std::vector<Outcome>& levels) {
   for (const output::Series& series : finest.record.series())
     if (series.name == "contact_impulse" && series.values.back() > 0)
       return "Contact/limiter holds particles apart by forces that depend on the time step";
-  if (summary_of(finest.directory).find(wrinkles) != std::string::npos)
+  const std::string summary = summary_of(finest.directory);
+  if (summary.find(full_mesh) != std::string::npos) return "the mesh has reached Adaptation/largest number of points: increase it";
+  if (summary.find(wrinkles) != std::string::npos)
     return "the membrane is compressed and resists bending too little for its mesh, so that wrinkles can have grown that the mesh does not represent";
   return {};
 }
 
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  Answer found{request, {}, 0, 0, false, unknown};
+  Answer found;
+  found.request = request;
   const Curve whole = curve(levels.back().record, request.series), of_part = part(whole, request.of);
   found.value = request.of == Of::run ? magnitude(whole) : of_part.values.back();
-  found.allowed = request.relative ? request.value * magnitude(whole) : request.value;
+  const double scale = scale_of(levels.back().record, request.series);
+  found.allowed = request.relative ? std::max(request.value * magnitude(whole), round_off * scale) : request.value;
   const std::vector<Curve> all = differences(request.series, request.of, levels);
   const std::vector<double> sizes = norms(all);
-  found.estimate = estimated(sizes, magnitude(whole), expected_errors(levels, request, magnitude(whole), looser));
-  const bool tiny = sizes.size() > 1 && std::max(sizes.back(), sizes[sizes.size() - 2]) <= found.allowed / 10;
+  found.estimate = estimated(sizes, scale, expected_errors(levels, request, scale, looser));
+  const bool tiny = sizes.size() > 1 && sizes.back() <= found.allowed / 10 && sizes[sizes.size() - 2] <= found.allowed / 10;
   if (tiny && !found.estimate.trusted()) {
     const double before = sizes[sizes.size() - 2];
     found.estimate = {std::max(sizes.back(), found.estimate.ratio > most_ratio ? before / most_ratio : before), found.estimate.ratio, ""};
   }
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
+  const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
+  found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2;
+  if (found.vanishes) found.estimate.untrusted = "the series is not larger than its differences between levels: request an absolute accuracy";
   if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
   found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;
   return found;
@@ -172,7 +180,7 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     SeriesError one{series.name, series.unit, series.si, {}, {}};
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
-    const double scale = magnitude_of_unit(finest, series.unit);
+    const double scale = scale_of(finest, series.name);
     const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {

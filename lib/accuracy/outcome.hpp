@@ -2,6 +2,7 @@
 // Results of one deck on several levels of refinement, and the errors estimated from them.
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,9 +41,11 @@ struct Answer {
   Request request;
   Estimate estimate;
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
-  double allowed = 0;    ///< requested bound of the error, in the unit of the series
+  double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
   bool met = false;
-  double statistical = 0;  ///< statistical error of a time average over several particles, not included in `estimate`; NaN if unknown
+  bool vanishes = false;  ///< true if a relative request cannot be met, because the series is not larger than its differences between levels
+  double statistical = std::numeric_limits<double>::quiet_NaN();  ///< statistical error of a time average over several particles, not included in
+                                                                  ///< `estimate`; NaN if unknown
 };
 
 /// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: result of level 2 with a looser time tolerance, if it
@@ -55,7 +58,7 @@ double part_error(const Request& request, const Outcome& level, const Outcome& l
 
 /// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. The finest level is checked for
 /// - forces of the contact limiter, because they depend on the time step;
-/// - a warning of wrinkles that its mesh does not represent.
+/// - a warning of wrinkles that its mesh does not represent, or of a mesh that has reached its largest size.
 std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.

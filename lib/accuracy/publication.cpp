@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "accuracy/position.hpp"
 #include "base/errors.hpp"
@@ -10,6 +11,7 @@
 #include "deck/expectation.hpp"
 #include "deck/words.hpp"
 #include "record/files/file.hpp"
+#include "record/files/summary.hpp"
 
 namespace tanktread::accuracy {
 
@@ -32,18 +34,17 @@ void link_files(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Returns the verdicts of the expectations as the section `expect` of the summary, each with the estimated error of its series.
-std::string expect_text(const std::vector<deck::Verdict>& verdicts, const deck::Expectations& expect, const std::vector<SeriesError>& errors) {
-  std::string text = verdicts.empty() ? "expect: []\n" : "expect:\n";
-  for (std::size_t k = 0; k < verdicts.size(); ++k) {
-    const deck::Verdict& one = verdicts[k];
-    const auto found = std::ranges::find(errors, expect.all[k].series, &SeriesError::name);
-    text += "  - name: " + in_quotes(one.name) + "\n    value: " + real_text(one.value) + "\n    expected: " + real_text(one.expected) +
-            "\n    error: " + real_text(one.error) + "\n    estimated error: " + real_text(found == errors.end() ? NAN : found->values.back()) +
-            "\n    passed: " + (one.passed ? "true" : "false") + "\n";
-    if (!one.not_binding.empty()) text += "    not binding: " + in_quotes(one.not_binding) + "\n";
+/// Returns the estimated error of the series of each expectation, at its time.
+std::vector<double> estimates(const deck::Expectations& expect, const std::vector<SeriesError>& errors, const std::vector<double>& times) {
+  std::vector<double> all;
+  for (const deck::Expectation& one : expect.all) {
+    const auto found = std::ranges::find(errors, one.series, &SeriesError::name);
+    if (found == errors.end())
+      all.push_back(NAN);
+    else
+      all.push_back(one.at ? envelope({times, found->values}, {*one.at}).front() : found->values.back());
   }
-  return text;
+  return all;
 }
 
 std::string word(Of of) { return of == Of::run ? "run" : of == Of::end ? "end" : "mean"; }
@@ -100,7 +101,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   const Outcome& finest = levels.back();
   output::start_results(task.directory);
   link_files(finest.directory, task.directory);
-  if (levels.size() > 1 && !is_branch(finest.record)) {
+  if (levels.size() > 2 && !is_branch(finest.record) && obstacle(levels).empty()) {
     const Outcome& before = levels[levels.size() - 2];
     const double fine = expected_error(finest.level), coarse = expected_error(before.level);
     write_position_errors(finest.directory, before.directory, task.directory, safety * fine / (coarse - fine));
@@ -116,16 +117,14 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   record.write(output::Durable::yes);
 
   const std::vector<deck::Verdict> verdicts = deck::verdicts(task.expect.all, table);
-  std::string missed, text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
-  for (const deck::Verdict& one : verdicts)
-    if (!one.passed && one.not_binding.empty()) missed += (missed.empty() ? "missed Expect/" : "; Expect/") + one.name + ": " + one.reason;
-  text = with_expect(without_statement(text), expect_text(verdicts, task.expect, errors));
+  std::string text = text_of_file(finest.directory / "summary.yaml", "summary.yaml", 10'000'000);
+  text = with_expect(without_statement(text), output::yaml(verdicts, estimates(task.expect, errors, table.at("time"))));
   text += "error:\n";
   for (const SeriesError& one : errors)
     text += "  " + (deck::is_plain(one.name) ? one.name : in_quotes(one.name)) + ": " + real_text(one.values.back()) + "\n";
   text += accuracy_text(task, levels, answers, why, seconds);
   output::write_whole(task.directory / "summary.yaml", text, output::Durable::yes);
-  return missed;
+  return deck::missed(verdicts, [](const std::string& sentence) { std::fprintf(stderr, "tanktread: warning: %s\n", sentence.c_str()); });
 }
 
 }  // namespace tanktread::accuracy

@@ -55,7 +55,7 @@ Request request_of(const std::string& text) {
     const std::string part = request.series.substr(at + 1);
     if (part != "end" && part != "mean") refuse_form(text, "asks for @" + part + ", which is neither @end nor @mean");
     request.of = part == "end" ? Of::end : Of::mean;
-    request.series.resize(at);
+    request.series = trimmed(request.series.substr(0, at));
   }
   if (request.series.empty()) refuse_form(text, "names no series");
   if (number.ends_with('%')) request.relative = true, number = trimmed(number.substr(0, number.size() - 1));

@@ -121,4 +121,17 @@ std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, cons
   return out;
 }
 
+std::string missed(const std::vector<Verdict>& verdicts, const std::function<void(const std::string&)>& warn) {
+  std::string line;
+  for (const Verdict& one : verdicts) {
+    if (one.passed) continue;
+    const std::string found = "Expect/" + one.name + ": " + one.reason;
+    if (one.not_binding.empty())
+      line += (line.empty() ? "missed " : "; ") + found;
+    else
+      warn(found + "; this does not fail the run: " + one.not_binding);
+  }
+  return line;
+}
+
 }  // namespace tanktread::deck

@@ -1,6 +1,7 @@
 #pragma once
 // Expected values of results that a deck states in `Expect/<name>`, and their comparison with the results.
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,6 +57,10 @@ using UndefinedSeries = std::map<std::string, std::string>;
 /// Returns one verdict per expectation. A missing series, a time that was not reached, and a time at which the series is undefined are failures.
 /// Between rows the value is interpolated by the cubic through the four nearest rows (see `interpolated`).
 std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, const SeriesTable& series, const UndefinedSeries& undefined = {});
+
+/// Returns one line that lists the missed binding expectations; empty if there are none. Calls `warn` with a sentence for each missed expectation
+/// that is not binding.
+std::string missed(const std::vector<Verdict>& verdicts, const std::function<void(const std::string&)>& warn);
 
 /// Returns the value at the time t of the polynomial of degree <= 3 through the points nearest to t, at most four. `times` ascend and t is in their
 /// range. A NaN value separates the points: only points on the same side of it as t are used. The result is NaN if a value next to t is NaN.

@@ -23,6 +23,19 @@ constexpr int most_levels = 20;              // nesting depth of sections
 constexpr std::size_t most_nodes = 100'000;  // largest number of keys and values; an alias counts each time it is used
 constexpr std::size_t longest_key = 100;     // characters
 
+/// Returns whether the text has the byte patterns of UTF-8.
+bool is_utf8(const std::string& text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned c = byte(i);
+    int more = c < 0x80 ? 0 : c >> 5 == 6 ? 1 : c >> 4 == 14 ? 2 : c >> 3 == 30 ? 3 : 4;
+    if (more == 4) return false;
+    for (; more > 0; --more)
+      if (byte(++i) >> 6 != 2) return false;
+  }
+  return true;
+}
+
 template <class Number>
 bool reads(const std::string& text, Number& number) {
   const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
@@ -77,6 +90,7 @@ class Walk {
       const YAML::Node key = item.first;
       if (!key.IsScalar() || key.Scalar().empty() || key.Scalar().size() > longest_key)
         refuse(key, "a key is a word of at most " + std::to_string(longest_key) + " characters, followed by a colon");
+      check(key);
       const std::string& name = key.Scalar();
       const std::string here = path.empty() ? name : path + "/" + name;
       const auto [first, is_new] = lines.emplace(name, key.Mark().line + 1);
@@ -90,7 +104,7 @@ class Walk {
     if (++nodes_ > most_nodes || level > most_levels)
       refuse(value, "lists lie more than " + std::to_string(most_levels) + " deep in each other, or hold more than 100,000 values");
     if (value.IsScalar())
-      list.setEntry(name, typed(value));
+      check(value), list.setEntry(name, typed(value));
     else if (value.IsSequence())
       list.setEntry(name, typed_row(words(value, path)));
     else
@@ -102,6 +116,10 @@ class Walk {
     throw UserError(origin_ + ", line " + std::to_string(node.Mark().line + 1) + ": " + what + ".");
   }
 
+  void check(const YAML::Node& node) const {
+    if (node.IsScalar() && !is_utf8(node.Scalar())) refuse(node, "a word has bytes that are not UTF-8, but a deck is a text file in UTF-8");
+  }
+
   /// Returns the scalars of a sequence, or of a sequence of rows of equal length, row after row.
   std::vector<YAML::Node> words(const YAML::Node& sequence, const std::string& path) {
     std::vector<YAML::Node> out;
@@ -109,6 +127,7 @@ class Walk {
       const bool row = item.IsSequence() && item.size() > 0 && item.size() == sequence[0].size();
       for (std::size_t i = 0; i < (row ? item.size() : 1); ++i) {
         out.push_back(row ? item[i] : item);
+        check(out.back());
         if (!out.back().IsScalar() || ++nodes_ > most_nodes)
           refuse(sequence, !missing_feature(path).empty()
                                ? path + " is not a key of the deck: " + missing_feature(path)
@@ -183,7 +202,16 @@ YAML::Node document(const std::string& text, const std::string& origin) {
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin) {
   Teuchos::ParameterList whole;
   Walk(origin).read(document(text, origin), "", 0, whole);
-  return root_list(whole, origin);
+  if (whole.numParams() == 0) throw UserError(origin + " is empty; a deck has one section named `" + root_name + "`.");
+  for (const auto& item : whole)
+    if (item.first != root_name || !item.second.isList())
+      throw UserError(origin + ": the outermost section must be `" + root_name + "`, and the only one, but there is `" +
+                      shortened(item.first, 60) + "`.");
+  return std::make_shared<Teuchos::ParameterList>(whole.sublist(root_name));
+}
+
+std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
+  return yaml_list(text_of_file(file, "The deck " + shortened(file, 80), 1'000'000), file);
 }
 
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {

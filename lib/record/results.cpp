@@ -150,7 +150,9 @@ void Results::keep(const std::filesystem::path& file, const std::filesystem::pat
   const std::filesystem::path place = directory_ / name;
   std::error_code error;
   if (std::filesystem::equivalent(file, place, error)) return;
-  if (!std::filesystem::copy_file(file, place, std::filesystem::copy_options::overwrite_existing, error))
+  const std::filesystem::path part = place.string() + ".part";  // so that a run that is killed here leaves no incomplete copy
+  if (std::filesystem::copy_file(file, part, std::filesystem::copy_options::overwrite_existing, error)) std::filesystem::rename(part, place, error);
+  if (error)
     throw RunFailure("cannot copy " + file.string() + " to " + place.string() + ": " + error.message());
 }
 
@@ -308,16 +310,8 @@ std::string Results::finish(const Account& account, const Phases& phases) {
   deck::UndefinedSeries undefined;
   for (const Column& one : columns_.all())
     if (!one.undefined_if.empty()) undefined[one.name] = one.undefined_if;
-  std::string missed;
-  for (const deck::Verdict& verdict : deck::verdicts(scene_.expect.all, table, undefined)) {
-    summary.expect.push_back(verdict);
-    if (verdict.passed) continue;
-    const std::string found = verdict.name + ": " + verdict.reason;
-    if (verdict.not_binding.empty())
-      missed += (missed.empty() ? "missed Expect/" : "; Expect/") + found;
-    else
-      warn("Expect/" + found + "; this does not fail the run: " + verdict.not_binding);
-  }
+  summary.expect = deck::verdicts(scene_.expect.all, table, undefined);
+  const std::string missed = deck::missed(summary.expect, [this](const std::string& sentence) { warn(sentence); });
   for (const auto& [name, value] : account.vectors) summary.final_vectors.emplace_back(name, std::vector<double>(value.begin(), value.end()));
   summary.counts = account.counts;
   summary.seconds = with_earlier(phases, account.earlier);
@@ -343,12 +337,13 @@ std::vector<std::string> names_of_series(const Scene& scene) {
 std::vector<std::string> check_expectations(const Scene& scene) {
   deck::check_series(scene.expect.all, names_of_series(scene));
   const double last = scene.continuation.present ? scene.continuation.points : 0;
-  const bool timeless = scene.only_solids || (!scene.in_system() && scene.particle.motion == Motion::prescribed) || !scene.runs_in_time();
-  return deck::too_late(scene.expect.all, timeless ? last : scene.time.final_time);
+  return deck::too_late(scene.expect.all, scene.has_time() ? scene.time.final_time : last);
 }
 
-std::string stored_deck(const std::string& directory) {
+std::string stored_deck(const std::string& directory) try {
   return newest_checkpoint(directory, coupling::Ranks()).checkpoint.texts.at("deck");
+} catch (const std::out_of_range&) {
+  throw another_version(directory);
 }
 
 }  // namespace tanktread

@@ -65,8 +65,6 @@ constexpr Entry entries[] = {
      "accuracy requests with their estimated errors, and the levels with their settings and wall-clock seconds"},
     {"counts", "1", "all", "amount of work of the whole run, as the numbers below"},
     {"counts/unknowns", "1", "prescribed body", "number of unknowns of the traction on the body"},
-    {"counts/solver_iterations_in_all", "1", "prescribed body",
-     "number of iterations of the linear solver, including the solves that correct the forces by the reciprocal theorem (2.11)"},
     {"seconds", "s", "all", "wall-clock time of the first MPI rank in each phase of the run; the sum is the time of the run"},
     {"memory", "bytes", "all", "largest memory in use: `largest of a rank` is the maximum over the MPI ranks, `all ranks` the sum"},
     {"plan", "", "all", "methods and parameters that the run chose, one line each"},

@@ -28,12 +28,7 @@ void ParticleOptions::reject(const Scene& scene, Rejections& to) const {
   to.pair(forces && !told, "Particle/forces", {choice(), "Particle/motion `deforming` or `free`"},
           "it is the method for the force on a body with prescribed motion");
   to.pair(forces && told && scene.in_system() && scene.runs_in_time() && !scene.tube.repulsion, "Particle/forces",
-          {!scene.name.empty()          ? "Particles"
-           : scene.domain.present       ? "Domain"
-           : scene.output.power_balance ? "Output/power balance"
-           : scene.flow.history         ? "Flow/history"
-           : scene.series.empty()       ? "Flow/type"
-                                        : "Output/series",
+          {std::string(scene.why_in_system()),
            "Particles, Domain, Output/power balance, Output/series, Flow/history or Flow/type of an added flow"},
           "the force on a body in the coupled system follows from the solution of this system");
   to.pair(rigid() && scene.membrane_given, "Membrane", stiff, "a rigid particle has no membrane");

@@ -1,4 +1,4 @@
-// Combinations of choices that the program rejects.
+// Combinations of choices that the program rejects, and choices for which particles are solved for in one system.
 
 #include <algorithm>
 
@@ -6,7 +6,6 @@
 #include "scene/scene.hpp"
 #include "scene/searches.hpp"
 #include "scene/tube.hpp"
-#include "stokes/flow/ambient_flow.hpp"
 
 namespace tanktread {
 
@@ -22,13 +21,27 @@ void reject_registered(const Scene& scene, Rejections& to) {
 
 }  // namespace
 
+std::string_view Scene::why_in_system() const {
+  if (only_solids) return {};
+  if (!particles.empty() || !name.empty()) return "Particles";
+  if (!particle.rigid()) return "Particle/motion";
+  if (domain.present) return "Domain";
+  if (output.power_balance) return "Output/power balance";
+  if (steady.present || periodic.present || spectrum.present) return "Steady, Periodic or Spectrum";
+  if (tube.repulsion) return "repulsion";
+  if (flow.history && particle.motion == Motion::prescribed) return "Flow/history";
+  if (!series.empty()) return "Output/series";
+  return flow.user && !flow.user->affine() ? "Flow/type" : "";
+}
+
 void Scene::reject_power(Rejections& to) const {
-  const bool asked = output.power_balance && name.empty(), between_plates = wall.solid && wall.distance && (!flow.user || flow.user->affine());
+  const bool asked = output.power_balance && name.empty();
   const std::string word = "Output/power balance";
-  to.pair(
-      asked && flow.type != "duct" && !tube.present && !between_plates && !stokes::AmbientFlow(flow).affine(), word,
-      {flow.choice(), "Flow/type `parabolic`"},
-      "it is available in flows with a uniform gradient, in tubes, and between two plates if the pressure gradient of the flow is known");
+  to.pair(asked && flow.type == "parabolic" && domain.present && !(wall.solid && wall.distance), word,
+          {"Domain and " + flow.choice(), "Domain and Flow/type `parabolic`"},
+          "the pressure of that flow does work on the flow that particles cause through a cell, which is included only between two plates");
+  to.pair(asked && !tube.present && flow.user && !flow.user->affine(), word, {flow.choice(), "Flow/type of an added flow"},
+          "the pressure of an added flow is not known unless its gradient is uniform");
   to.pair(asked && alone().front().load_is_strong(), word, "Membrane/load `strong`", "it needs the load by virtual work, `weak`");
 }
 

@@ -60,6 +60,7 @@ struct Kinds {
         "one of several particles. It has the keys of Particle and sections Membrane, Surface, Interface and Adaptation, as in a deck with one "
         "particle. Keys that are not set are taken from the particle that its key `like` names, or otherwise from Particles/defaults",
         [this](const std::string& name, deck::Section& inner) {
+          if (name.find_first_of("/=") != name.npos) throw UserError(inner.path() + ": the name of a particle must not contain `/` or `=`.");
           all.emplace_back().name = name;
           all.back().registry = registry;
           all.back().declare(inner);
@@ -166,7 +167,7 @@ void check_motion(const Scene& scene) {
     throw UserError("Flow/type `duct` needs a section Tube, with at least Tube/section, or a section Channel.");
   if (scene.adaptation.film_resolution && scene.name.empty() && !scene.wall.present && !scene.tube.present && !scene.domain.present)
     throw UserError("Adaptation/film resolution needs several particles, a Domain or a wall, because otherwise there are no films.");
-  if (std::isnan(scene.time.final_time) && !scene.only_solids && (particle.motion != Motion::prescribed || scene.in_system()) && scene.runs_in_time())
+  if (std::isnan(scene.time.final_time) && scene.has_time())
     throw UserError("Time/final time is missing: give the time at which the run ends, in the deck's unit of time.");
   if (scene.periodic.present && std::isnan(scene.periodic.period))
     throw UserError("Periodic/period is missing: give the expected period, in the deck's unit of time.");
@@ -240,7 +241,6 @@ void Scene::declare(deck::Section& root) {
   if (several || root.given("Domain") || root.documenting())
     root.section("Contact", contact, "limits for the gaps between particles, or between a particle and its periodic images");
   volume_given = root.given("Volume");
-  const bool deforming = !particle.rigid();
   tube.present = root.optional_section("Tube", tube, "a straight tube along x1 around the particle; none without this section");
   surface::TubeOptions documented;
   ChannelList channel{root.given("Channel") ? tube : documented};
@@ -255,7 +255,7 @@ void Scene::declare(deck::Section& root) {
   }
   if (tube.present && domain.present && domain.side_lengths && !domain.side_lengths->empty()) tube.period = domain.side_lengths->front();
   wall.present = root.optional_section("Wall", wall, "a plane no-slip wall, or two in a periodic Domain; none without this section");
-  if (deforming || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
+  if (!particle.rigid() || volume_given) root.section("Volume", volume, "conservation of the particle's volume");
   root.section("Quadrature", quadrature, "numerical integration of the boundary integrals of the flow");
   root.section("Time", time, "time integration: scheme, step length and end of the run");
   steady.present = root.optional_section("Steady", steady, "search for the steady shape that the initial shape leads to, instead of a run in time");

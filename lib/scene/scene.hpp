@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -139,14 +140,14 @@ struct Scene : ParticleKind {
                                                                            ///< combinations
   bool load_is_strong() const { return membrane.load == "strong"; }
 
-  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the resistance problem of one rigid body. Such a
-  /// scene does not support the power balance, searches, repulsion by a wall, registered series, registered flows that are not affine, or prescribed
-  /// motion in a time-dependent flow.
-  bool in_system() const {
-    if (only_solids) return false;
-    return !particles.empty() || !name.empty() || !particle.rigid() || domain.present || output.power_balance || !runs_in_time() ||
-           tube.repulsion || !series.empty() || (flow.user && !flow.user->affine()) || (flow.history && particle.motion == Motion::prescribed);
-  }
+  /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.
+  bool in_system() const { return !why_in_system().empty(); }
+  /// Returns the key or section of the deck for which the particles are solved for in one coupled system; empty if they are not.
+  std::string_view why_in_system() const;
+  /// Returns true if the scene is the resistance problem of one body with prescribed motion.
+  bool is_resistance_problem() const { return !only_solids && particle.motion == Motion::prescribed && !in_system(); }
+  /// Returns true if the scene changes in time, so that its run can be resumed; false for steady problems, searches and spectra.
+  bool has_time() const { return runs_in_time() && !only_solids && !is_resistance_problem(); }
   /// Returns true if gaps exist: between several particles, or between a particle and its periodic images.
   bool has_gaps() const { return particles.size() > 1 || domain.present; }
 

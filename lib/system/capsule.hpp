@@ -146,6 +146,7 @@ class Capsule : public Dynamics {
   Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.cell_gradient() * shift); }
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
+  const Targets& targets() const { return targets_; }
   const VelocityProjection* projection() const { return targets_.projection(); }  ///< null if velocities are collocated
   const surface::Geometry& geometry() const { return volumes_.geometry(); }
   const Phases& layer_phases() const { return layers_.single_layer().phases(); }  ///< run time of the parts of the single layer

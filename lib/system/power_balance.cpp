@@ -84,8 +84,8 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
 
 /// Returns the power input by the flow due to the particles. In a duct flow, it is the flow rate times the additional pressure drop (2.7). Between
 /// two plates or among posts, it is sum_s V_s.F_s + g.int u dV. V_s is the velocity of solid s, F_s the force on the fluid that the particles add to
-/// solid s, g the pressure gradient, and u the velocity that the particles cause. All other flows have a uniform gradient, and their power is (6.11).
-/// If there is a tube, its wall moves with this flow.
+/// solid s, g the pressure gradient, and u the velocity that the particles cause. All other flows are affine or parabolic, and their power is (6.11).
+/// If there is a tube or a plane wall, it moves with this flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {
@@ -99,13 +99,19 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
     return solids->scene().solids->power(found.caused.force * change) + (change * solids->scene().driving_gradient).dot(found.caused_carried);
   }
   const Net& x = e.x();
-  const Net flux = capsule_.geometry().volume_gradient(x);
-  const Mat3 gradient = flow.gradient(Vec3::Zero()), strain = (gradient + gradient.transpose()) / 2;
-  double power = product(work, flow.velocities(x));
-  for (const Particle& particle : capsule_.particles()) {
-    const Mat3 moment = particle.block.rows(inside).transpose() * particle.block.rows(flux);
-    power -= 2 * viscosity_ * viscosity_contrast(particle) * strain.cwiseProduct(moment).sum();
+  const Targets& targets = capsule_.targets();
+  const Net flux = capsule_.geometry().volume_gradient(x), at = targets.at_sites() * x;
+  const std::vector<Mat3> gradients = flow.gradients(at);
+  Net stressed = targets.at_sites() * inside;  // becomes the product of stress and `inside`
+  for (Eigen::Index i = 0; i < at.rows(); ++i) {
+    const double pressure = 2 * flow.curvature().trace() * flow.direction().dot(at.row(i));  // divided by the viscosity
+    const Mat3& gradient = gradients[static_cast<std::size_t>(i)];
+    stressed.row(i) = viscosity_ * stressed.row(i) * (gradient + gradient.transpose() - pressure * Mat3::Identity());
   }
+  stressed = targets.collocated(stressed);
+  double power = product(work, targets.collocated(flow.velocities(at)));
+  for (const Particle& particle : capsule_.particles())
+    power -= viscosity_contrast(particle) * product(particle.block.rows(stressed), particle.block.rows(flux));
   return power;
 }
 

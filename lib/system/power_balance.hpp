@@ -31,7 +31,7 @@ struct Powers {
 /// terms. Equals the power input if all dissipation and storage is positive.
 double turnover(double flow, double forces, double fluids);
 
-/// Evaluates the power balance of deformable particles, and of rigid bodies among them, in affine flows or in a tube.
+/// Evaluates the power balance of deformable particles, and of rigid bodies among them, in affine and parabolic flows or in a tube.
 class PowerBalance {
  public:
   /// `capsule`: the system with its particles on their current meshes. References must outlive this object.

@@ -148,6 +148,9 @@ def a_run_stops_at_its_wall_clock_limit():
     steps = len(series("out", "time"))
     run("--resume", "out", "--quiet", code=4)  # the limit is for each part
     check(len(series("out", "time")) > steps, "no step more")
+    deck("Tanktread: {Flow: {type: simple shear}, Particle: {motion: prescribed}, Output: {wall-clock limit: 1.0e-6}}", "held.yaml")
+    said = run("held.yaml", "--quiet", "--output", "held", code=4).stderr
+    check(len(said.splitlines()) == 1 and "wall-clock limit" in said and not pathlib.Path("held").exists(), said)
 
 
 def what_only_the_first_rank_meets_ends_all_of_them():
@@ -171,6 +174,16 @@ def a_checkpoint_of_another_version_is_refused():
             del file["checkpoint"].attrs["checksum"]
     said = run("--resume", "out", "--quiet", code=2).stderr
     check("another version" in said, said)
+    for name in "arrays/x", "arrays/phase and tank-treading frequency", "texts/deck":
+        run(deck(DECK), "--set", "Time/final time=0.1", "--output", "out", "--quiet", "--overwrite")
+        for snapshot in pathlib.Path("out").glob("snapshot_*.hdf"):
+            with h5py.File(snapshot, "r+") as file:
+                rows = file[f"checkpoint/{name}"][:-1] if name.startswith("arrays") else None
+                del file["checkpoint"].attrs["checksum"], file[f"checkpoint/{name}"]
+                if rows is not None:
+                    file[f"checkpoint/{name}"] = rows
+        said = run("--resume", "out", "--quiet", code=2).stderr
+        check("another version" in said and len(said.splitlines()) == 1, said)
 
 
 main()

@@ -91,6 +91,25 @@ def the_large_pressure_in_a_drop_counts_for_nothing():
     check(lacks.max() < 1e-3, "the quadrature of a uniform pressure counts as power", lacks)
 
 
+def a_parabolic_flow_does_the_same_work_on_a_rigid_body_as_on_a_very_viscous_drop():
+    """The traction of a rigid body (2.40), its density (2.23) and the velocity of a drop enter different terms of (6.11)."""
+    text = """
+Tanktread:
+  Flow: {type: parabolic, half width: 2.0, maximum velocity: 2.0}
+  Particle: {radius: 0.8, center: [0.0, 0.3, 0.5], %s
+  Surface: {elements per side: 4}
+  Output: {power balance: true}
+  Time: {fixed step: 1.0e-4, final time: 1.0e-4}
+"""
+    powers = []
+    for particle in ("motion: free}\n  Solvers: {rigid bodies: first kind}", "motion: free}\n  Solvers: {rigid bodies: second kind}",
+                     "viscosity ratio: 1.0e+4}\n  Membrane: {law: neo-Hookean, capillary number: 0.3}"):
+        run(deck(text % particle), "--output", "found", "--quiet", "--overwrite")
+        powers.append(series("found", "flow_power")[0])
+        check(abs(series("found", "power_residual")).max() < 1e-3, series("found", "power_residual"))
+    check(max(powers) - min(powers) < 1e-3 * min(powers), powers)
+
+
 def a_parabolic_flow_between_plates_is_the_flow_of_its_pressure_gradient():
     text = """
 Tanktread:

@@ -92,11 +92,30 @@ def a_looser_request_takes_fewer_levels():
 
 def the_requests_of_a_deck_bind_like_those_of_the_command_line():
     deck(DROP + "  Accuracy: {requests: 'taylor_inertia=1%, area=1e-4'}\n  Expect: {area: {value: 12.6, tolerance: 0.5}}\n")
-    run("deck.yaml", "--quiet", "--output", "deck")
+    run("deck.yaml", "--set", "Expect/start={series: taylor_inertia, value: 0, tolerance: 0.1, at: 0}", "--quiet", "--output", "deck")
     found = summary("deck")
     check(found["accuracy"]["met"], found)
-    check(found["expect"][0]["passed"] and found["expect"][0]["estimated error"] > 0, found["expect"])
-    run("deck.yaml", "--set", "Expect/area/value=20", "--quiet", "--output", "missed", code=1)
+    with _run_file("deck") as file:
+        for one, row in zip(found["expect"], (-1, 0)):
+            error = file["error/area" if row else "error/taylor_inertia"][row]
+            check(one["passed"] and one["estimated error"] == error > 0, one, error)
+        check(file["error/taylor_inertia"][-1] != error, "the error at the start is that at the end")
+    said = run("deck.yaml", "--set", "Expect/area/value=20", "--quiet", "--output", "missed", code=1).stderr
+    check(len(said.splitlines()) == 1 and "missed Expect/area" in said, said)
+    said = run("deck.yaml", "--no-expect", "--set", "Expect/area/value=20", "--quiet", "--output", "reported").stderr
+    check("Expect/area: area is" in said and "does not fail the run" in said, said)
+
+
+def a_series_that_vanishes_has_no_relative_error():
+    deck(DROP)
+    brief = ("--set", "Time/final time=0.1", "--quiet", "--output")
+    said = run("deck.yaml", "--accuracy", "velocity_x2=1%", "--accuracy", "taylor_inertia=5%", *brief, "still", code=1).stderr
+    check("velocity_x2=1%: the error cannot be estimated, because the series is not larger than its differences" in said, said)
+    check(len(summary("still")["accuracy"]["levels"]) < 7, "finer levels were run")
+    deck(DROP.replace("uniaxial extension", "simple shear"))
+    run("deck.yaml", "--accuracy", "stresslet_12=1%", "--set", "Accuracy/levels=3", *brief, "plane")
+    found = summary("plane")["accuracy"]["requests"][0]
+    check(found["met"] and 0 < found["allowed"] < 1e-6, found)
 
 
 def what_is_not_met_is_said():
@@ -116,6 +135,16 @@ def points_of_a_branch_have_no_error_of_position():
     check(summary("branch")["accuracy"]["met"], summary("branch")["accuracy"])
     for shot in tanktread.run("branch").snapshots():
         check("position error" not in shot.fields, sorted(shot.fields))
+
+
+def levels_that_a_deck_does_not_allow_are_failed_levels():
+    deck(DROP.replace("final time: 1.0", "final time: 0.1") + "  Surface: {elements per side: 3}\n  Adaptation: {enabled: true, largest number of points: 100}\n")
+    words = ("--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "few")
+    said = run("deck.yaml", *words, code=1).stderr.splitlines()[-1]  # meshes of 56, 98 and 152 points
+    check("level 2 failed: Adaptation/largest number of points must be above" in said, said)
+    check(len(summary("few")["accuracy"]["levels"]) == 2, summary("few")["accuracy"])
+    run("deck.yaml", *words, "--overwrite", "--set", "Adaptation/largest number of points=153", "--set", "Adaptation/surface tolerance=1e-9", code=1)
+    check("largest number of points" in summary("few")["accuracy"]["requests"][0]["untrusted"], summary("few")["accuracy"])
 
 
 def a_signal_in_a_search_stops_the_levels_and_the_finished_ones_are_published():
@@ -143,7 +172,18 @@ def the_wall_clock_limit_is_honoured_and_said():
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
                  code=4, timeout=60)
     check("wall-clock limit" in result.stderr or "was stopped" in result.stderr, result.stderr)
-    check("--resume short continues the run" in result.stderr, result.stderr)
+    check("--resume short continues the run" in result.stderr and "--resume short/level" not in result.stderr, result.stderr)
+    said = run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--set", "Accuracy/wall-clock limit=1e-6", "--check", "--quiet", code=4).stderr
+    check(len(said.splitlines()) == 1 and "wall-clock limit" in said, said)
+
+
+def a_level_of_a_rigid_body_continues():
+    deck("Tanktread:\n  Flow: {type: simple shear}\n  Particle: {motion: free, shape: spheroid, semi-axes: [1, 1, 2]}\n  Time: {final time: 50}\n"
+         "  Output: {wall-clock limit: 1.0e-6}\n  Accuracy: {requests: velocity_x1=1%}\n")
+    run("deck.yaml", "--quiet", "--output", "levels", code=4)
+    for _ in range(2):
+        run("--resume", "levels", "--quiet", code=4)
+    check(len(series("levels/level_0", "time")) == 4, series("levels/level_0", "time"))
 
 
 def a_ladder_that_was_killed_gives_the_same_result():
@@ -163,7 +203,27 @@ def a_ladder_that_was_killed_gives_the_same_result():
     kept = os.stat("killed/level_0/run.h5").st_mtime_ns
     run("--resume", "killed", "--quiet", "--set", "Accuracy/requests=taylor_inertia=0.05%")
     check(os.stat("killed/level_0/run.h5").st_mtime_ns == kept, "a finished level was run again")
-    check(summary("killed")["accuracy"]["requests"][0]["request"] == "taylor_inertia=0.05%", summary("killed")["accuracy"])
+    found = summary("killed")["accuracy"]
+    check(found["requests"][0]["request"] == "taylor_inertia=0.05%", found)
+    run("--resume", "killed", "--quiet")
+    found = summary("killed")["accuracy"]
+    check(found["seconds"] >= sum(one["seconds"] for one in found["levels"]) > 0, found)
+
+
+def a_ladder_resumes_without_the_files_of_its_deck():
+    os.mkdir("decks")
+    history = pathlib.Path("decks/history.csv")
+    history.write_text("time,amplitude\n0,1\n10,0.9\n", encoding="utf-8")
+    deck(DROP.replace("shear rate: 1.0", "history: {file: history.csv}"), "decks/deck.yaml")
+    process = start("decks/deck.yaml", "--accuracy", "taylor_inertia=5%", "--quiet", "--output", "levels")
+    while not pathlib.Path("levels/level_1").exists() and process.poll() is None:
+        time.sleep(0.001)
+    process.kill()
+    process.communicate()
+    check(not pathlib.Path("levels/summary.yaml").exists(), "the ladder ended before it was killed")
+    history.unlink()
+    run("--resume", "levels", "--quiet")
+    check(summary("levels")["accuracy"]["met"], summary("levels")["accuracy"])
 
 
 def a_level_that_failed_is_not_run_again():
@@ -237,7 +297,7 @@ def the_check_predicts_levels_and_seconds():
 
 
 def wrinkles_are_reported_instead_of_an_error():
-    import math
+    import tanktread
 
     deck("""Tanktread:
   Flow: {type: simple shear}
@@ -248,6 +308,7 @@ def wrinkles_are_reported_instead_of_an_error():
     result = run("deck.yaml", "--accuracy", "taylor_inertia=5%", "--set", "Accuracy/levels=3", "--quiet", "--output", "wrinkled", code=1)
     check("wrinkles" in result.stderr.splitlines()[-1], result.stderr)
     check(math.isnan(summary("wrinkled")["accuracy"]["requests"][0]["estimated error"]), "an error in spite of wrinkles")
+    check("position error" not in tanktread.run("wrinkled").snapshots()[-1].fields, "an error of position in spite of wrinkles")
 
 
 def wrong_requests_are_refused():

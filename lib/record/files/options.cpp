@@ -19,7 +19,7 @@ void Options::declare(deck::Section& section) {
               "whether the series contain the power input by flow and forces, the dissipation in the fluids (6.12), and the residual of "
               "the power balance, which measures the error of the velocities (6.13). Each row of the series then costs an evaluation of "
               "the boundary integrals at four points per element. Available for deformable particles, also together with rigid bodies, "
-              "in flows with a uniform gradient or in tubes");
+              "except for a registered flow whose gradient is not uniform, and for `parabolic` flow in a Domain without two plates");
   section.key("surface text", surface_text,
               "whether the final surface is written in Bezier-extraction format to the file `surface.iga`, which Particle/file reads");
 }

@@ -29,19 +29,26 @@ std::string map(const std::string& key, const Entries<Value>& entries) {
 
 }  // namespace
 
-std::string yaml(const Summary& summary) {
-  std::string text = "status: " + scalar(summary.status) + "\n";
-  text += map("final", summary.final) + lines(summary.final_vectors);
-  if (!summary.final_in_si.empty()) text += map("final in SI", summary.final_in_si);
-  text += summary.expect.empty() ? "expect: []\n" : "expect:\n";
-  for (const deck::Verdict& one : summary.expect) {
+std::string yaml(const std::vector<deck::Verdict>& verdicts, const std::vector<double>& estimates) {
+  std::string text = verdicts.empty() ? "expect: []\n" : "expect:\n";
+  for (std::size_t k = 0; k < verdicts.size(); ++k) {
+    const deck::Verdict& one = verdicts[k];
     text += "  - name: " + scalar(one.name) + "\n";
     text += "    value: " + scalar(one.value) + "\n";
     text += "    expected: " + scalar(one.expected) + "\n";
     text += "    error: " + scalar(one.error) + "\n";
+    if (!estimates.empty()) text += "    estimated error: " + scalar(estimates[k]) + "\n";
     text += "    passed: " + scalar(one.passed) + "\n";
     if (!one.not_binding.empty()) text += "    not binding: " + scalar(one.not_binding) + "\n";
   }
+  return text;
+}
+
+std::string yaml(const Summary& summary) {
+  std::string text = "status: " + scalar(summary.status) + "\n";
+  text += map("final", summary.final) + lines(summary.final_vectors);
+  if (!summary.final_in_si.empty()) text += map("final in SI", summary.final_in_si);
+  text += yaml(summary.expect);
   text += map("counts", summary.counts) + map("seconds", summary.seconds);
   if (!summary.memory.empty()) text += map("memory", summary.memory);
   text += map("plan", summary.plan) + map("numbers", summary.numbers);

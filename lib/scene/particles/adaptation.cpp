@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "accuracy/obstacles.hpp"
 #include "base/formatted.hpp"
 #include "motion/adaptation.hpp"
 #include "scene/particles/gaps.hpp"
@@ -277,7 +278,7 @@ std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& cha
   add(change.refused > 0, "levels",
       whole + formatted("they have been halved as often as Adaptation/levels = %d allows", options.levels));
   add(change.full, "number of points",
-      whole + formatted("Adaptation/largest number of points = %d does not allow their refinement", options.largest_number_of_points));
+      whole + accuracy::full_mesh + std::to_string(options.largest_number_of_points) + " does not allow their refinement");
   add(change.body && change.finer && change.change > 1e-12 && !member.scene.particle.rigid(), "moved surface",
       formatted("refinement moved the surface by %.2g R_C, because the spline spaces are not nested: set Surface/extraordinary points to "
                 "catmull-clark",

@@ -54,12 +54,17 @@ class Deforming : public ParticleSystem {
 
   bool resume(Resumed& resumed) override {
     const bool another_mesh = restore(resumed.checkpoint, members_);
+    const auto require = [](bool fits) {
+      if (!fits) throw UserError("the newest checkpoint does not fit its scene, because another version of tanktread wrote it: run the deck again");
+    };
+    require(resumed.state.x.rows() >= n_points() && resumed.totals.phase_angle.size() == members_.size());
     const Net x = resumed.state.x.topRows(n_points());
     const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) settle(x);
+    require(resumed.state.x.rows() == start().rows());
     if (resumed.state.frozen.size() > 0) dynamics().freeze(resumed.state.frozen);
     capsule_->work() = resumed.totals.work;
-    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle.at(p);
+    for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     hold_by(resumed.totals.contacts);
     return another_mesh;
   }

@@ -67,8 +67,8 @@ void add_series(const Scene& scene, double time, std::span<const RecordedParticl
 }
 
 void ProgressRow::add_columns(const Scene& scene, Columns& to) const {
-  const bool prescribed = scene.only_solids || (!scene.in_system() && scene.particle.motion == Motion::prescribed);
-  to.add(time, {"time", "time", "simulated time; 0 for a steady problem"});
+  const bool prescribed = scene.only_solids || scene.is_resistance_problem();
+  to.add(time, {"time", "time", "simulated time; along a branch of steady shapes the number of the point, from 0; 0 for any other steady problem"});
   to.add(wall_seconds, {"wall_seconds", "s", "wall-clock time since the start of the run, including the earlier parts of a resumed run"});
   if (scene.in_system() || prescribed || scene.tube.present || scene.wall.present)
     to.add(static_cast<double>(work.solver_iterations),

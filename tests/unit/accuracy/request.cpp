@@ -12,7 +12,7 @@ TEST(Request, HasASeriesAPartAndAValue) {
   EXPECT_EQ(plain.of, Of::run);
   EXPECT_DOUBLE_EQ(plain.value, 1e-3);
   EXPECT_FALSE(plain.relative);
-  const Request end = request_of(" left/velocity_x1@end = 0.5 % ");
+  const Request end = request_of(" left/velocity_x1 @end = 0.5 % ");
   EXPECT_EQ(end.series, "left/velocity_x1");
   EXPECT_EQ(end.of, Of::end);
   EXPECT_DOUBLE_EQ(end.value, 5e-3);
