@@ -29,7 +29,7 @@ _tanktread() {
   elif [[ $before == --output || $before == --resume ]]; then
     COMPREPLY=($(compgen -d -- "${COMP_WORDS[COMP_CWORD]}"))
   else
-    COMPREPLY=($(compgen -f -X '!*.yaml' -- "${COMP_WORDS[COMP_CWORD]}") $(compgen -d -- "${COMP_WORDS[COMP_CWORD]}"))
+    COMPREPLY=($(compgen -f -X '!*.@(yaml|xml)' -- "${COMP_WORDS[COMP_CWORD]}") $(compgen -d -- "${COMP_WORDS[COMP_CWORD]}"))
   fi
 }
 

@@ -58,7 +58,7 @@ class Document {
   std::unique_ptr<Held> held_;
 };
 
-/// Reads and merges a deck, key by key. Each of `files` overrides `stored` and the files before it.
+/// Reads and merges a deck, key by key. Each of `files` (XML if its name ends with .xml, otherwise YAML) overrides `stored` and the files before it.
 /// `settings` (`Section/key=value`) override the files. `stored` is YAML text from a checkpoint and may be empty. Throws UserError.
 ///
 /// An expectation (section Expect/<name>) is binding only for the deck that states it. It is no longer binding if a later file, or the settings

@@ -11,13 +11,19 @@ namespace tanktread::deck {
 /// The name of the root list of every deck.
 inline constexpr const char* root_name = "Tanktread";
 
-/// Returns the root list of the deck in a file. Throws UserError if the file cannot be read, is longer than 1 MB, or holds no deck.
+/// Returns the root list of the deck in a file (XML if its name ends with .xml, otherwise YAML). Throws UserError if the file cannot be read, is
+/// longer than 1 MB, or holds no deck.
 std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file);
 
-/// Returns the root list, named `Tanktread`, of a deck in YAML 1.2. `origin` is the name of the deck in messages. A word without quotes is true or
-/// false (also yes, no), a whole number, a number, or text. Brackets hold a row of numbers or words, or rows of equal length. Throws UserError, with
-/// the line, if the text is not valid YAML, a key is given twice, sections are nested deeper than 20, a value has a type that no key of a deck has,
-/// or the list is not the only outermost one.
+/// Returns the root list of a deck in the XML format of Teuchos. `origin` is the name of the deck in messages.
+std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin);
+
+/// Returns the list named `Tanktread` of a deck. Throws UserError if it is missing or not the only outermost list.
+std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin);
+
+/// Returns the root list of a deck in YAML 1.2. `origin` is the name of the deck in messages. A word without quotes is true or false (also yes, no),
+/// a whole number, a number, or text. Brackets hold a row of numbers or words, or rows of equal length. Throws UserError, with the line, if the text
+/// is not valid YAML, a key is given twice, sections are nested deeper than 20, or a value has a type that no key of a deck has.
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin);
 
 /// Returns the root list of a deck with the one key of `setting`, which is `Section/key=value`. The value is read as YAML.

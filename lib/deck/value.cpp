@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <Teuchos_ParameterList.hpp>
+#include <Teuchos_TwoDArray.hpp>
 
 #include "base/errors.hpp"
 #include "deck/words.hpp"
@@ -23,7 +24,7 @@ std::vector<double> doubles(const Values& values) {
   return out;
 }
 
-/// Returns an entry as YAML text. The entry may have any type that Teuchos supports and a deck may hold.
+/// Returns an entry as YAML text. The entry may have any type that Teuchos reads from YAML or XML and that a deck may hold.
 std::string yaml_value(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return real_text(*value);
   if (const auto* value = held<int>(entry)) return std::to_string(*value);
@@ -36,7 +37,7 @@ std::string yaml_value(const Teuchos::ParameterEntry& entry) {
     for (const auto& text : *texts) words.push_back(in_quotes(text));
     return "[" + joined(words, ", ") + "]";
   }
-  const bool real = held<Teuchos::Array<double>>(entry);
+  const bool real = held<Teuchos::Array<double>>(entry) || held<Teuchos::TwoDArray<double>>(entry);
   std::vector<std::string> words;
   for (const double value : as_numbers(entry).value_or(std::vector<double>{}))
     words.push_back(real ? real_text(value) : number_text(value));
@@ -49,6 +50,7 @@ std::optional<double> as_number(const Teuchos::ParameterEntry& entry) {
   if (const auto* value = held<double>(entry)) return *value;
   if (const auto* value = held<int>(entry)) return static_cast<double>(*value);
   if (const auto* value = held<long long>(entry)) return static_cast<double>(*value);
+  if (const auto* value = held<float>(entry)) return static_cast<double>(*value);
   return std::nullopt;
 }
 
@@ -71,6 +73,9 @@ std::vector<std::string> as_texts(const Teuchos::ParameterEntry& entry) {
 std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& entry) {
   if (const auto* values = held<Teuchos::Array<double>>(entry)) return doubles(*values);
   if (const auto* values = held<Teuchos::Array<int>>(entry)) return doubles(*values);
+  if (const auto* values = held<Teuchos::Array<long long>>(entry)) return doubles(*values);
+  if (const auto* values = held<Teuchos::TwoDArray<double>>(entry)) return doubles(values->getDataArray());
+  if (const auto* values = held<Teuchos::TwoDArray<int>>(entry)) return doubles(values->getDataArray());
   return std::nullopt;
 }
 

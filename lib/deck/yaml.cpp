@@ -202,16 +202,7 @@ YAML::Node document(const std::string& text, const std::string& origin) {
 std::shared_ptr<Teuchos::ParameterList> yaml_list(const std::string& text, const std::string& origin) {
   Teuchos::ParameterList whole;
   Walk(origin).read(document(text, origin), "", 0, whole);
-  if (whole.numParams() == 0) throw UserError(origin + " is empty; a deck has one section named `" + root_name + "`.");
-  for (const auto& item : whole)
-    if (item.first != root_name || !item.second.isList())
-      throw UserError(origin + ": the outermost section must be `" + root_name + "`, and the only one, but there is `" +
-                      shortened(item.first, 60) + "`.");
-  return std::make_shared<Teuchos::ParameterList>(whole.sublist(root_name));
-}
-
-std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file) {
-  return yaml_list(text_of_file(file, "The deck " + shortened(file, 80), 1'000'000), file);
+  return root_list(whole, origin);
 }
 
 std::shared_ptr<Teuchos::ParameterList> setting_list(const std::string& setting) {

@@ -167,6 +167,12 @@ def the_version_is_the_same_everywhere():
         check(found == version, f"{name} has version {found}, CMakeLists.txt {version}")
 
 
+def xml_decks_are_read():
+    text = '<ParameterList name="Tanktread"><ParameterList name="Flow"><Parameter name="viscosity" type="double" value="7"/></ParameterList>' \
+           '<ParameterList name="Time"><Parameter name="final time" type="double" value="1"/></ParameterList></ParameterList>\n'
+    check("viscosity: 7.0" in run(deck(text, "deck.xml"), "--check").stdout, "not read")
+
+
 def the_manual_names_every_key_of_an_effective_deck():
     manual = run("--reference").stdout
     for line in run(SOURCE / "inputs/shear_paper.yaml", "--check").stdout.split("\nplan")[0].splitlines():

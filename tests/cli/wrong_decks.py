@@ -307,7 +307,9 @@ def wrong_files_arerefused():
             refused([said, "too long"], deck(GOOD), deck(f"Tanktread: {{{section}: {{{inner}: {{{last}: {name}}}}}}}\n", "naming.yaml"))
     said = run(deck(GOOD), "--output", "x" * 300, code=2).stderr
     check(len(said.splitlines()) == 1 and "too long" in said and "filesystem" not in said, said)
+    refused(["deep.xml", "deep in each other"], deck('<ParameterList name="Tanktread">' * 20000 + "</ParameterList>" * 20000, "deep.xml"))
     refused(["deep.yaml", "deep in each other"], deck("Tanktread: " + "{a: " * 100000, "deep.yaml"))
+    refused(["broken.xml", "not XML"], deck("<ParameterList", "broken.xml"))
     refused(["overlay.yaml", "not YAML"], deck(GOOD), deck("What else\n", "overlay.yaml"))
     if os.geteuid() != 0:
         deck(GOOD, "locked.yaml").chmod(0)

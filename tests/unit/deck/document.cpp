@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <Teuchos_ParameterList.hpp>
+#include <Teuchos_XMLParameterListCoreHelpers.hpp>
 
 #include "options.hpp"
 
@@ -123,6 +124,25 @@ TEST(Expectations, BindWhatTheyWereStatedFor) {
   Document document = read({base}, {}, {}, "--no-expect");
   document.declare(all);
   EXPECT_EQ(excuses(all.expect.all), (Excuses{"--no-expect", "--no-expect"}));
+}
+
+TEST(Xml, IsReadByExtension) {
+  const Folder folder;
+  const auto file =
+      folder.file("deck.xml",
+                  "<ParameterList name=\"Tanktread\"><ParameterList name=\"Kinds\">\n"
+                  "<Parameter name=\"count\" type=\"int\" value=\"6\"/><Parameter name=\"law\" type=\"string\" value=\"hard\"/>\n"
+                  "<Parameter name=\"center\" type=\"Array(double)\" value=\"{1, 2, 3}\"/></ParameterList></ParameterList>\n");
+  const Sample s = sample({file});
+  EXPECT_EQ(s.kinds.count, 6);
+  EXPECT_EQ(s.kinds.law, "hard");
+  EXPECT_EQ(s.kinds.center[1], 2.0);
+  EXPECT_EQ(refused({folder.file("bad.xml", "<ParameterList")}),
+            (folder.path / "bad.xml").string() + " is not XML in the format of parameter lists of Teuchos, a package of Trilinos.");
+  std::string deep;
+  for (int i = 0; i < 20000; ++i) deep += "<ParameterList name=\"Tanktread\">";
+  EXPECT_EQ(refused({folder.file("deep.xml", deep)}),
+            (folder.path / "deep.xml").string() + ": its elements lie more than 100 deep in each other.");
 }
 
 TEST(Files, ThatAreNoDecksAreRefusedInOneSentence) {
