@@ -92,13 +92,32 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   return best;
 }
 
-/// Point of the section curve (the intersection of the surface with the plane x2 = centre_2) in one element, found by sampling.
+/// Length of the last step of Newton's method in local coordinates. The error after this step is of the order of its square.
+constexpr double converged = 1e-6;
+
+/// Point of the section curve (the intersection of the surface with the plane x2 = centre_2) in one element.
 struct Crossing {
   Vec2 at;
   double distance;
 };
 
-/// Finds the intersections of the plane x2 = centre_2 with the lines of a sampling grid, by linear interpolation.
+/// Moves a sampled point onto the section curve y2 = 0 along the gradient of y2, and returns it with its distance from the centre.
+std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    const Jet j = jet(patch, at[0], at[1]);
+    const Vec2 slope(j.s[1], j.t[1]);
+    const Vec2 step = -(j.x[1] - centre[1]) / slope.squaredNorm() * slope;
+    if (!(step.norm() < 1)) break;
+    at = (at + step).cwiseMax(0).cwiseMin(1);
+    if (step.norm() < converged) break;
+  }
+  const Vec3 y = place(patch, at[0], at[1]) - centre;
+  if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
+  return Crossing{at, std::hypot(y[0], y[2])};
+}
+
+/// Finds points of the section curve near the intersections of the plane x2 = centre_2 with the chords of a sampling grid. The chords themselves are
+/// too far from the surface: the error of their distance may exceed the difference between the extremes of a nearly circular curve.
 void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
   result.clear();
   double above[cells + 1][cells + 1];
@@ -113,8 +132,7 @@ void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& re
     const double a = above[j][i], b = above[j2][i2];
     if (a * b > 0) return;
     const double share = a == b ? 0.5 : a / (a - b);
-    const Vec3 cut = y[j][i] + share * (y[j2][i2] - y[j][i]);
-    result.push_back({Vec2(i + share * (i2 - i), j + share * (j2 - j)) / cells, std::hypot(cut[0], cut[2])});
+    if (const auto found = on_curve(patch, centre, Vec2(i + share * (i2 - i), j + share * (j2 - j)) / cells)) result.push_back(*found);
   };
   for (int j = 0; j <= cells; ++j) {
     for (int i = 0; i <= cells; ++i) {
@@ -151,7 +169,7 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
     at += step;
     lambda = change[2];
     if ((at.array() < -0.5).any() || (at.array() > 1.5).any()) return {};
-    if (length < 1e-9) break;
+    if (length < converged) break;
   }
   // tolerance, in local coordinates, for points outside the element; at a distance d outside, the polynomials of neighbouring elements differ by
   // O(d^3)
@@ -162,41 +180,31 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
   return std::hypot(y[0], y[2]);
 }
 
-/// Returns the distance from the centre at a sampled point after moving it onto the section curve y2 = 0 along the gradient of y2. Used for
-/// elements without a stationary point.
-std::optional<double> distance_on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
-  for (int iteration = 0; iteration < 10; ++iteration) {
-    const Jet j = jet(patch, at[0], at[1]);
-    const Vec2 slope(j.s[1], j.t[1]);
-    const Vec2 step = -(j.x[1] - centre[1]) / slope.squaredNorm() * slope;
-    if (!(step.norm() < 1)) break;
-    at = (at + step).cwiseMax(0).cwiseMin(1);
-    if (step.norm() < 1e-10) break;
-  }
-  const Vec3 y = place(patch, at[0], at[1]) - centre;
-  if (!(std::abs(y[1]) < 1e-9 * y.norm())) return {};
-  return std::hypot(y[0], y[2]);
-}
-
-/// An element that may contain the extremum of the distance, with its best sampled point on the section curve.
+/// An element that may contain the extremum of the distance, with sampled points of the section curve, the best first.
 struct Candidate {
   int element;
-  Crossing crossing;
+  std::vector<Crossing> crossings;
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance.
+/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the search
+/// from a sampled maximum may converge to a minimum, or leave the element; then it starts from the next sampled point.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
-  for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossing.distance);
+  for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossings.front().distance);
   for (const Candidate& c : candidates) {
+    const double best = c.crossings.front().distance;
     // skips elements that cannot contain the maximum, because sampling errors are smaller than `spread`
-    if (sign * c.crossing.distance + c.spread < sampled) continue;
-    for (const auto& method : {stationary_distance, distance_on_curve})
-      if (const std::optional<double> distance = method(surface[c.element], centre, c.crossing.at)) {
-        found.smallest = std::min(found.smallest, *distance);
-        found.largest = std::max(found.largest, *distance);
-      }
+    if (sign * best + c.spread < sampled) continue;
+    const auto add = [&](double distance) {
+      found.smallest = std::min(found.smallest, distance), found.largest = std::max(found.largest, distance);
+      return sign * (distance - best) >= 0;
+    };
+    add(best);
+    std::ranges::find_if(c.crossings, [&](const Crossing& from) {
+      const std::optional<double> distance = stationary_distance(surface[c.element], centre, from.at);
+      return distance && add(*distance);
+    });
   }
 }
 
@@ -247,19 +255,14 @@ Range section_distances(const Patches& surface, const Vec3& centre) {
     if (low > centre[1] + slack || high < centre[1] - slack) continue;
     crossings(patch, centre, found);
     if (found.empty()) continue;
-    const auto [nearest, farthest] =
-        std::minmax_element(found.begin(), found.end(), [](const Crossing& a, const Crossing& b) { return a.distance < b.distance; });
-    const double spread = farthest->distance - nearest->distance;
-    longest.push_back({e, *farthest, spread});
-    shortest.push_back({e, *nearest, spread});
+    std::ranges::sort(found, {}, &Crossing::distance);
+    const double spread = found.back().distance - found.front().distance;
+    shortest.push_back({e, found, spread});
+    longest.push_back({e, {found.rbegin(), found.rend()}, spread});
   }
-  Range range;  // extended at both ends by all distances found, because on a nearly circular section curve the search from a sampled minimum may
-                // converge to a maximum
+  Range range;
   add_distances(surface, centre, shortest, -1, range);
   add_distances(surface, centre, longest, 1, range);
-  if (range.smallest <= range.largest) return range;
-  for (const Candidate& c : shortest) range.smallest = std::min(range.smallest, c.crossing.distance);
-  for (const Candidate& c : longest) range.largest = std::max(range.largest, c.crossing.distance);
   return range;
 }
 

@@ -18,7 +18,7 @@ import shutil
 
 from accuracy import DEMANDS as REQUESTS
 from accuracy import TOLERANCES
-from package import SIDE, answer, command_line, expect, numpy, scenes_of, studies, table, tanktread, yaml
+from package import SIDE, answer, command_line, numpy, scenes_of, studies, table, tanktread, yaml
 from tanktread.figures.accuracy import largest, values
 
 SIDES = [3, 4, 5, 6, 8, 10, 12]
@@ -117,9 +117,11 @@ class Scene:
         self.run(["--resume", self.directory], {
             "Accuracy/requests": f"{self.series[0].split('@')[0]}=1e-14",
             "Accuracy/levels": min(level + 3, max(level + 2, 7)), "Accuracy/wall-clock limit": 5 * self.limit})
-        finer = [k for k in (level + 2, level + 1) if (self.directory / f"level_{k}/summary.yaml").exists()]
-        expect(finer, "the reference did not come to its end")
-        return tanktread.Run(self.directory / f"level_{finer[0]}")
+        for k in (level + 2, level + 1):
+            summary = self.directory / f"level_{k}/summary.yaml"
+            if summary.exists() and is_reference(found := tanktread.Run(summary.parent)):
+                return found
+        raise tanktread.Mistake("no finer level came to its end without wrinkles")
 
     def cheapest(self, request, reference):
         """Returns the processor seconds of the cheapest single run that meets the request; NaN if there is none."""
@@ -134,6 +136,11 @@ class Scene:
                     best = outcome.processor_seconds
                     break
         return best if numpy.isfinite(best) else numpy.nan
+
+
+def is_reference(run):
+    """Returns whether a run came to its end and has no wrinkles that its mesh does not represent."""
+    return run.summary["status"] in ("done", "steady", "past") and "have grown" not in str(run.summary.get("warnings"))
 
 
 def report(rows):
