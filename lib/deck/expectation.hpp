@@ -34,7 +34,7 @@ struct Expectations {
 /// Throws UserError if the series of a binding expectation is not among `names`; the message suggests the closest name.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// Returns a sentence for each binding expectation with a time after `end`, because a run that ends there cannot meet it.
+/// Returns a sentence for each expectation with a time after `end` that fails the run if it is missed. A run that ends at `end` cannot meet it.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
 /// Result of the comparison of one expectation with the results.

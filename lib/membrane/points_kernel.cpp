@@ -122,8 +122,9 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
   });
 }
 
-// If the metric changes by e, the invariants change by dI1 = 2 G.e, dI2 = 2 K.e with G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The
-// stress is S = 2 area (Psi_1 G + Psi_2 K), with Psi_1 and Psi_2 the derivatives of the energy with respect to I1 and I2.
+// If the strain changes by e_ab (half the change of the metric), the invariants change by dI1 = 2 G.e and dI2 = 2 K.e, with e = (e11, 2 e12, e22),
+// G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The stress is S = 2 area (Psi_1 G + Psi_2 K), with Psi_1 and Psi_2 the derivatives of
+// the energy with respect to I1 and I2.
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* tangents, TangentPoint* points) {
   const Register* const a = registers(tangents);
   auto* const tangent = reinterpret_cast<TangentPointOf<Register>*>(points);

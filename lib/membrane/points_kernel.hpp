@@ -48,7 +48,7 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
 /// Stores the moduli of the viscous stress (3.10) in place of the elastic moduli, and zero stress. apply() then computes the viscous p_a = J tau^ab
-/// a_b from the velocity gradients.
+/// a_b from the velocity gradients, where J is the current area that the Gauss point represents.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
 /// Computes p = (d^2E/da^2) u, where a are the tangents x_,s and x_,t of the shape. u: derivatives u_,s and u_,t of a displacement. u and p have the

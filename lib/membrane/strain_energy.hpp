@@ -60,8 +60,8 @@ class StrainEnergy {
     return psi;
   }
 
-  double shear_modulus() const { return shear_modulus_; }  ///< shear modulus at small strains, in the unit of the energy in the text
-  double area_modulus() const { return area_modulus_; }    ///< area modulus at small strains, in the unit of the energy in the text
+  double shear_modulus() const { return shear_modulus_; }  ///< shear modulus at small strains, in the unit of the user's energy expression
+  double area_modulus() const { return area_modulus_; }    ///< area modulus at small strains, in the unit of the user's energy expression
 
  private:
   friend class ExpressionParser;

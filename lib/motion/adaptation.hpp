@@ -31,7 +31,7 @@ struct AdaptationOptions {
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
-  /// longest element next to a film of the given width, divided by sqrt(width x R_C); set if there are films
+  /// largest allowed length of an element next to a film, divided by sqrt(film width x R_C); set if there are films
   std::optional<double> film_resolution;
   static constexpr double default_film_resolution = 0.7;   ///< film_resolution if there are films; 0.5 for several rigid bodies
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined

@@ -44,8 +44,8 @@ class ExtendedMesh {
   /// Finds the first vertex with an index above `cursor` (cyclically) at which two extensions cross, and returns their T-junctions. Sets `cursor` to
   /// this vertex.
   std::pair<TJunction, TJunction> crossing(int& cursor) const;
-  /// Returns the T-junctions whose extensions could be lengthened to contain the first missing edge. They lie on the line of this edge, at most one
-  /// in each direction.
+  /// Returns the T-junctions whose extensions could be lengthened to contain the first missing edge (see keep_extensions). These T-junctions lie on
+  /// the line of this edge, at most one in each direction.
   std::vector<TJunction> around_missing() const;
   /// Returns pairs of T-junctions that point at each other and whose extensions overlap, at most `most` pairs, in the order of vertices. Each
   /// overlap is listed twice, once from each side.

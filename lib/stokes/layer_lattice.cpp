@@ -56,8 +56,8 @@ std::vector<Vec3> Layer::far_targets(const Targets& targets, std::span<const int
   return at;
 }
 
-/// Subtracts the surfaces themselves from the far sum at targets to which only images contribute. The surfaces cannot be left out of the far sum
-/// itself, because nodes are moved into the cell one by one, so that the nodes of one surface may belong to different images.
+/// Subtracts the contribution of the surfaces from the far sum at targets to which only images contribute. The far sum cannot omit the surfaces,
+/// because each node is wrapped into the cell separately, so that the wrapped nodes of one surface may belong to different images.
 void Layer::subtract_itself(const Targets& targets, Net& u) {
   const auto clock = phases_.time("far");
   std::vector<int> rows;

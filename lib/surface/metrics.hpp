@@ -17,7 +17,7 @@ struct MidLine {
   double length = 0, traction = 0, velocity = 0, curvature = 0;
 };
 
-/// The two mid-lines of one element of the T-mesh.
+/// Lengths of the two mid-lines of one element of the T-mesh, and variations of fields along them.
 struct ElementMetrics {
   std::array<MidLine, 2> along;  ///< s, t
 

@@ -21,7 +21,8 @@ void MeshOptions::declare(deck::Section& section) {
       "mesh", mesh, deck::Choice{"cube", "polar"},
       "mesh of the particle's surface. `cube`: a cube with n x n elements on each side, n = Surface/elements per side, mapped to the "
       "shape; 6n^2 + 2 control points; the eight corners are extraordinary points. `polar`: a grid from pole to pole, with m = "
-      "Surface/azimuthal elements around the pole axis and r = Surface/meridional elements from pole to pole; (r + 1)m + 2 control points");
+      "Surface/azimuthal elements around the pole axis and r = Surface/meridional elements from pole to pole; (r + 1)m + 2 control points; "
+      "elements are narrow near the poles");
   if (polar()) {
     azimuthal_elements = 32, meridional_elements = 16, pole_axis = "x3", poles = "bezier transform";
   } else {

@@ -6,7 +6,7 @@ namespace tanktread::surface {
 namespace INSTRUCTIONS {
 namespace {
 
-/// Computes columns first .. first + width - 1 of the three sums.
+/// Computes columns first .. first + width - 1 of the result of three_sums().
 template <int width>
 void add_columns(int first, int n, int n_rows, const double* rows, const double* factors, double* out) {
   constexpr int registers = width / lanes;

@@ -105,8 +105,8 @@ Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net
   return moments.ldlt().solve(across);
 }
 
-/// State of a drop: at its control points the positions x, b = dV/dx and the fluid velocity v; at its collocation sites the positions, normals and
-/// velocities.
+/// State of a drop: at its control points the positions x, the volume gradient b = dV/dx and the fluid velocity v; at its collocation sites the
+/// positions, normals and velocities.
 struct Moving {
   Net x, b, v;
   Net places, normals, velocities;

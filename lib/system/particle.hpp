@@ -57,10 +57,12 @@ stokes::Measure measure(std::span<const Particle> particles);
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
-/// Returns the net whose area defines the loads, force per area. The rows of a particle are rows of `x` or `unstressed`, depending on its measure.
+/// Returns the net to whose area the loads (force per area) refer. If the measure of a particle is the current area, its rows are rows of `x`,
+/// otherwise rows of `unstressed`.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
-/// Returns the factor of the particle's double layer: 1 - lambda; for a rigid body -1 if its density is w of (2.23), or 0 if its traction is unknown.
+/// Returns the factor of the particle's double layer: 1 - lambda for a deformable particle. For a rigid body: -1 if the unknown is the double-layer
+/// density w (2.23), 0 if the unknown is the traction (2.40).
 double viscosity_contrast(const Particle& particle);
 
 /// Returns the viscosity contrast of each control point of all particles.

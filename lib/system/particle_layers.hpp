@@ -74,7 +74,7 @@ class ParticleLayers {
   /// Sets the surface x for apply(), and assembles the rows of the layers if the options ask for it. `single`: whether apply() will need A.
   void assemble(const Net& x, bool single);
 
-  /// Returns D v - (1/mu) A f on the surface x of assemble(). An empty f is treated as zero.
+  /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface that assemble() set. An empty f is treated as zero.
   Net apply(const Net& x, const Net& v, const Net& f);
 
   /// Returns the rows of D at these collocation sites on every rank, on the surface of assemble(). Each row is provided by the rank that owns its

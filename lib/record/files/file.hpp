@@ -57,7 +57,7 @@ std::filesystem::path set_aside(const std::filesystem::path& path);
 void check_vacant(const std::filesystem::path& directory);
 
 /// Prepares `directory` for a run: creates it, and removes the results of an earlier run, the runs of an accuracy ladder (lib/accuracy), and
-/// unfinished files (only names that a run writes). Throws UserError if that fails.
+/// unfinished files. Removes only files with names that a run writes. Throws UserError if that fails.
 void start_directory(const std::filesystem::path& directory);
 
 /// Removes the results in `directory`, but keeps the runs of an accuracy ladder (lib/accuracy: one deck at increasing resolution). Throws UserError

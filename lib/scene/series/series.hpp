@@ -41,7 +41,8 @@ Columns columns(const Scene& scene);
 /// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).
 Columns run_columns(const Scene& scene, bool every = false);
 
-/// Returns the columns of one particle of a system; their names do not contain the name of the particle. `every`: as in run_columns.
+/// Returns the columns of one particle of a system; their names do not contain the name of the particle. If `every`, also returns the columns that
+/// this particle does not have, for the manual.
 Columns particle_columns(const Scene& one, bool every = false);
 
 /// Add the columns of registered series: per particle, or of the run.

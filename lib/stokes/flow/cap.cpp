@@ -27,7 +27,7 @@ std::vector<double> breaks(const surface::Outline& outline, int side) {
 /// Returns the outward normal of the outline times dl/du, l the arc length and u the parameter.
 Vec2 weighted_normal(const surface::PlaneJet& at) { return {at.d[1], -at.d[0]}; }
 
-/// Returns the integrands of (2.13), rho.nu / r and -h nu / r, per unit of the curve parameter u.
+/// Returns the integrands of (2.13), rho.nu / r and -h nu / r (symbols: see Cap), per unit of the curve parameter u. p: position in the plane.
 Vec3 integrand(const surface::PlaneJet& at, const Vec2& p, double h) {
   const Vec2 rho = at.x - p, nu = weighted_normal(at);
   const double r = std::sqrt(rho.squaredNorm() + h * h);

@@ -15,7 +15,7 @@
 
 namespace tanktread::stokes {
 
-/// Near-singular quadrature rules by tolerance. They depend on the current shape only, not on earlier ones.
+/// Selects near-singular quadrature rules that reach a tolerance. The rules depend on the current shape only, not on earlier shapes.
 class NearField {
  public:
   /// `tolerance`: permitted error divided by int dG / r over the closed surface that contains the panel. This integral is estimated as sqrt(4 pi A),

@@ -50,7 +50,8 @@ class ChannelFlow : public stokes::DuctFlow {
   const surface::Channel& channel() const { return *channel_; }
   const std::shared_ptr<const surface::TubeWall>& surface() const { return surface_; }
 
-  /// Returns the wall operator, which is constructed at the first call. Its exchanges are timed in `phases` if given. Collective.
+  /// Returns the wall operator, which is constructed at the first call. If `phases` is given at the first call, it records the time of the operator's
+  /// communication between ranks. Collective.
   std::shared_ptr<Wall> wall(Phases* phases = nullptr) const;
 
   /// Returns the wall operator for fields with the symmetries of a particle inside. All later fields must have these symmetries.

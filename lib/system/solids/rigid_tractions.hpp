@@ -87,8 +87,8 @@ class RigidTractions {
   /// and without corrections. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
-  /// Returns the collocation-error correction of the pressure drop (2.7) for a force density f on freely moving bodies at the net x, with the control
-  /// values v of the bodies' velocity. `flow` must be a duct flow. If `by_work` is false, forces or torques act on the bodies, and only the
+  /// Returns the correction of the pressure drop (2.7) for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:
+  /// control values of the bodies' velocity. `flow`: a duct flow. `by_work`: false if forces or torques act on the bodies; then only the
   /// interpolation error of v_inf is corrected. All particles must be bodies. Collective.
   double lacking_pressure(const Net& x, const Net& f, const Net& v, const stokes::AmbientFlow& flow, bool by_work);
 

@@ -27,7 +27,7 @@ struct BetweenSites;
 struct TubeParameters {
   double viscosity = 1;              ///< mu of the outer fluid
   double viscosity_ratio = 1;        ///< lambda, if it is equal for all particles
-  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; without points if there is none
+  surface::Symmetry symmetry;        ///< symmetry of the channel, the particle and all fields; Symmetry() if there is none
   bool holds_pressure_drop = false;  ///< true if the pressure drop of the duct flow is prescribed, not its flow rate
   quadrature::Options quadrature;
   membrane::DirectSolverOptions direct;

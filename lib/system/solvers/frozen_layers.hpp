@@ -15,12 +15,12 @@ namespace tanktread::coupling {
 /// on a lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
 class FrozenLayers {
  public:
-  /// `layers`: the layers to be assembled, if their targets are the collocation sites; otherwise this object has its own layers. `mass`: mass matrix
-  /// of all particles. References must outlive this object.
+  /// `layers`: the layers at `targets`. If `targets` are the collocation sites, these layers are assembled. Otherwise this object creates layers at
+  /// the collocation sites and assembles them. `mass`: mass matrix of all particles. References must outlive this object.
   FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
                const membrane::MassMatrix& mass, ParticleLayers& layers);
 
-  /// Assembles the layers at the shape `at`. `x`: the same shape, on a lattice with the particles moved into the cell.
+  /// Assembles the layers at the shape `at`. `x`: the same shape; if there is a lattice, each particle in `x` has been moved into the cell.
   void assemble(const Net& at, const Net& x);
 
   /// Computes the rotations of the particles from the assembled shape to x, if the layers are assembled.

@@ -35,7 +35,7 @@ class NodalOperator {
     Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
     Eigen::VectorXd areas;               ///< current area of each control point; C is near the target x_i if |x_C - x_i| < reach
                                          ///< sqrt(area_C)
-    surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; without points if there is no symmetry
+    surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; Symmetry() if there is none
   };
 
   /// Function that computes the 3 x 3 blocks A_iC of the single layer for control points C near target i (Layer::assemble).

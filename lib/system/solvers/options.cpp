@@ -32,11 +32,12 @@ void IterativeOptions::declare(deck::Section& section) {
                   "parameters that are passed unchanged to the iterative solver in Belos (a package of Trilinos) of the linear system "
                   "after which the enclosing section is named, instead of Solvers/Belos");
   section.key("preconditioner", preconditioner, deck::Choice{"own", "none", "neumann", "recycled"},
-              "preconditioner of the iterative solver for the linear system after which the enclosing section is named. `own`: the one "
-              "that the program has for this system (for several rigid bodies: inverses of isolated bodies and of films between them; in "
-              "a tube: see Solvers/tube), or none if it has none. `none`: no preconditioner. `neumann`: 2I - A for the scaled matrix A, "
-              "one more product with A per application. `recycled`: exact for directions whose products are known from earlier solves, "
-              "and `own` for the remainder");
+              "preconditioner of the iterative solver for the linear system after which the enclosing section is named; change it if "
+              "solves take many iterations. `own`: the program's preconditioner for this system (for several rigid bodies: inverses of "
+              "isolated bodies and of films between them; in a tube: see Solvers/tube); no preconditioner if the program has none. `none`: "
+              "no preconditioner. `neumann`: 2I - A, an approximate inverse of the scaled matrix A; takes one more product with A per "
+              "application. `recycled`: exact for directions whose products with A are known from earlier solves, and `own` for the "
+              "remainder");
 }
 
 IterativeOptions SolverOptions::of(IterativeOptions system) const {
