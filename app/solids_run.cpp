@@ -25,14 +25,13 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   coupling::Solids& all = *around.solids;
   clock.reset();
   stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
-  stokes::AmbientFlow ambient(scene.flow);
-  ambient.at(0, 0);
+  const stokes::AmbientFlow ambient(scene.flow);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
   const Vec3 carried = coupling::carried(around, flow);
   Columns row;
   ProgressRow{.wall_seconds = ranks.seconds_since(start)}.add_columns(scene, row);
   solids_row(scene, around, ambient, flow, Vec3::Zero(), carried).add_columns(scene, row);
-  DomainRow now{.cell = all.cell().vectors(), .pressure_gradient = ambient.change() * around.driving_gradient};
+  DomainRow now{.cell = all.cell().vectors(), .pressure_gradient = around.driving_gradient};
   now.add_columns(scene, row);
   finish(row);
 

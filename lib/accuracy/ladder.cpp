@@ -155,13 +155,15 @@ class Ladder {
   }
 
   /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if the run ended or failed. A level that its scene does not allow counts as failed if a coarser level is finished.
+  /// and can be resumed, or 0 if the run ended or failed. A new level that its scene does not allow counts as failed if a coarser level is finished.
   int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
+    resuming_ = false;
     const std::string deck = program_.deck(settings(task_.values, level));
     std::string failure;  // of an earlier run of this deck, on the first rank
     const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck, failure))}; });
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
+    resuming_ = start == Start::resume;
     if (start == Start::failed) {
       fail(name, failure + " (found before; without " + failure_file + " it is searched for again)");
       return 0;
@@ -188,7 +190,7 @@ class Ladder {
     });
     return 0;
   } catch (const UserError& error) {
-    if (count_ == 0) throw;
+    if (count_ == 0 || resuming_) throw;
     fail(name, error.what());
     return 0;
   }
@@ -312,6 +314,7 @@ class Ladder {
   double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs also count those of earlier parts
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
+  bool resuming_ = false;                           // whether the latest run resumes an earlier one
   std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it
                                                     // failed, otherwise empty
 };

@@ -164,7 +164,8 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   }
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
   const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
-  found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2;
+  found.vanishes = request.relative && !tiny && noise.size() > 1 && magnitude(whole) < 0.1 * scale &&
+                   std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2;
   if (found.vanishes) found.estimate.untrusted = "the series is not larger than its differences between levels: request an absolute accuracy";
   if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
   found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;

@@ -111,6 +111,8 @@ void DomainOptions::reject(const Scene& scene, Rejections& to) const {
           "the flow deforms the periodic cell of the Domain, so that nothing is steady");
   to.pair(scene.quadrature.rule == "desingularised", "Domain", "Quadrature/rule `desingularised`",
           "its identities hold in unbounded fluid only; give `adaptive` or `fixed`");
+  to.pair(scene.flow.history && scene.only_solids, "Flow/history", "Particle/shape `cylinder` without other particles",
+          "nothing moves, so that one steady problem is solved");
   to.pair(directions() < 3 && !scene.wall.solid && (told || weight || scene.particle.force),
           {"Domain/periodic `" + periodic + "`", "Domain/periodic of one or two directions"},
           {told     ? scene.particle.choice()

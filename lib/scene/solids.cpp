@@ -124,7 +124,7 @@ void SolidsRow::add_columns(const Scene& scene, Columns& to) const {
          "length^2",
          "permeability, if Flow/pressure gradient is given: outer viscosity times the mean velocity opposite to this gradient, divided "
          "by its magnitude",
-         {},
+         "the pressure gradient is zero at this time",
          both});
 }
 
@@ -165,7 +165,8 @@ SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const s
     row.post_forces.push_back(-forces[of.planes.size() + k] + slope * section * length * along);
     row.mean_velocity += slope * section * post.radius * post.radius / (8 * scene.flow.viscosity) * length / volume * along;
   }
-  if (gradient.norm() > 0) row.permeability = -scene.flow.viscosity * row.mean_velocity.dot(gradient) / gradient.squaredNorm();
+  if (gradient.norm() > 1e-12 * scene.flow.pressure_gradient.value_or(Vec3::Zero()).norm())
+    row.permeability = -scene.flow.viscosity * row.mean_velocity.dot(gradient) / gradient.squaredNorm();
   return row;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Plates and posts of a scene: their surfaces, and their data in the results.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,12 +28,13 @@ struct SolidsRow {
   Vec3 wall_force = Vec3::Zero(), second_wall_force = Vec3::Zero();  ///< forces of the fluid on the plates
   std::vector<Vec3> post_forces;                                     ///< forces of the fluid on the posts
   Vec3 mean_velocity = Vec3::Zero();  ///< mean velocity over the cell, particles and posts included
-  double permeability = 0;
+  double permeability = std::numeric_limits<double>::quiet_NaN();
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on the fluid. `carried`: integral
-/// over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only if there are two plates.
+/// Returns the data of plates and posts for the flow `flow` around them in the ambient flow `ambient`. `particle_force`: force of the particles on
+/// the fluid. `carried`: integral over the cell of the velocity that solids and particles add to the ambient flow (SolidResponse::carried); used only if
+/// there are two plates.
 SolidsRow solids_row(const Scene& scene, const coupling::SolidScene& of, const stokes::AmbientFlow& ambient, const coupling::Solids::Flow& flow,
                      const Vec3& particle_force, const Vec3& carried);
 

@@ -25,10 +25,10 @@ void WallOptions::declare(deck::Section& section) {
               "a Domain that is periodic along both directions in the plates");
   section.key("velocity", velocity, deck::any(), "length/time",
               "velocity of the wall, or of the first of two walls, in a periodic Domain: three numbers, tangential to the wall. If not "
-              "given, the wall moves with the flow of Flow/type");
+              "given, the wall moves with the flow of Flow/type. Flow/history changes it in time");
   section.key("second velocity", second_velocity, deck::any(), "length/time",
               "velocity of the second wall, which Wall/distance adds: three numbers, tangential to the wall. If not given, the wall moves "
-              "with the flow of Flow/type");
+              "with the flow of Flow/type. Flow/history changes it in time");
   section.key("elements per period", elements_per_period, deck::between(4, 200), "1",
               "number of elements of each plane wall along the longer of its two periods; along the shorter one, elements are about as "
               "long. If not given, elements are as long as a twelfth of Wall/distance (with a single wall, of R_C, the radius of the "

@@ -187,8 +187,8 @@ struct Candidate {
   double spread;  ///< largest minus smallest sampled distance on the element
 };
 
-/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the search
-/// from a sampled maximum may converge to a minimum, or leave the element; then it starts from the next sampled point.
+/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the
+/// search from a sampled maximum may converge to a minimum, or leave the element; then it starts from the next sampled point.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossings.front().distance);
@@ -198,13 +198,11 @@ void add_distances(const Patches& surface, const Vec3& centre, const std::vector
     if (sign * best + c.spread < sampled) continue;
     const auto add = [&](double distance) {
       found.smallest = std::min(found.smallest, distance), found.largest = std::max(found.largest, distance);
-      return sign * (distance - best) >= 0;
+      return sign * (distance - best) >= -1e-12 * best;
     };
     add(best);
-    std::ranges::find_if(c.crossings, [&](const Crossing& from) {
-      const std::optional<double> distance = stationary_distance(surface[c.element], centre, from.at);
-      return distance && add(*distance);
-    });
+    for (const Crossing& from : c.crossings)
+      if (const std::optional<double> distance = stationary_distance(surface[c.element], centre, from.at); distance && add(*distance)) break;
   }
 }
 

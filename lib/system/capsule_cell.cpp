@@ -14,7 +14,8 @@ bool Capsule::deform_cell(double time) {
     lattice_.cell = tube_->cell();
     return false;
   }
-  const stokes::PeriodicCell now(flow_.deformation(time) * parameters_.cell->vectors(), parameters_.cell->n());
+  const Mat3 deformation = lattice_.solids ? Mat3(Mat3::Identity()) : flow_.deformation(time);  // no flow deforms a cell with walls or posts
+  const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
   if (lattice_.cell && *lattice_.cell == now) return false;
   lattice_.cell = now;
   layers_.repeat(now);

@@ -193,6 +193,40 @@ Tanktread:
     refused(["Steady", "posts"], deck(text, "steady.yaml"), "--set", "Steady/tolerance=1e-6")
 
 
+def a_flow_that_changes_in_time_is_the_flow_of_that_time():
+    """Amplitude -1 reverses velocities and pressure gradient; an angle of 90 degrees about the normal of the plates turns them."""
+    names = ["velocity_x1", "velocity_x2", "wall_force_x1", "wall_force_x2", "mean_velocity_x1", "permeability", "flow_power", "power_residual"]
+    words = ("gradient: [-1.0, 0.3, 0.0]", "velocity: [0.2, 0.0, 0.0], second velocity: [1.0, 0.5, 0.0]")
+
+    def same(history, gradient, velocities):
+        there = CAPSULE
+        for word, by in zip(words, (gradient, velocities)):
+            there = there.replace(word, by)
+        here = CAPSULE.replace(words[0] + "}", f"{words[0]}, history: {{times: [0.0, 0.01], {history}}}}}")
+        run(deck(here), "--output", "here", "--quiet")
+        run(deck(there), "--output", "there", "--quiet")
+        for name in names:
+            off = abs(series("here", name) - series("there", name)).max()
+            check(off < 1e-10 * max(1, abs(series("there", name)).max()), f"{name}: {off}")
+
+    same("amplitudes: [-1.0, -1.0]", "gradient: [1.0, -0.3, 0.0]", "velocity: [-0.2, 0.0, 0.0], second velocity: [-1.0, -0.5, 0.0]")
+    same("angles: [90.0, 90.0], axis: x3", "gradient: [-0.3, -1.0, 0.0]", "velocity: [0.0, 0.2, 0.0], second velocity: [-0.5, 1.0, 0.0]")
+
+
+def a_flow_past_a_post_changes_in_time():
+    """The mean velocity and the force on the post follow the amplitude of the pressure gradient, and the permeability is undefined without it."""
+    text = POST.replace("  Particle: {shape: cylinder", "  Particles:\n    post: {shape: cylinder").replace(
+        "\n  Surface: {azimuthal elements: 16, axial elements: 4}\n",
+        ", Surface: {azimuthal elements: 16, axial elements: 4}}\n    sphere: {motion: free, radius: 0.1, center: [0.5, 0.5, 0.25], "
+        "Surface: {elements per side: 3}}\n").replace("radius: 0.17841241161527712}", "radius: 0.17841241161527712")
+    text = text.replace("[-1.0, 0.0, 0.0]}", "[-1.0, 0.0, 0.0], history: {times: [0.0, 0.02], amplitudes: [1.0, 0.0]}}")
+    run(deck(text + "  Time: {scheme: bs3, fixed step: 0.01, final time: 0.02}\n"), "--output", "post", "--quiet")
+    mean, force = series("post", "mean_velocity_x1"), series("post", "post/post_force_x1")
+    for name, one in (("mean velocity", mean), ("force", force)):
+        check(abs(one / one[0] - [1, 0.5, 0]).max() < 1e-3, f"{name}: {one}")  # the sphere moves by little
+    check(numpy.isnan(series("post", "permeability")[-1]), series("post", "permeability"))
+
+
 def a_drop_between_plates_is_steady_midway():
     """From two places off the middle, the search finds the same shape at the same height."""
     text = """

@@ -78,7 +78,11 @@ class Pairs {
     const Placed &first = *placed_[p], &second = moved ? *moved : *placed_[q];
     const surface::ClosestPoints found = surface::closest_points(first.boxes, second.boxes, tolerance(), reach);
     if (!(found.gap < reach)) return found;
-    return surface::nearest_points(first.patches[found.sites[0].element], second.patches[found.sites[1].element], found);
+    const auto& [a, b] = found.sites;
+    const surface::ClosestPoints refined = surface::nearest_points(first.patches[a.element], second.patches[b.element], found);
+    constexpr double slack = 1e-2;  // in local coordinates; farther outside of an element, its polynomial is not the surface
+    const auto inside = [](const spline::Site& at) { return std::max(std::abs(at.s - 0.5), std::abs(at.t - 0.5)) <= 0.5 + slack; };
+    return inside(refined.sites[0]) && inside(refined.sites[1]) ? refined : found;
   }
 
  private:
@@ -103,38 +107,58 @@ class Pairs {
   double radius_ = 0;  // largest R_C
 };
 
-/// A pair of particles, one of them shifted by the lattice vector `beyond`, with its gap.
-struct Candidate : Nearest {
-  Vec3 beyond = Vec3::Zero();
+/// Finds the smallest gap among pairs that ranks share.
+class NearestPair {
+ public:
+  /// Searches the pairs k for which mine(k) is true.
+  template <class Mine>
+  NearestPair(const Pairs& pairs, const Mine& mine) : pairs_(pairs) {
+    const double tolerance = pairs.tolerance();
+    for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < gap_ + tolerance; ++k) {
+      if (!mine(k)) continue;
+      const double reach = gap_ + 2 * tolerance, gap = pairs.closest(pairs.all()[k], reach).gap;
+      if (gap >= reach) continue;
+      found_.emplace_back(gap, k);
+      gap_ = std::min(gap_, gap);
+    }
+  }
 
-  /// Returns true if this pair is to be reported rather than the other one. Of equal gaps, which symmetric scenes have, that of the particles named
-  /// first is, so that rounding does not decide.
-  bool precedes(const Candidate& other, double tolerance) const {
-    if (std::abs(gap - other.gap) > tolerance || !std::isfinite(other.gap)) return gap < other.gap;
-    const auto key = [](const Candidate& of) { return std::array{double(of.first), double(of.second), of.beyond[0], of.beyond[1], of.beyond[2]}; };
-    const auto mine = key(*this), others = key(other);
-    for (std::size_t k = 0; k < mine.size(); ++k)
-      if (std::abs(mine[k] - others[k]) > tolerance) return mine[k] < others[k];
+  double gap() const { return gap_; }  ///< smallest gap; infinite if there are no pairs
+
+  /// Returns the index of the pair that is reported if the smallest gap of all ranks is `least`; the number of pairs if no pair has this gap. Of
+  /// equal gaps, which symmetric scenes have, that of the particles named first is reported, so that rounding does not decide.
+  std::size_t with_gap(double least) const {
+    std::size_t first = pairs_.all().size();
+    for (const auto& [gap, k] : found_)
+      if (gap <= least + pairs_.tolerance() && precedes(k, first)) first = k;
+    return first;
+  }
+
+  /// Returns whether pair a is reported rather than pair b.
+  bool precedes(std::size_t a, std::size_t b) const {
+    const std::size_t n = pairs_.all().size();
+    if (a == n || b == n) return a < b;
+    const Pair &one = pairs_.all()[a], &other = pairs_.all()[b];
+    if (std::pair(one.first, one.second) != std::pair(other.first, other.second))
+      return std::pair(one.first, one.second) < std::pair(other.first, other.second);
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(one.beyond[c] - other.beyond[c]) > pairs_.tolerance()) return one.beyond[c] < other.beyond[c];
     return false;
   }
-};
 
-/// Returns the pair with the smallest gap among the pairs k for which mine(k) is true.
-template <class Mine>
-Candidate nearest(const Pairs& pairs, const Mine& mine) {
-  Candidate found;
-  for (std::size_t k = 0; k < pairs.all().size() && pairs.all()[k].bound < found.gap + pairs.tolerance(); ++k) {
-    if (!mine(k)) continue;
-    const Pair& pair = pairs.all()[k];
-    const double reach = found.gap + 2 * pairs.tolerance();
-    const surface::ClosestPoints closest = pairs.closest(pair, reach);
-    if (closest.gap >= reach) continue;
-    const Candidate next{{closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2},
-                         pair.beyond};
-    if (next.precedes(found, pairs.tolerance())) found = next;
+  /// Returns the data of a pair.
+  Nearest of(std::size_t k) const {
+    if (k == pairs_.all().size()) return {};
+    const Pair& pair = pairs_.all()[k];
+    const surface::ClosestPoints closest = pairs_.closest(pair, std::numeric_limits<double>::infinity());
+    return {closest.gap, static_cast<int>(pair.first) + 1, static_cast<int>(pair.second) + 1, (closest.first + closest.second) / 2};
   }
-  return found;
-}
+
+ private:
+  const Pairs& pairs_;
+  std::vector<std::pair<double, std::size_t>> found_;  // gaps and indices of pairs that may have the smallest gap
+  double gap_ = std::numeric_limits<double>::infinity();
+};
 
 std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   std::vector<Net> own;
@@ -203,7 +227,9 @@ void check_apart(const std::vector<Member>& members, const std::optional<stokes:
   if (members.size() == 1 && !cell) return;
   std::vector<Net> x;
   for (const Member& member : members) x.push_back(member.body->initial);
-  const Nearest found = nearest(Pairs(members, x, cell), [](std::size_t) { return true; });
+  const Pairs pairs(members, x, cell);
+  const NearestPair nearest(pairs, [](std::size_t) { return true; });
+  const Nearest found = nearest.of(nearest.with_gap(nearest.gap()));
   if (found.gap > 10 * gap_accuracy * members.front().body->radius) return check_not_nested(members, x);
   const auto name = [&](int number) { return members[static_cast<std::size_t>(number) - 1].spoken(); };
   if (found.first == found.second)
@@ -227,15 +253,13 @@ Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const cou
   const std::vector<Net> own = own_nets(members, x);
   const Pairs pairs(members, own, cell);
   const auto mine = [&](std::size_t k) { return static_cast<int>(k % static_cast<std::size_t>(ranks.size())) == ranks.rank(); };
-  const Candidate of_rank = nearest(pairs, mine);
-  const std::array<double, 9> here{std::min(of_rank.gap, std::numeric_limits<double>::max()), double(of_rank.first), double(of_rank.second),
-                                   of_rank.place[0], of_rank.place[1], of_rank.place[2], of_rank.beyond[0], of_rank.beyond[1], of_rank.beyond[2]};
-  Candidate found;
-  for (const auto& [gap, first, second, x1, x2, x3, b1, b2, b3] : ranks.gathered(here)) {
-    const Candidate next{{gap, static_cast<int>(first), static_cast<int>(second), {x1, x2, x3}}, {b1, b2, b3}};
-    if (next.first && next.precedes(found, pairs.tolerance())) found = next;
-  }
-  return found;
+  const NearestPair nearest(pairs, mine);
+  double least = std::numeric_limits<double>::max();
+  for (const auto& [gap] : ranks.gathered(std::array{std::min(nearest.gap(), least)})) least = std::min(least, gap);
+  std::size_t first = pairs.all().size();
+  for (const auto& [pair] : ranks.gathered(std::array{static_cast<double>(nearest.with_gap(least))}))
+    if (const auto k = static_cast<std::size_t>(pair); nearest.precedes(k, first)) first = k;
+  return nearest.of(first);
 }
 
 Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact) {
