@@ -65,7 +65,7 @@ assert s['warnings'] == ['the load: "strong" # it fails']
 }
 
 TEST(Summary, OfNothingIsStillAMapOfItsParts) {
-  EXPECT_EQ(yaml({}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nnumbers: {}\nwarnings: []\n");
+  EXPECT_EQ(yaml(Summary{}), "status: \"done\"\nfinal: {}\nexpect: []\ncounts: {}\nseconds: {}\nplan: {}\nnumbers: {}\nwarnings: []\n");
 }
 
 }  // namespace
