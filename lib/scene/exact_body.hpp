@@ -37,7 +37,8 @@ struct ExactBody {
 /// Returns the motion given by `Particle/velocity` and `Particle/angular velocity`.
 coupling::RigidMotion prescribed_motion(const Scene& scene);
 
-/// Returns the exact solution of a body with prescribed motion. Returns nothing for other shapes, a flow with strain, a tube or a wall.
+/// Returns the exact solution of an ellipsoid with prescribed motion. Returns nothing for other shapes, for a flow that is not affine or has a
+/// nonzero rate of strain, and for a scene with a tube or wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
 /// Errors of the force density f on the fluid (control values) and of the normal n_h of the numerical surface, whose control net is `surface`.

@@ -256,8 +256,9 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
-  std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f, in a single layer times weight_.
-                                                                   // normal_: normal times quadrature weight, area and the factor k_p of (2.2)
+  std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f; in a single layer, f times
+                                                                   // weight_. normal_: normal times quadrature weight, area and the factor k_p of
+                                                                   // (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall

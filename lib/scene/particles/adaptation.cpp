@@ -88,7 +88,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Elements to refine (marks) and elements to merge that the indicator finds on the current mesh.
+/// Elements to refine (marks) and elements to merge on the current mesh, as found by the indicator of mesh adaptation (`Adaptation/indicator`).
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;

@@ -60,9 +60,10 @@ struct WallSolver {
 /// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
 /// recycled from earlier solves (2.24).
 ///
-/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through the wall. In a channel this
-/// leak would be a part of the flow rate, and for a train of particles it would grow with the pressure from one particle to the next. On the wall of
-/// a channel the mean velocity around each collocation point is therefore set to zero instead of the velocity at the point (2.39).
+/// If the velocity vanishes at the collocation points of a wall, the residual velocity between these points has the same sign everywhere, so that
+/// fluid leaks through the wall. In a channel this leak would be a part of the flow rate, and for a train of particles it would grow with the
+/// pressure from one particle to the next. On the wall of a channel the mean velocity around each collocation point is therefore set to zero instead
+/// of the velocity at the point (2.39).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
