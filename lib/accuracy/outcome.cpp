@@ -58,8 +58,8 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, for `estimated`. These are expected_error() of each level, unless level 2 was also
-/// computed with a looser time tolerance (`looser`). The share of time integration in the error is then measured. This share is assumed to decrease
+/// Returns the expected sizes of the errors of the levels, for `estimated`. By default these are expected_error() of each level. If level 2 was also
+/// computed with a looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease
 /// with the time tolerance, and the remaining share like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {

@@ -46,7 +46,7 @@ struct SurfaceErrors {
   double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h plus the constant for which int (p - p_exact)
                         ///< dG = 0
   double normal = 0;    ///< L2 norm of the error n_h - n of the numerical normal, divided by the L2 norm of the exact normal n
-  double constant = 0;  ///< p - f.n_h: constant that is added to the force density along the numerical normal n_h to get the pressure p
+  double constant = 0;  ///< constant c in the numerical pressure p = f.n_h + c, with the force density f and the numerical normal n_h
 };
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact);
 

@@ -89,7 +89,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    // x1 at the Greville points of the control points; with these coordinates, x1 is a linear function of the parameter
+    // Greville abscissa of row i of the control points. With these values of x1, x1 is a linear function of the parameter along the wall.
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];

@@ -108,7 +108,7 @@ class Pairs {
   double radius_ = 0;  // largest R_C
 };
 
-/// Finds the smallest gap among pairs that ranks share.
+/// Search for the smallest gap among the pairs of particles that are assigned to this rank.
 class NearestPair {
  public:
   /// Searches the pairs k for which mine(k) is true.

@@ -1,5 +1,5 @@
 #pragma once
-// Single layer of the rigid bodies among all particles, and its factors.
+// Single layer of the rigid bodies among all particles, and the LU factors of its matrix.
 
 #include <optional>
 #include <span>

@@ -118,8 +118,8 @@ class Wall {
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
-  /// Returns A^-T weights: its product with any right-hand side rhs equals the product of `weights` with solve(rhs). Available only if the operator
-  /// is factored.
+  /// Returns w = A^-T `weights`. For any right-hand side rhs, the inner product of w and rhs equals the inner product of `weights` and solve(rhs).
+  /// Available only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall

@@ -22,7 +22,7 @@ Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 /// Returns the entries of all blocks of a vector, one block after another.
 Eigen::VectorXd numbers_of(const ThyraVector& vector);
 
-/// Returns a vector of this space with the entries `numbers` of the first rank.
+/// Returns a vector of this space, equal on all ranks. Its entries are `numbers` of the first rank.
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers);
 
 /// Linear operator on all blocks, one after another, defined by a function. A zero vector is mapped to zero without calling the function. Every rank

@@ -33,8 +33,8 @@ class NodalOperator {
     Net sites;                          ///< x_B, collocation sites
     Eigen::SparseMatrix<double> values;  ///< R, collocation matrix, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
-    Eigen::VectorXd areas;               ///< current area of each control point. Control point C is near the target x_i if |x_C - x_i| < reach
-                                         ///< sqrt(areas[C])
+    Eigen::VectorXd areas;               ///< current area of each control point. Control point C is near the target x_i if the distance |x_C - x_i|
+                                         ///< is below reach sqrt(areas[C])
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; Symmetry() if there is none
   };
 
