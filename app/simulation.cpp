@@ -377,7 +377,7 @@ class Run {
   std::optional<Pictured> pictured_;  // state of the snapshot that is due at a time within the last step, if any
   surface::Quality quality_;
   Scene first_ = first_deforming(scene_);
-  Warnings warnings_{first_};  // warnings, which use the parameters of the first particle that deforms
+  Warnings warnings_{first_};  // warnings of the run; they use the parameters of the first deformable particle
 };
 
 }  // namespace

@@ -184,7 +184,7 @@ class SteadyRun {
     results_.remesh(system_->particle->body(), system_->particle->bezier());
   }
 
-  /// Returns the system at these parameters. Keeps the systems used latest, with the returned one in front.
+  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front.
   std::shared_ptr<System> system_at(const Parameters& parameters) {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {

@@ -35,7 +35,8 @@ constexpr double round_off = 1e-10;
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
 /// Returns the estimate. `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected size of the error of
-/// each level; it has one entry more than `differences`. `scale`: magnitude for which differences below `round_off` times `scale` are round-off.
+/// each level; it has one entry more than `differences`. `scale`: magnitude of the values; differences below `round_off` times `scale` count as
+/// round-off.
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected);
 
 /// A quantity as a function of time, or of another abscissa. Abscissas ascend.

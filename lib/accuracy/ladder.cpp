@@ -263,8 +263,8 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether finer levels are not expected to help: `obstacle` finds, on both of the two finest levels, that no error can be estimated, or
-  /// all requests that are not met are for series that vanish.
+  /// Returns whether finer levels are not expected to help: either `obstacle` finds a reason why no error can be estimated on each of the two finest
+  /// levels, or every request that is not met is for a series that vanishes (Answer::vanishes).
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};
@@ -311,7 +311,7 @@ class Ladder {
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
-  double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs also count those of earlier parts
+  double seconds_ = 0;                              // wall seconds of all runs, on the first rank; of a finished run, also before it was resumed
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
   bool resuming_ = false;                           // whether the latest run resumes an earlier one

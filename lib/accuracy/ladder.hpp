@@ -15,7 +15,7 @@ namespace tanktread::accuracy {
 
 /// Functions of the program with which one deck is run on finer and finer levels. Both are collective.
 struct Program {
-  /// Returns the effective deck of the scene with these settings `Section/key=value`, without the sections Accuracy and Expect.
+  /// Returns the effective deck with the keys in `settings` (`Section/key=value`) changed, and without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
 
   /// Runs this deck into a directory, or resumes the run there, and stops after `limit` seconds if given. Returns the exit code: 0, or `stopped` if

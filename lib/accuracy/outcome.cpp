@@ -58,9 +58,9 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, for `estimated`: expected_error() of each level. If level 2 was also computed with a
-/// looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease with the time
-/// tolerance, and the remaining share to decrease like expected_error().
+/// Returns the expected sizes of the errors of the levels, for `estimated`. By default these are expected_error() of each level. If level 2 was also
+/// computed with a looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease
+/// with the time tolerance, and the remaining share like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;

@@ -43,7 +43,7 @@ struct Answer {
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
   double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
   bool met = false;
-  bool vanishes = false;  ///< true if a relative request cannot be met, because the series is not larger than its differences between levels
+  bool vanishes = false;  ///< true if a relative request cannot be met: the values of the series are not larger than its differences between levels
   double statistical = std::numeric_limits<double>::quiet_NaN();  ///< statistical error of a time average over several particles, not included in
                                                                   ///< `estimate`; NaN if unknown
 };
@@ -56,9 +56,10 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
 /// which only this part is one level looser. `ratio`: factor by which one level reduces the error of this part.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
-/// Returns why no error of this scene can be estimated from levels, as a clause; empty if it can. The finest level is checked for
-/// - forces of the contact limiter, because they depend on the time step;
-/// - a warning of wrinkles that its mesh does not represent, or of a mesh that has reached its largest size.
+/// Returns the reason, as a clause, why no error of this scene can be estimated from levels; empty if errors can be estimated. Checks the finest
+/// level:
+/// - for forces of the contact limiter, because these forces depend on the time step;
+/// - for warnings that the mesh does not represent wrinkles, or that the mesh has reached its largest size.
 std::string obstacle(const std::vector<Outcome>& levels);
 
 /// Estimated error of a series of the finest level: one value per row.
@@ -68,8 +69,8 @@ struct SeriesError {
   std::string untrusted;       ///< reason why the estimate cannot be trusted; empty if it can
 };
 
-/// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: see
-/// `answer`.
+/// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: result of
+/// level 2 with a looser time tolerance, if it was computed.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 }  // namespace tanktread::accuracy

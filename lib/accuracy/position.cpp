@@ -126,7 +126,7 @@ class Cubes {
   const StoredSurface& surface_;
   std::vector<std::vector<std::size_t>> cells_of_;  // cells that contain a node
   std::map<std::array<long, 3>, std::vector<int>> nodes_;
-  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes: the largest diameter of a cell
+  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes of space: the largest diameter of a cell
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterLis
   }
 }
 
-/// Returns the units of a deck. Returns nothing if the deck has no section Units, or a wrong one, which is an error when the deck is declared.
+/// Returns the units of a deck, or nothing if its section Units is missing or wrong. A wrong section is reported later, when the deck is declared.
 std::optional<Units> units(const Teuchos::ParameterList& deck) try {
   const Teuchos::ParameterList* given = sublist(&deck, "Units");
   if (!given) return {};

@@ -31,10 +31,10 @@ struct Expectations {
   void declare(Section& section);
 };
 
-/// Throws UserError if the series of a binding expectation is not among `names`; the message suggests the closest name.
+/// Throws UserError if the series of an expectation with empty `not_binding` is not among `names`. The message suggests the closest name.
 void check_series(const std::vector<Expectation>& expectations, const std::vector<std::string>& names);
 
-/// Returns a sentence for each expectation with a time after `end` that fails the run if it is missed. A run that ends at `end` cannot meet it.
+/// Returns one sentence per expectation with empty `not_binding` and a time after `end`. A run that ends at `end` cannot meet these expectations.
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end);
 
 /// Result of the comparison of one expectation with the results.

@@ -75,8 +75,8 @@ class Parts<Made(On...)> {
     return chosen;
   }
 
-  /// Returns the parts for which the deck has a section inside the section `name` of `outer`. Declares the section `name` only if parts are
-  /// registered.
+  /// Returns the registered parts that the deck uses: those with a section in the section `name` of `outer`. Declares the section `name` only if
+  /// parts are registered.
   std::vector<Chosen> read(Section& outer, const char* name, const char* meaning) const {
     struct List {
       const Parts& parts;

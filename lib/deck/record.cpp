@@ -46,8 +46,8 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
   return what + "; " + (list.path.empty() ? "its lists are " : list.path + " has ") + alternatives(names) + ".";
 }
 
-/// Appends the messages about all inner sections to `all`. `sentences`: function that returns the messages about one section (mistakes or unknown
-/// keys). If the inner sections can take keys from each other, leaves out a message that differs from an earlier one only by the path.
+/// Appends the messages about all sections inside `list` to `all`. `sentences`: function that returns the messages about one section (mistakes or
+/// unknown keys). If the sections can inherit keys from each other, leaves out a message that differs from an earlier one only by the path.
 template <class Sentences>
 void add_inner(const List& list, const Sentences& sentences, std::vector<std::string>& all) {
   std::set<std::string> told;

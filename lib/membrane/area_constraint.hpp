@@ -29,7 +29,7 @@ class AreaConstraint {
   /// Evaluates, at the shape x, the area condition t of every Gauss point and the scaled gradient D of these conditions, for the operator P (4.25).
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
-  /// Factors the matrix 1 + time D m D' of the operator P (4.25). D is the gradient of the area conditions at the latest place(), m the mobility.
+  /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by place(). m: mobility.
   void factor(double time);
 
   /// Returns P r.

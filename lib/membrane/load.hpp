@@ -48,7 +48,7 @@ class Load {
 
   /// Adds the contributions of these elements to dE/dx (`work`), and to the nets that the global phase needs (`sums`). Each net has the shape (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
-  /// Adds to dE/dx the terms of the global phase (see above), which depend on the sums over all ranks.
+  /// Adds the terms of dE/dx that depend on the sums over all ranks (global phase, explained at Load).
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}
 
   /// Returns whether the membrane stores the energy. An external force stores none.

@@ -14,13 +14,13 @@
 namespace tanktread::membrane {
 namespace {
 
-constexpr std::size_t parts_kept = 3;       // number of sets of elements kept in packed form: all elements, the rank-owned ones, and one more set
+constexpr std::size_t parts_kept = 3;       // number of element sets whose Part is stored: all elements, the rank-owned elements, and one more set
 constexpr double compressed_below = -1e-9;  // tensions below this multiple of the modulus count as compression; tensions closer to 0 may be round-off
 constexpr int max_gauss = max_order * max_order;
 
 }  // namespace
 
-/// Elements of one call of the packed kernels, in packed form, with the unstressed surface at their Gauss points.
+/// A set of elements, sorted into batches for the packed kernels (one element per register lane), with the unstressed surface at the Gauss points.
 struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< the materials of the surface; then, for each area elasticity with its own Gauss rule, a material with only

@@ -32,7 +32,7 @@ class SymmetricSolver {
   /// components with one factorisation takes little more time than for one component.
   std::vector<int> components() const;
 
-  /// Returns the symmetric x with A x = b, shape (N, 3), from the fundamental rows of b.
+  /// Returns the symmetric field x, shape (N, 3), with A x = b. Uses only the rows of b at the fundamental points.
   Net solve(const Net& b) const;
 
   /// Solves for the given components only; the other components of x are zero.

@@ -39,7 +39,7 @@ struct AdaptationOptions {
   int levels = 4;                                          ///< largest number of bisections of an element of the initial mesh in one direction
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
-  double coarsening_margin = 0.7;                          ///< a merged element must stay below this fraction of every limit
+  double coarsening_margin = 0.7;                          ///< merged elements must stay below this fraction of every limit on elements
   double coarsening_tolerance = 1e-4;  ///< largest displacement of the current or the unstressed surface by one coarsening, length
 
   void declare(deck::Section& section);

@@ -38,7 +38,7 @@ struct State {
 /// state was computed by another scheme.
 void forget(State& state);
 
-/// Computes the first slope of a state that has none.
+/// Computes the slope dx/dt at the state, if the state has no slope yet.
 void begin(coupling::Dynamics& dynamics, State& state);
 
 /// If the state is at a kink of the motion (a time of non-smooth change), restarts it: keeps only position, step and frozen operator, and computes

@@ -25,7 +25,7 @@ struct TimeOptions {
   std::optional<double> end_when_past;     ///< the run ends if x1 of the centroids of all particles is larger than this; empty: never
   double iteration_tolerance = 1e-7;       ///< tolerance of the sub-iteration of crank-nicolson (4.1)
   std::string nonlinear_solver = "plain";   ///< for crank-nicolson: plain, anderson, newton-krylov
-  /// step control of crank-nicolson: iterations (4.1) or error (4.10); empty: iterations if the solver is plain, otherwise error
+  /// step control of crank-nicolson: iterations (4.1) or error (4.10). If not set: iterations if `nonlinear_solver` is plain, otherwise error
   std::optional<std::string> step_control;
   bool count_euler_step = true;             ///< true if the Euler step counts as a sub-iteration of crank-nicolson
   double newton_tolerance = 0.2;           ///< allowed error of the quasi-Newton iteration of a stage, divided by `tolerance`

@@ -71,8 +71,8 @@ struct PeriodicReport {
   double rest = 0;  ///< distance between the shape and its image under the return map
 };
 
-/// Returns the shape after three expected periods. After each period the shape is rotated back by the angle `turn` of the options. The result is a
-/// suitable point c of the plane in ReturnMap (Poincare section). Collective.
+/// Returns the shape three times PeriodicOptions::period later, where the shape is rotated back by the angle `turn` of the options after each period.
+/// The result serves as the point c of the plane in ReturnMap (Poincare section). Collective.
 Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
                   const PeriodicOptions& options, Net x);
 

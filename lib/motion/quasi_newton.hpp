@@ -1,5 +1,5 @@
 #pragma once
-// Solution of the stages of implicit schemes: quasi-Newton iteration, its measured error, and acceptance of steps.
+// Solution of the stages of implicit schemes: quasi-Newton iteration, measurement of the iteration error, and acceptance of steps.
 
 #include <span>
 

@@ -57,10 +57,10 @@ class Attempts {
   /// shape relaxes after mesh refinement.) Source: Gustafsson 1994.
   void reject(double part, double error = 0);
 
-  /// Ends the step at y and returns the report. Sets the position and time of the state, and the size of the next step: `factor` times the size of
-  /// this step. If this step was shortened, for example to end at the time `limit`, the next step is at least as long as this step would have been.
-  /// The scheme updates its history and memory itself. The allowed error is the tolerance times `share` (4.31). `error`: error of the step divided by
-  /// the allowed error.
+  /// Ends the step at y and returns the report. Sets the position and time of the state. Sets the size of the next step to `factor` times the size of
+  /// this step. If this step was shortened, for example to end at the time `limit`, the next step is at least as long as this step before it was
+  /// shortened. `error`: error of the step divided by the allowed error, which is the tolerance times `share` (4.31). The scheme updates its history
+  /// and memory itself.
   StepReport accept(const coupling::Dynamics& dynamics, Net y, double error, double factor, double share = 1);
 
   StepReport report;  ///< the scheme counts `iterations`

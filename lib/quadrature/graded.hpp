@@ -9,9 +9,10 @@
 
 namespace tanktread::quadrature {
 
-/// Accuracy of an integral over an element with the surface element dA. For the kernel 1/r: |error of int dA / r| <= `allowed`, a length. For the
-/// kernel 1/r^2, with a length `steep` > 0: |error of int `steep` dA / r^2| <= `allowed`. `smooth_order` Gauss points on the whole element integrate
-/// the smooth factors of the integrand (density, metric) to the relative accuracy `tolerance`.
+/// Required accuracy of an integral over an element with the surface element dA, at the distance r from the target. For the kernel 1/r (`steep` = 0):
+/// |error of int dA / r| <= `allowed`, a length. For the kernel 1/r^2 (`steep` > 0, a length): |error of int `steep` dA / r^2| <= `allowed`. The
+/// smooth factors of the integrand (density, metric) are integrated to the relative accuracy `tolerance` by `smooth_order` Gauss points on the whole
+/// element.
 struct Demand {
   double allowed = 0, steep = 0, tolerance = 1e-5;
   int smooth_order = 4;

@@ -19,8 +19,9 @@ struct Options {
 
   bool far_in_single() const { return far_precision == "single" || (far_precision == "auto" && tolerance >= 1e-3); }
 
-  /// Replaces `auto` of both far keys by `dense` and `double`. Clusters change with the shape, and single precision rounds: finite differences with
-  /// small displacements, as for a spectrum, amplify the jumps. The leading growth rate of a capsule was then wrong by 1 to 25 %.
+  /// Replaces the value `auto` of the keys `far sum` and `far precision` by `dense` and `double`. Sums by clusters jump when clusters change with the
+  /// shape, and sums in single precision jump by rounding. Finite differences with small displacements, as for a spectrum, amplify the jumps. With
+  /// `auto`, the leading growth rate of a capsule was wrong by 1 to 25 %.
   void choose_smooth_sums();
 
   void declare(deck::Section& section);

@@ -53,7 +53,7 @@ bool coarsen(surface::MeshOptions& mesh, int divisor) {
   return changed;
 }
 
-/// Divides the numbers of elements of all particles by `divisor`. Returns true if a number has changed.
+/// Divides the numbers of mesh elements of all particles by `divisor`. Returns true if any of these numbers has changed.
 bool coarsen(Scene& scene, int divisor) {
   bool changed = coarsen(scene.surface, divisor);
   for (ParticleKind& kind : scene.particles) changed |= coarsen(kind.surface, divisor);

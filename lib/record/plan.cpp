@@ -80,7 +80,7 @@ std::span<const Number> all_numbers() { return named_numbers; }
 
 output::Entries<double> numbers(const Scene& scene, const Body& body) {
   output::Entries<double> found;
-  if (!scene.particles.empty() || scene.only_solids) return found;  // every entry of named_numbers is defined for a single particle only
+  if (!scene.particles.empty() || scene.only_solids) return found;  // named_numbers are defined only if there is a single particle
   for (const Number& one : named_numbers)
     if (const double value = one.value(scene, body); !std::isnan(value)) found.emplace_back(one.name, value);
   return found;

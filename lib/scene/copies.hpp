@@ -45,7 +45,7 @@ struct CopiesOptions {
   std::optional<Vec3> lattice;        ///< number of copies along x1, x2, x3
   std::optional<Vec3> spacing;        ///< distances of neighbouring centres on the lattice
   std::optional<int> number;          ///< number of copies placed at random
-  std::optional<double> volume_fraction;  ///< volume fraction, from which the number follows
+  std::optional<double> volume_fraction;  ///< volume fraction of the copies, from which the number of copies follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
   /// Radius of the ball that contains all copies. Without `box` and `ball`, copies at random positions fill the periodic cell. This requires three
   /// periods.
@@ -62,9 +62,10 @@ struct CopiesOptions {
   void check(const std::string& list, bool cell) const;
 };
 
-/// Returns the kinds with every copy as a kind of its own, named `<name> 1`, `<name> 2`, …. Copies at random in a box or ball keep clear of the
-/// circumscribed spheres of all particles placed before them. Copies at random in the cell are packed together and keep clear of all particles.
-/// Throws UserError if a file does not hold positions, if the copies do not fit, or if a copy has the name of another particle.
+/// Returns the kinds of particles, in which every copy is a kind of its own, named `<name> 1`, `<name> 2`, …. Copies at random positions in a box or
+/// ball do not overlap the circumscribed spheres of particles placed before. Copies at random positions in the cell, of all kinds together, are moved
+/// until no two particles overlap. Throws UserError if a file does not hold positions, if the copies do not fit, or if a copy has the name of another
+/// particle.
 std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain);
 
 }  // namespace tanktread

@@ -37,7 +37,8 @@ struct ExactBody {
 /// Returns the motion given by `Particle/velocity` and `Particle/angular velocity`.
 coupling::RigidMotion prescribed_motion(const Scene& scene);
 
-/// Returns the exact solution of a body with prescribed motion. Returns nothing for other shapes, a flow with strain, a tube or a wall.
+/// Returns the exact solution of an ellipsoid with prescribed motion. Returns nothing for other shapes, for a flow that is not affine or has a
+/// nonzero rate of strain, and for a scene with a tube or wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
 /// Errors of the force density f on the fluid (control values) and of the normal n_h of the numerical surface, whose control net is `surface`.
@@ -45,7 +46,7 @@ struct SurfaceErrors {
   double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h plus the constant for which int (p - p_exact)
                         ///< dG = 0
   double normal = 0;    ///< L2 norm of the error n_h - n of the numerical normal, divided by the L2 norm of the exact normal n
-  double constant = 0;  ///< p - f.n_h: constant that is added to the force density along the numerical normal n_h to get the pressure p
+  double constant = 0;  ///< constant c in the numerical pressure p = f.n_h + c, with the force density f and the numerical normal n_h
 };
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact);
 

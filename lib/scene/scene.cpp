@@ -75,7 +75,7 @@ constexpr double most_bytes = 64e9;  // largest size of the assembled operators 
 constexpr double doubles = 72;       // bytes of a 3 x 3 block of doubles
 constexpr double most_vector_bytes = 4e9;  // largest size of the vectors of an iterative solver, on one rank
 
-/// Returns the number of control points of the particle. `wall_points` returns the number of control points of the tube wall.
+/// Return the numbers of control points: points() of the particle, wall_points() of the tube wall.
 double points(const Scene& scene) {
   const auto& imported = scene.particle.shape.imported;
   return imported ? imported->space.n_points : scene.surface.n_points();

@@ -142,7 +142,7 @@ struct Scene : ParticleKind {
 
   /// Returns true if the particles are solved for in one coupled system. Otherwise the scene is the motion or resistance problem of one rigid body.
   bool in_system() const { return !why_in_system().empty(); }
-  /// Returns the key or section of the deck for which the particles are solved for in one coupled system; empty if they are not.
+  /// Returns the key or section of the deck that requires one coupled system of all particles; empty if there is none.
   std::string_view why_in_system() const;
   /// Returns true if the scene is the resistance problem of one body with prescribed motion.
   bool is_resistance_problem() const { return !only_solids && particle.motion == Motion::prescribed && !in_system(); }

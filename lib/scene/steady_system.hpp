@@ -22,7 +22,7 @@ struct System {
     begin(particle->start());
   }
 
-  /// Sets up the equations on the current mesh of the particle. `x` is a shape on this mesh.
+  /// Sets up the motion and the equations of steady shapes on the current mesh of the particle. `x` is a shape on this mesh.
   void begin(const Net& x) {
     motion.emplace(particle->dynamics(), told);
     motion->at(0, 0);

@@ -9,9 +9,9 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Returns whether the edge belongs to uniform rings of elements around the extraordinary point at `corner`. An edge belongs to the rings of spacing
-/// H if it is on the lattice of spacing H and within 3 H of the point. H is h, 2 h, 4 h, ..., below the spacing of the initial mesh, with h the
-/// current spacing at the point.
+/// Returns whether the edge belongs to the uniform rings of elements around the extraordinary point at `corner`. It does if it is on the lattice of
+/// spacing H and within 3 H of the point, for at least one spacing H = h, 2 h, 4 h, ... below the spacing of the initial mesh. h: current spacing at
+/// the point.
 bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   for (; h < l.base; h *= 2)
     if (e.line() % h == 0 && distances(l, e, corner)[1] <= 3 * h) return true;
@@ -55,8 +55,8 @@ struct Remover {
     return path;
   }
 
-  /// Sets the edges in the rows of zero height (which represent repeated end knots): a row has exactly those edges that continue a mesh line that
-  /// reaches the row.
+  /// Sets the edges in each row of zero height (repeated end knots): edges that continue a mesh line ending at the row are present, all other edges
+  /// are absent.
   void restore_ends() {
     const Lattice& l = lattice();
     for (int c = 0; c < l.cells(); ++c) {

@@ -31,8 +31,8 @@ class ExtendedMesh {
   TMesh take() && { return std::move(mesh_); }
   void set_spacing(int point, int h) { mesh_.spacing[point] = h; }
 
-  /// Marks all edges of the current extended mesh as required: the extended mesh must still contain them after later changes. missing() counts the
-  /// required edges that it does not contain.
+  /// Records all edges of the current extended mesh as required: the extended mesh must contain them after all later changes. missing() returns the
+  /// number of required edges that the current extended mesh does not contain.
   void keep_extensions();
 
   void insert(const std::vector<Ray>& path) { change(path, true); }

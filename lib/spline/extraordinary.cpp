@@ -46,7 +46,7 @@ Row net(int u, int v) {
 }  // namespace
 
 Eigen::MatrixXd averaged_bicubic() {
-  // Returns the Bezier point inside the face [u, u+1] x [v, v+1] of the control net that is nearest to its corner (u + cu, v + cv).
+  // Returns the inner Bezier point of the face [u, u+1] x [v, v+1] of the control net that is nearest to the corner (u + cu, v + cv) of the face.
   auto near_corner = [](int u, int v, int cu, int cv) {
     return inner(net(u + cu, v + cv), net(u + 1 - cu, v + cv), net(u + 1 - cu, v + 1 - cv), net(u + cu, v + 1 - cv));
   };

@@ -97,7 +97,8 @@ struct PolePiece {
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 
-  /// Returns the local coordinates of the point (u, v) of the degenerate element if the closure of the piece contains it. At the pole v is ignored.
+  /// Returns the local coordinates on this piece of the point (u, v) of the degenerate element; nothing if the point is neither inside the piece nor
+  /// on its boundary. At the pole v is ignored.
   std::optional<std::array<double, 2>> local(double u, double v) const;
 };
 

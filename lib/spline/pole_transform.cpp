@@ -91,7 +91,7 @@ std::optional<std::array<double, 2>> PolePiece::local(double u, double v) const 
     at += slope.inverse() * (wanted - place(corners, at[0], at[1]).head<2>());
     at = at.cwiseMax(-0.5).cwiseMin(1.5);
   }
-  // If the point is outside the piece, the iteration may not converge to a solution (singular Jacobian, NaN).
+  // If the point is outside this PolePiece, the iteration may not converge to a solution (singular Jacobian, NaN).
   if (!((place(corners, at[0], at[1]).head<2>() - wanted).norm() <= margin)) return {};
   if (!(at.minCoeff() >= -margin && at.maxCoeff() <= 1 + margin)) return {};
   for (double& x : at) x = std::abs(x) < margin ? 0 : std::abs(x - 1) < margin ? 1 : x;

@@ -58,12 +58,12 @@ struct Refinement {
   int halvings = 0;  ///< number of times that the spacing around an extraordinary point was halved
 };
 
-/// Bisects the marked elements and repairs the mesh. The repair adds bays, parts of a line between two successive perpendicular edges, one after
-/// another until three rules hold: no extensions of T-junctions cross, no extension that existed before is missing, and no extensions overlap. Each
-/// bay extends one of the T-junctions that violate a rule: the T-junction for which the fewest violations remain or, at an overlap, the T-junction
-/// with the shorter bay. If a bisection enters the three uniform rings of elements around an extraordinary point, all elements of the two inner rings
-/// are bisected. Edges are only added. The result depends on the set of marks but not on their order. If the mesh has the symmetries of
-/// `rules.images`, it keeps them, because marks and repairs are applied to all images.
+/// Bisects the marked elements and repairs the mesh. The repair adds bays (parts of a line between two successive perpendicular edges) one by one
+/// until three rules hold: no extensions of T-junctions cross, every extension that existed before still exists, and no extensions overlap. Each bay
+/// extends one of the T-junctions that violate a rule. For crossing or missing extensions, this is the T-junction for which the fewest violations
+/// remain. For overlapping extensions, it is the T-junction with the shorter bay. If a bisection enters the three uniform rings of elements around an
+/// extraordinary point, all elements of the two inner rings are bisected. Edges are only added. The result depends on the set of marks but not on
+/// their order. If the mesh has the symmetries of `rules.images`, it keeps them, because marks and repairs are applied to all images.
 ///
 /// Source: Scott, Li, Sederberg, Hughes 2012, with a local instead of a global choice of T-junctions, and in addition the rule on overlaps and
 /// extraordinary points.
@@ -80,13 +80,13 @@ struct Merge {
   int s = 1, t = 1;
 };
 
-/// Removes mesh lines between elements that may grow. A line is removed if its coordinate is not a multiple of the width to which the elements on
-/// both sides may grow; if the two widths differ, the smaller one counts. Lines of the initial mesh stay. The uniform rings of elements around an
+/// Removes mesh lines between elements that may grow (Merge). The two elements at a line may each grow to a certain width; let w be the smaller one.
+/// The line is removed if its coordinate is not a multiple of w. Lines of the initial mesh stay. The uniform rings of elements around an
 /// extraordinary point are coarsened only as a whole.
 ///
 /// All these lines are removed together, and the mesh is repaired afterwards. If they were removed one by one, many lines would have to stay because
 /// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With
-/// `rules.images`, an element may grow as far as all of its images may, and a line is removed with all of its images or not at all.
+/// `rules.images`, an element grows only as far as all of its images may grow, and a line is removed only together with all of its images.
 TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 
 /// Coarsens a mesh by removing edges of a given set of unit edges (bits as in TMesh::edges). An edge is removed if all edges between the same two

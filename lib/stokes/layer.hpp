@@ -174,7 +174,7 @@ class Layer {
   struct Targets {
     std::span<const int> rows, far_rows;  ///< rows of u that get near-singular and singular quadrature, and rows that get far sums
     const Net& at;                        ///< positions
-    const Net& f0;                        ///< constants subtracted from the density of a double layer
+    const Net& f0;                        ///< for each target, the constant subtracted from the density of a double layer
     std::span<const int> in_tree;         ///< indices of the targets that are in the tree of clusters, ascending
     bool sites;                           ///< true if the targets are sites of the surfaces
     const Near* kept = nullptr;
@@ -190,7 +190,7 @@ class Layer {
     std::optional<PeriodicSum> sum;
     std::vector<double> node[3];                // far nodes, moved into the cell
     std::vector<Vec3> near{Vec3::Zero()};       // lattice vectors of images whose panels may be close to a target
-    std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed, moved into the cell
+    std::vector<Vec3> rest_at;                  // targets at which rest_stress was computed: positions shifted by lattice vectors into the cell
     std::vector<Mat3> rest_stress;              // at the targets rest_at: double layer of constant unit densities over all images except the near
                                                 // ones
   };
@@ -256,8 +256,8 @@ class Layer {
   Reference reference_;
   std::vector<double> bezier_f_;                                   // Bezier points of the density
   std::vector<double> weight_;                                     // quadrature weights of the far nodes, times area and the factor k_p of (2.1)
-  std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f, in a single layer times weight_.
-                                                                   // normal_: normal times quadrature weight, area and the factor k_p of (2.2)
+  std::vector<double> density_[3], normal_[3];                     // values at the far nodes. density_: density f (times weight_ in a single layer).
+                                                                   // normal_: normal times quadrature weight, area and factor k_p of (2.2)
   std::optional<TreeSum> tree_;                                    // set if clusters are faster
   Lattice lattice_;
   std::optional<ImageSum> images_;                                 // images in a plane wall

@@ -9,7 +9,7 @@
 namespace tanktread::stokes {
 namespace {
 
-/// An element counts as small if its parametric size, divided by the mean parametric distance of the control points around it, is below this ratio.
+/// An element gets fewer Gauss points of the far rule (far_orders) if its relative size, see shares(), is below this value.
 constexpr double small = 0.6;
 
 /// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules at n = 3, 6 and

@@ -50,8 +50,8 @@ class LayerSurface {
   /// Returns the panels that need near-singular quadrature for a target, without the panels of `own`, which contain the target.
   const std::vector<int>& near(const Vec3& target, std::span<const SelfPair> own);
 
-  /// Sets the far nodes of the fundamental panels, and all targets with their images, in a tree. All ranks that share the sums must pass equal
-  /// targets, so that clusters do not depend on which rank computes which rows.
+  /// Sets the sources of `tree` to the far nodes of the fundamental panels, and its targets to all targets and their symmetry images. All ranks that
+  /// share the sums must pass equal targets, so that clusters do not depend on which rank computes which rows.
   void place(TreeSum& tree, std::span<const Vec3> targets) const;
 
   quadrature::Options options;

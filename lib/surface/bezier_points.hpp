@@ -16,7 +16,7 @@ constexpr int block_size = 64;
 
 inline int n_blocks(int n_elements) { return (n_elements + block_size - 1) / block_size; }
 
-/// Returns the elements of the given blocks, in order.
+/// Returns the elements of the given blocks, in order. A block has block_size consecutive elements.
 inline std::vector<int> elements_of(std::span<const int> blocks, int n_elements) {
   std::vector<int> elements;
   for (const int b : blocks)

@@ -26,7 +26,7 @@ class LeastSquaresFit {
   Net fit_image(const Net& net, const std::function<Vec3(const Vec3& x)>& f) const;
 
  private:
-  /// Values that all elements of one degree share.
+  /// Values that depend only on the degree of an element.
   struct Table {
     Eigen::MatrixXd value;     ///< Bernstein values at the Gauss points, shape (n_q, n_b)
     Eigen::MatrixXd weighted;  ///< value^T times the Gauss weights, shape (n_b, n_q)

@@ -77,7 +77,7 @@ CubicCurve hermite(bool closed, const std::vector<double>& breaks, const std::ve
   return curve;
 }
 
-/// Returns the cubic spline that interpolates the points; `ends` adds the equations for the ends of an open spline.
+/// Returns the cubic spline that interpolates the points. `ends`: function that adds the end conditions of an open spline to the system.
 template <class Ends>
 CubicCurve interpolate(bool closed, const std::vector<double>& breaks, const std::vector<Vec2>& points, const Ends& ends) {
   const std::vector<Step> step = steps(breaks, points);

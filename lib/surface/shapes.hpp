@@ -21,9 +21,9 @@ namespace tanktread::surface {
 /// points of the limit surface.
 Net smooth_sphere(const spline::TMesh& mesh);
 
-/// Returns the control points of the unit sphere: the points of smooth_sphere() after `fits` least-squares fits of the surface to its own radial
-/// image. The error in the radius falls with h^4, the error in the normal with h^2.7. Both errors are 10 to 40 per cent smaller than if the fits
-/// start from the projected cube.
+/// Returns the control points of the unit sphere. Starts with smooth_sphere(), and `fits` times fits the surface to its radial projection x/|x| by
+/// least squares. The error in the radius falls with h^4, the error in the normal with h^2.7, where h is the element size. Both errors are 10 to 40
+/// per cent smaller than if the fits start with the cube projected onto the sphere.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at -1 comes first. `space` is the space of the mesh.
@@ -52,7 +52,7 @@ Net resting_shape(const LeastSquaresFit& fit, const Net& unit_sphere, const Part
 Net initial_shape(const spline::Space& space, const spline::TMesh& mesh, const ParticleShape& shape);
 Net initial_shape(const spline::Space& space, const spline::PolarMesh& mesh, int axis, const ParticleShape& shape);
 
-/// Fits the resting shape `net` of a sphere or ellipsoid again on its current space. Returns any other shape unchanged.
+/// Repeats the least-squares fit of the resting shape `net` of a sphere or ellipsoid on its current space. Returns any other shape unchanged.
 Net fitted_again(const spline::Space& space, const Net& net, const ParticleShape& shape);
 
 /// Converts the resting shape `net` of the particle `from` to the resting shape of the particle `to` on the same mesh. `to` may have another size,

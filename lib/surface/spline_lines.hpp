@@ -23,8 +23,8 @@ struct Line {
   std::vector<Piece> pieces;
   std::vector<std::vector<std::pair<int, double>>> sites;
 
-  /// Adds a collocation point at the parameter u. `knots`: knots that bound the pieces with the indices `first`, `first` + 1, ...; u is in this
-  /// range. If `closed`, the last knot is the same point as the first one.
+  /// Adds a collocation point at the parameter u, which is in the range of `knots`. The intervals between these knots are the pieces with the indices
+  /// `first`, `first` + 1, .... If `closed`, the first and the last knot are the same point of the closed line.
   void add_site(double u, const std::vector<double>& knots, int first, bool closed);
 };
 

@@ -290,8 +290,8 @@ Parity::Parity(const Symmetry& symmetry, const Vec3& of_planes)
     : source_(symmetry.source()), signs_(Net::Zero(static_cast<Eigen::Index>(source_.size()), 3)),
       scalar_signs_(Eigen::VectorXd::Zero(signs_.rows())) {
   for (const int a : symmetry.fundamental()) signs_.row(a).setOnes(), scalar_signs_[a] = 1;
-  for (const Image& g : symmetry.images()) {  // adds, for each image b of a fundamental point a, the factors by which the images g that map a to b
-                                              // multiply a vector (signs_) and a scalar (scalar_signs_)
+  for (const Image& g : symmetry.images()) {  // adds, at the image b of each fundamental point a, the factors by which g multiplies a vector (signs_)
+                                              // and a scalar (scalar_signs_)
     const double turned = (g.signs.array() < 0).select(of_planes, Vec3::Ones()).prod();
     for (const int a : symmetry.fundamental()) {
       const int b = g.point[static_cast<std::size_t>(a)];

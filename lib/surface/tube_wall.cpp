@@ -89,7 +89,7 @@ TubeWall straight_wall(const Outline& section, int azimuthal_elements, const std
   const int last = static_cast<int>(knots.size()) - 1;
   const auto knot = [&](int i) { return knots[static_cast<std::size_t>(std::clamp(i, 0, last))]; };
   for (int i = 0; i < wall.n_along; ++i) {
-    // x1 at the Greville points of the control points; with these coordinates, x1 is a linear function of the parameter
+    // Greville abscissa of row i of the control points. With these values of x1, x1 is a linear function of the parameter along the wall.
     const double place = (knot(i - 2) + knot(i - 1) + knot(i)) / 3;
     for (int k = 0; k < wall.n_around; ++k)
       wall.net.row(i * wall.n_around + k) << place, ring[k][0], ring[k][1];
@@ -142,7 +142,7 @@ std::vector<Vec2> through(const Channel& channel, const std::vector<double>& kno
 
 TubeWall channel_wall(std::shared_ptr<const Channel> channel, int azimuthal_elements) {
   std::vector<double> knots = channel->knots(channel->elements()), periodic;
-  if (channel->repeats()) {  // the ends of the wall lie at a quarter of an element of the periodic splines
+  if (channel->repeats()) {  // moves both ends of the wall to a quarter of an element after a knot of the periodic splines
     periodic.assign(knots.begin(), knots.end() - 1);
     const double before = 0.75 * (knots.back() - periodic.back());
     knots.insert(knots.begin(), knots.front() - before);

@@ -58,7 +58,8 @@ void CapsuleJacobian::linearise(const Net& x, const std::vector<Net>& sums) {
   if (by_sites_) gradients_ = gradients_at(targets_.at_sites() * x);
 }
 
-/// Returns the velocity gradients of the flow at x. If the scene is symmetric, only the gradients at fundamental points are set.
+/// Returns the velocity gradients of the flow at x. If the scene is symmetric, computes only one gradient per symmetry orbit, at the fundamental
+/// point. The gradients at other points are then zero.
 std::vector<Mat3> CapsuleJacobian::gradients_at(const Net& x) const {
   const std::vector<int>& rows = parameters_.symmetry.fundamental();
   if (static_cast<Eigen::Index>(rows.size()) == x.rows()) return flow_.gradients(x);

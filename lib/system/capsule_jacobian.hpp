@@ -20,9 +20,9 @@ namespace tanktread::coupling {
 /// is not stiff. Calls are collective.
 class CapsuleJacobian {
  public:
-  /// Changes due to a displacement dx and to additional loads of virtual work `work`. `rate`: change of the velocity of the control points, or its
-  /// product with B, see rate_change(). `slip`: change of the fluid velocity minus the velocity of the control points; empty if no control points
-  /// slide.
+  /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: change of the velocity of the control points, or
+  /// B times this change; see rate_change() and velocity_change(). `slip`: change of the fluid velocity minus the velocity of the control points;
+  /// empty if no control points slide.
   struct RateChange {
     Net rate, slip;
   };
@@ -87,7 +87,7 @@ class CapsuleJacobian {
   std::optional<membrane::AreaConstraint> area_;  // set if a membrane integrates its area elasticity by a separate quadrature
   Krylov step_solver_, inner_solver_;
   double latest_shift_ = 0;      // shift gamma dt of the implicit system solved last
-  Net flux_, flux_response_;     // b = dV/dx and c of the projection P (2.8); no rows if J does not include P
+  Net flux_, flux_response_;     // flux_: b = dV/dx. flux_response_: c = M0^{-1} b of the projection P (2.8). No rows if J does not include P
   std::vector<Mat3> gradients_;  // velocity gradients of the ambient flow at the collocation sites; set if `by_sites`
 };
 

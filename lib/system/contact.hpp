@@ -39,8 +39,8 @@ void add_work(std::span<const Particle> particles, const Contact& contact, doubl
 Net work(std::span<const Particle> particles, const Contacts& contacts, Eigen::Index n_points);
 
 /// Solves the linear complementarity problem f >= 0, A f + q >= 0, f.(A f + q) = 0 for positive definite A. f are contact forces, A f + q are the
-/// gaps minus the required gaps, and A_kj is the opening of gap k by a unit force f_j. Principal pivoting with the least-index rule (Murty 1974). Not
-/// finite if pivoting does not terminate.
+/// gaps minus the required gaps, and A_kj is the opening of gap k by a unit force f_j. Uses principal pivoting with the least-index rule (Murty
+/// 1974). The result is not finite if pivoting does not terminate.
 Eigen::VectorXd complementary(const Eigen::MatrixXd& a, const Eigen::VectorXd& q);
 
 }  // namespace tanktread::coupling

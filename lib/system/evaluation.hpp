@@ -58,7 +58,7 @@ class Evaluation {
   /// Returns the power v.C v that the viscosity (3.10) of the membrane or interface of particle p dissipates.
   double membrane_dissipation(std::size_t p = 0);
 
-  /// Returns the energy that the membrane of particle p stores through its loads, without elasticity and bending.
+  /// Returns the energy stored in the membrane of particle p by its loads (membrane::Load), which do not include elasticity and bending.
   double load_energy(std::size_t p = 0);
 
  private:

@@ -79,7 +79,7 @@ class InterfaceMotion {
   membrane::Tangent tangent_;
   struct Latest {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
-                           // density: force density M0^{-1} dE1/dx of the mesh at the collocation sites
+                           // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
   Latest latest_, known_;  // latest_: data of the latest velocity. known_: copy of latest_ for the shape at which the system was linearised; empty if
                            // the latest velocity belongs to another shape

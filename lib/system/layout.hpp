@@ -21,8 +21,9 @@ class Layout {
   const std::vector<int>& points() const { return share_.points; }      ///< rank-owned control points, ascending
   const std::vector<int>& touching() const { return share_.elements; }  ///< elements that touch the rank-owned points, ascending
 
-  /// Returns the elements, ascending, over which this rank integrates the sums of replicate_sums(): the fundamental elements that touch the
-  /// rank-owned points or their images. If a fundamental element is its own image, returns all elements that touch the rank-owned points.
+  /// Returns the elements, ascending, over which this rank integrates the sums of replicate_sums(). If the scene is symmetric, these are the
+  /// elements, one per symmetry orbit, that touch points() or their images. If an image other than the identity maps such an element onto itself,
+  /// these are the elements touching().
   const std::vector<int>& elements() const { return elements_; }
 
   /// Fills in the rows of other ranks and of symmetry images.

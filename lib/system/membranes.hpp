@@ -34,8 +34,8 @@ class Membranes {
   /// (membrane::Load).
   Net work(const Net& x, std::vector<Net>& sums) const;
 
-  /// Adds dE/dx of loads() to `work`. On entry, `work` contains the contributions of this rank's elements to other terms; on return, the sums over
-  /// all ranks. Returns the surface integrals, see work().
+  /// Adds dE/dx of loads() to `work`. On entry, `work` contains this rank's contributions to other terms (elasticity and bending), or zero. On
+  /// return, `work` contains the sum of all terms over all ranks. Returns the surface integrals, see work().
   std::vector<Net> complete_work(const Net& x, Net& work) const;
 
   /// Returns the load with the virtual work `work` on the surface x: per unstressed area (3.7), or per current area (3.6). If `other` is given,

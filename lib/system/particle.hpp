@@ -57,8 +57,8 @@ stokes::Measure measure(std::span<const Particle> particles);
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
-/// Returns the net to whose area the loads (force per area) refer. If the measure of a particle is the current area, its rows are rows of `x`,
-/// otherwise rows of `unstressed`.
+/// Returns the net on which areas are measured in loads (force per area): for each particle, its rows of `x` if its loads are per current area,
+/// otherwise its rows of `unstressed`.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
 /// Returns the factor of the particle's double layer: 1 - lambda for a deformable particle. For a rigid body: -1 if the unknown is the double-layer
@@ -95,7 +95,7 @@ class Loads {
   std::vector<Net> add_work(const Net& x, Net& work) const;
   void add_global_work(const Net& x, const std::vector<Net>& sums, Net& work) const;
 
-  /// Returns the energy that the membrane of particle p stores through its loads.
+  /// Returns the energy that the loads of particle p store in its membrane. `sums`: result of add_work(), summed over all ranks.
   double energy(const Net& x, const std::vector<Net>& sums, std::size_t p) const;
   /// Adds dE/dx to `work`, where E is the energy that loads store in the membrane. Integrates over all elements.
   void add_stored_work(const Net& x, Net& work) const;

@@ -113,7 +113,7 @@ class Ranks {
   /// Sums values over all ranks in place. If all ranks but one add zero, the result is exact. Collective.
   void add(std::span<double> numbers) const;
 
-  /// Returns the items, out of n consecutive ones, that this rank processes, in ascending order; see owner.
+  /// Returns those of the items 0 .. n - 1 that this rank processes, in ascending order: the items k with owner(k, n) equal to this rank.
   std::vector<int> share(int n) const;
 
   /// Returns true if `mine` is true on any rank (a stop signal, a limit). Collective.

@@ -140,8 +140,8 @@ Net ShapeCoordinates::of_shape(const Eigen::VectorXd& y) const {
   return d;
 }
 
-/// Returns the control values of the displacement with the coordinates y, without the tangential mesh motion that y implies: the motion of relaxing
-/// meshes (4.26), and the tangential part of translations of drops.
+/// Returns the control values of the displacement with the coordinates y, but without two tangential displacements that belong to y: the motion of
+/// relaxing meshes (4.26), and the tangential part of translations of drops.
 Net ShapeCoordinates::across(const Eigen::VectorXd& y) const {
   Net at_sites = Net::Zero(sites_.rows(), 3);
   Eigen::VectorXd outward = Eigen::VectorXd::Zero(sites_.rows());

@@ -37,7 +37,7 @@ class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// Returns the list for a resumed run: the readable snapshots up to `step` whose run identifier (Picture::run) is `run`.
+  /// Returns the snapshots of a resumed run: the readable snapshots up to `step` whose run identifier (Picture::run) is `run`.
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
   void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already

@@ -88,7 +88,7 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Elements to refine (marks) and elements to merge that the indicator finds on the current mesh.
+/// Elements to refine (marks) and elements to merge on the current mesh, as found by the indicator of mesh adaptation (`Adaptation/indicator`).
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;
@@ -248,7 +248,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
     if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
-    // The coordinate x1 of the wall of a straight tube is measured from the centroid of the particle, so the particle is moved to centroid x1 = 0.
+    // Moves the centroid of the particle to x1 = 0, because x1 of the wall of a straight tube is measured from the centroid.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);
     only[0].scene = scene;

@@ -378,7 +378,7 @@ class Deforming : public ParticleSystem {
   std::unique_ptr<Body> all_;  // body with the stacked nets of all particles; null if there is only one particle
   std::unique_ptr<coupling::Capsule> capsule_;
   std::unique_ptr<SurfaceFields> fields_;
-  motion::State pictured_;  // state of the latest snapshot, to which its fields refer
+  motion::State pictured_;  // state of the latest snapshot; the function that computes the snapshot's fields refers to it
   std::optional<coupling::PowerBalance> power_;  // constructed at the first use
   coupling::Work work_;                     // work (solves, iterations) of the systems on earlier meshes
   stokes::Evaluations kernel_evaluations_;  // number of kernel evaluations on earlier meshes

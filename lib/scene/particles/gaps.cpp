@@ -70,7 +70,8 @@ class Pairs {
   /// Error of the gaps by which the closest points are searched.
   double tolerance() const { return gap_accuracy * radius_; }
 
-  /// Returns the closest points of one pair if its gap is smaller than `reach`. Newton's method makes them independent of the order of the search.
+  /// Returns the closest points of one pair if its gap is smaller than `reach`. A final Newton iteration makes the points independent of the order in
+  /// which the search visits the elements.
   surface::ClosestPoints closest(const Pair& pair, double reach) const {
     const auto& [bound, p, q, beyond] = pair;
     std::unique_ptr<Placed> moved;
@@ -107,7 +108,7 @@ class Pairs {
   double radius_ = 0;  // largest R_C
 };
 
-/// Finds the smallest gap among pairs that ranks share.
+/// Search for the smallest gap among the pairs of particles that are assigned to this rank.
 class NearestPair {
  public:
   /// Searches the pairs k for which mine(k) is true.
@@ -146,7 +147,8 @@ class NearestPair {
     return false;
   }
 
-  /// Returns the data of a pair.
+  /// Returns the gap of pair k, the numbers of its two particles (from 1), and the midpoint of its closest points. Returns an empty result if k is
+  /// the number of pairs.
   Nearest of(std::size_t k) const {
     if (k == pairs_.all().size()) return {};
     const Pair& pair = pairs_.all()[k];
@@ -166,7 +168,7 @@ std::vector<Net> own_nets(const std::vector<Member>& members, const Net& x) {
   return own;
 }
 
-/// Reduces the film width of each element that is closer to the plane wall than this width to its distance from the wall.
+/// Reduces the film width of each element to the element's distance from the plane wall, if the distance is smaller and at most `reach`.
 void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, double reach, std::vector<double>& widths) {
   for (int e = 0; e < surface.size(); ++e)
     for (int k = 0; k < 9; ++k) {

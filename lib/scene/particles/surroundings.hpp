@@ -10,8 +10,8 @@
 
 namespace tanktread {
 
-/// Adds to `row` the columns that describe the surroundings (tube, cell, walls, posts, gaps) at the shape of `here`. `all`: body of all members.
-/// `stresslet`: sum of the stresslets of all members. Throws RunFailure if the particles have spread too far in a tube. Collective.
+/// Adds to `row` the columns that describe the surroundings (tube, cell, walls, posts, gaps) of the particles in the shape here.x(). `all`: body of
+/// all members. `stresslet`: sum of the stresslets of all members. Throws RunFailure if the particles have spread too far in a tube. Collective.
 void add_surroundings(const Scene& scene, const std::vector<Member>& members, const Body& all, coupling::Capsule& capsule, coupling::Evaluation& here,
                       const Mat3& stresslet, const coupling::Ranks& ranks, Columns& row);
 

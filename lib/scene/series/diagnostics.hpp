@@ -25,7 +25,7 @@ struct ParticleRow {
   double energy = 0, intrinsic_viscosity = 0, phase = 0;
 
   virtual ~ParticleRow() = default;
-  /// Adds the columns of this particle to a row. `one`: the scene of this particle.
+  /// Adds the columns of this particle to a row. `one`: scene with the options of this particle only.
   virtual void add_columns(const Scene& one, Columns& to) const = 0;
 
  protected:
@@ -94,7 +94,7 @@ RigidRow rigid_row(const Scene& scene, const Body& body, const stokes::AmbientFl
 /// Returns the angle of y in the plane, in degrees in (-180, 180], from the plane's first direction in the sense of tank-treading.
 double angle_in(const FlowPlane& plane, const Vec3& y);
 
-/// Returns the site at which the ray from the point `from` in the first direction of the plane meets the surface.
+/// Returns the parametric point at which the ray from `from` along the first in-plane direction (a in FlowPlane) meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest normal velocity |v.n| at the collocation sites `sites` divided by Scene::rate() R_C, with v = `slope`. It is zero if the shape

@@ -45,13 +45,13 @@ class SurfaceFields {
   /// Copies the shapes and slopes of `own`, which of_shape() returned and the caller modified, back into the state.
   void put_back(const motion::State& own, motion::State& state) const;
 
-  /// Transfers the state `old` to the current meshes. `own`: the shapes of this state, already on the current meshes. `before`: the fields on the
-  /// previous meshes. `bodies`: previous body of each particle; null if its mesh is unchanged. If there are fields, the result has no slopes and no
-  /// secants.
+  /// Returns the state `old` transferred to the current meshes. `own`: the shapes of `old`, which are already on the current meshes. `before`: the
+  /// fields on the previous meshes. `bodies`: for each particle, its body with the previous mesh; null if the mesh is unchanged. If there are fields,
+  /// the result has no slopes and no secants.
   motion::State transferred(SurfaceFields& before, const motion::State& old, motion::State own, std::span<const Body* const> bodies);
 
-  /// Passes the state y to the capsule and the fields. If the capsule was last evaluated at a state within `distance` of y, passes the state only to
-  /// the fields.
+  /// Passes the state y to the fields. Also passes it to the capsule, unless `distance` > 0 and the capsule was last evaluated at a state within
+  /// `distance` of y.
   void set_state(const Net& y, double distance = 0);
 
   /// Returns a function that evaluates all fields of particle p, scaled to order 1, in the state set last. The function is empty if there are no

@@ -28,7 +28,7 @@ Mat3 unit_gradient(const FlowOptions& options) {
 
 AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
   Field field;
-  field.gradient = unit_gradient(options) * options.shear_rate;  // the rate is 1 for the types that it does not belong to
+  field.gradient = unit_gradient(options) * options.shear_rate;  // shear_rate is 1 for flow types without the key `shear rate`
   if (options.type == "uniform") field.velocity = options.velocity.value();
   if (options.type == "parabolic") {
     field.velocity[0] = options.maximum_velocity.value();

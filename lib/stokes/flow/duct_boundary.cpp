@@ -267,7 +267,7 @@ Eigen::VectorXd BoundaryProfile::density(const OutlineSpace& space) const {
 Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eigen::VectorXd& sigma) {
   const auto& rule = quadrature::gauss(points);
   Eigen::VectorXd flux(points * n_elements_);
-  double psi = 0;  // psi of (2.17) at the start of the current element: the integral of q dl up to there
+  double psi = 0;  // psi of (2.17) at the start of the current element: the integral of the flux q along the outline
   Eigen::Index node = 0;
   for (const OutlineElement& e : space.elements()) {
     Eigen::Vector4d control, b;

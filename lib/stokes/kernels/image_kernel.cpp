@@ -115,7 +115,8 @@ struct Sums {
     project<Degree, 9>(table, g, moment);
   }
 
-  /// Adds the image stresslet T^I (2.36) with the strength S = weight (w n + n w)/2 to u. `weight`: quadrature weight. `height`: weight r.n.
+  /// Adds the image stresslet T^I (2.36) of the density w at a node with the normal n to u. The strength is S = weight (w n + n w)/2, where `weight`
+  /// is the quadrature weight. `height`: weight r.n.
   static void add(const ImageOfStress& image, const Register (&r)[3], const Register (&w)[3], const Register (&n)[3], const Register& height,
                   const Register& weight, Register (&u)[3]) {
     const Register along = weight * (r[0] * w[0] + r[1] * w[1] + r[2] * w[2]);

@@ -53,11 +53,11 @@ class PeriodicSum {
   PeriodicCell cell_;
   Vec3 away_, low_, length_;    // away_: displacement of the cell from the origin. low_, length_: lowest corner and side lengths of the box in
                                 // lattice coordinates
-  std::array<Vec3, 2> across_;  // lowest and highest coordinates of the table, in directions that are not periodic
+  std::array<Vec3, 2> across_;  // lowest and highest lattice coordinates for which table_ was computed, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
-  std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): which of the distinct differences nodes a
-                                                // and b have, counted from 0
+  std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): index of the difference of nodes a and b in
+                                                // the list of distinct differences
   std::array<std::size_t, 3> differences_;      // number of distinct differences of two nodes in each direction
   std::vector<double> table_;  // entries m ((n_1 i + j) n_2 + k) + c, with m = components_: component c of the smooth kernel sum for the node
                                // difference (i, j, k)

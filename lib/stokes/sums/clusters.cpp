@@ -22,8 +22,8 @@ int chebyshev_order(double tolerance, double z) {
   return static_cast<int>(std::ceil(-std::log(tolerance) / std::log(z + std::sqrt(z * z - 1)) - 1e-9));
 }
 
-/// Positions are compared as multiples of 2^-32 to 2^-33 of the extent of all points. Without this, rounding errors would decide which of two
-/// mirrored positions comes first, and thereby the clusters, and sums would differ by a part of the tolerance between numbers of ranks.
+/// Positions are rounded to multiples of 2^-33 to 2^-32 of the extent of all points before they are compared. Otherwise rounding errors would decide
+/// which of two mirrored positions comes first. Clusters would then depend on the number of ranks, and sums would change by a part of the tolerance.
 constexpr int compared_bits = 33;
 
 /// Extents that differ by less than this ratio count as equal, for the same reason.

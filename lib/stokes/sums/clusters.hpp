@@ -38,8 +38,9 @@ struct Cluster : ChebyshevBox {
 /// `reach`.
 class Clusters {
  public:
-  /// `leaf`: largest number of points in a leaf; a leaf has more points only if it cannot be split. `quantum`: the first half of a split cluster has
-  /// a multiple of `quantum` groups, and the cost of n points or nodes is assumed to be proportional to n rounded up to a multiple of `quantum`.
+  /// `leaf`: largest number of points in a leaf; only a cluster that cannot be split has more. `quantum`: a cluster is split so that the number of
+  /// groups in its first half is a multiple of `quantum`. The cost of n points or nodes is assumed to be proportional to n rounded up to a multiple
+  /// of `quantum`.
   Clusters(double tolerance, int leaf, int quantum) : tolerance_(tolerance), leaf_(leaf), quantum_(quantum) {}
 
   /// Builds the tree. Group g contains the points starts[g] .. starts[g + 1] - 1. The tree depends on the positions only, and errors of rounding

@@ -39,7 +39,7 @@ class SelfField {
   /// Returns the pairs of site i and a panel that contains it, one pair per panel.
   std::span<SelfPair> operator[](int i) { return {&pairs_[first_[i]], first_[i + 1] - first_[i]}; }
 
-  /// Returns the singular rule on the pair's panel for the current metric at the site. If the rule changes, stored weights are discarded.
+  /// Returns the singular quadrature rule of this site and panel for the current metric at the site. If the rule changes, discards stored weights.
   const PointTable& rule(SelfPair& pair, const Panels& panels, const std::vector<double>& bezier);
 
   /// Discards all stored weights.

@@ -71,15 +71,15 @@ class TreeSum {
   int part_ = 0, parts_ = 1;
   int in_ = 3, out_ = 3;  // in_: number of components of a source strength. out_: number of components of the sum at a target
   void (*kernel_)(const Charges&, const double*, double*) = nullptr;
-  Clusters sources_, target_tree_;              // sources_: tree of the sources. target_tree_: tree of the targets without their images
+  Clusters sources_, target_tree_;              // sources_: tree of the sources. target_tree_: tree of the targets, without their reflections
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
   int n_trees_ = 1;                             // number of target trees: one for the targets, and one for each reflection of the targets
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
   std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
   std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
-  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: the sum of this row is to be computed. wanted_: the target cluster has such a row.
-                                                // has_nodes_: the target cluster has values at its Chebyshev nodes
+  std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: true if the sum of the row is requested. wanted_: true if the target cluster contains
+                                                // a requested row. has_nodes_: true if the target cluster has values at its Chebyshev nodes
   std::vector<Pair> pairs_;                     // interactions of this part
   std::vector<char> in_use_;                    // flags of the source clusters whose Chebyshev nodes are used
   std::vector<Pack> scratch_;

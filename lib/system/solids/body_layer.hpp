@@ -1,5 +1,5 @@
 #pragma once
-// Single layer of the rigid bodies among all particles, and its factors.
+// Single layer of the rigid bodies among all particles, and the LU factors of its matrix.
 
 #include <optional>
 #include <span>
@@ -26,7 +26,7 @@ class BodyLayer {
             const std::optional<stokes::PlaneWall>& wall, std::span<const int> own, Ranks& ranks);
 
   /// Sets the shape x with the collocation sites `at`. Assembles and factors the single layer A at the sites of the bodies, without images on a
-  /// lattice. `keep_rows`: whether `velocity` will be used for many densities.
+  /// lattice. `keep_rows`: true to store all matrix rows that velocity() needs, for calls with many densities.
   void place(const Net& x, const Net& at, bool keep_rows);
 
   /// Returns (1/mu) A f at the collocation sites of all particles. The rows of bodies are zero unless place() was called with `keep_rows`.
@@ -44,7 +44,7 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies; their blocks count the control points of rigid bodies only
+  std::vector<Particle> bodies_;   // the rigid bodies; their blocks are index ranges in nets of the rigid bodies only
   std::vector<spline::Block> in_;  // block of each body among all particles
   spline::Space space_;            // common space of the bodies
   std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points in `own` of other

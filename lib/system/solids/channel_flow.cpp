@@ -33,7 +33,7 @@ ChannelFlow::ChannelFlow(const surface::TubeOptions& options, double viscosity, 
 }
 
 /// Returns the cross-section at the position s along the centre line, and the fully developed flow through it with the flow rate of the channel.
-/// `inward`: 1 at the inlet, -1 at the outlet.
+/// `inward`: 1 at the inlet, where the direction along the centre line points into the fluid; -1 at the outlet.
 stokes::DuctEnd ChannelFlow::section(double s, int inward) const {
   const surface::Channel::Section at = channel_->section(s);
   const double area = channel_->outline().area() * at.factor.prod();

@@ -27,7 +27,7 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   return solution_;
 }
 
-/// Returns the pressure drop, corrected for the collocation error (2.41). This takes no further solve: the residual is weighted with the solution.
+/// Returns the pressure drop, corrected for the collocation error (2.41) by the integral of the residual times f. No further solve is needed.
 double FreeBodyInTube::pressure_drop(const Net& place) const {
   Tube* const tube = body_.tube();
   if (!tube) return 0;
@@ -46,7 +46,7 @@ FreeBodyInTube::Solution FreeBodyInTube::in_tube(const Net& place) const {
   const Mat3 turn = rotation_of(place);
   const Eigen::Index n = surface_.rows();
   const double unit = viscosity_ / radius_, force_unit = 6 * std::numbers::pi * viscosity_ * radius_;
-  Six of_motion, of_force;  // units of the motion and of the force and torque
+  Six of_motion, of_force;  // units by which (U, Omega) and (force, torque) are scaled
   of_motion << Vec3::Ones(), Vec3::Constant(1 / radius_);
   of_force << Vec3::Constant(force_unit), Vec3::Constant(force_unit * radius_);
   const auto motion_of = [](const Six& m) { return RigidMotion{m.head<3>(), m.tail<3>()}; };

@@ -252,7 +252,7 @@ Eigen::VectorXd RigidParticles::mean_functional(std::size_t p, int k) const {
   return Eigen::Map<const Eigen::VectorXd>(functional.data(), functional.size());
 }
 
-/// Computes int df r dG in closed form for the load df = -(a + b x r).
+/// Computes int df r dG in closed form for the load df = -(a + b x r). The vectors a and b follow from the force and torque on body p.
 Mat3 RigidParticles::load_moment(std::size_t p) const {
   const Body& of = body(p);
   const RigidMotion load = of.carrying(of.force, of.torque);

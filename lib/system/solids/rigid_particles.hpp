@@ -39,10 +39,11 @@ struct OwnLacking {
 ///
 ///   V(x0) = v_inf(x0) - sum_p G df_p - (1 / 8 pi) int (w - w(x0)) T n dG + contributions of v and w of the other particles        (2.23)
 ///
-/// The density w replaces v in the unknowns. The integral does not change if a rigid motion is added to w, so that the rigid motion <w> nearest to w
-/// (least squares) is free to represent other unknowns. If the force and torque of a body are given, V = <w>, and the load df = -(a + b x r) has this
-/// force and torque on the fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power &
-/// Miranda 1987; Kim & Karrila 1991, chapter 15.
+/// The density w replaces v in the unknowns. The integral does not change if a rigid motion is added to w. The rigid motion <w> nearest to w (least
+/// squares) is therefore not determined by the integral, and represents another unknown of the body. If the force and torque are given, this unknown
+/// is the motion, V = <w>. The vectors a and b in the load df = -(a + b x r) are then chosen such that df has the given force and torque on the
+/// fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power & Miranda 1987; Kim & Karrila
+/// 1991, chapter 15.
 ///
 /// Nets are stacked nets of all particles. A body's rows of a net x stand for the position of the rigid body that fits these rows best.
 class RigidParticles {
@@ -96,8 +97,8 @@ class RigidParticles {
   /// Returns whether two bodies have equal shapes and orientations at rest.
   bool alike(std::size_t p, std::size_t q) const { return body(p).lacking == body(q).lacking; }
 
-  /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in axes at
-  /// rest.
+  /// Returns the collocation-error correction (OwnLacking) of the velocity that the unit load k of body p induces on the body itself, in the axes of
+  /// the body at rest.
   const Net& lacking(std::size_t p, int k) const { return body(p).lacking->loads[static_cast<std::size_t>(k)]; }
 
   /// Returns the coefficients of component k of the mean rigid motion <w> (velocity, then angular velocity) as a linear function of the body's rows

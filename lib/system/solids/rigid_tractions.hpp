@@ -1,5 +1,5 @@
 #pragma once
-// Rigid bodies, also among deformable particles, solved by the tractions on all of them.
+// Integral equation of the first kind for the tractions on rigid bodies, also among deformable particles.
 
 #include <functional>
 #include <optional>
@@ -29,8 +29,9 @@ namespace tanktread::coupling {
 ///   (1/mu) sum_q A_pq f_q = U_p + Omega_p x r - v_inf   on body p,     int f_p dG = F_p,   int r x f_p dG = T_p                  (2.40)
 ///
 /// where either the motion U_p, Omega_p or the force F_p and torque T_p of each body is given. A_pq is the single layer of body q at body p. The
-/// operator is assembled at every position, made regular by one flux condition per body as in (2.10), and factored, so that films cost no iterations.
-/// f is a sum of the densities z_k that unit motions of the bodies require, and the density that the ambient flow requires.
+/// operator is assembled at every position, made regular by one flux condition per body as in (2.10), and factored. Thin films between bodies
+/// therefore cost no additional iterations. f is a sum of the densities z_k that unit motions of the bodies require, and the density that the ambient
+/// flow requires.
 ///
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
 /// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
@@ -38,11 +39,12 @@ namespace tanktread::coupling {
 /// density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the number of control points to a few
 /// thousand.
 ///
-/// Among other boundaries of the fluid, A includes their response to f: the images on a lattice, the wall of a tube and its pressure drop, plates and
-/// posts (2.47), and deformable particles; v_inf includes the flow that they cause without bodies. These additions are smooth, and A remains
-/// self-adjoint. The densities are then found by GMRES, together with the velocity of deformable particles (2.52), and the preconditioner is the
-/// factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 do not respond. The pressure drop of a duct flow
-/// is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of v_inf (2.41).
+/// If the fluid has other boundaries, A includes the velocity that f causes through them: images on a lattice, the wall of a tube and its pressure
+/// drop, plates and posts (2.47), and deformable particles. v_inf then includes the flow that these boundaries cause without bodies. The additions to
+/// A are smooth, and A remains self-adjoint. The densities are found by GMRES, together with the velocity of deformable particles (2.52), and the
+/// preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 do not respond. The
+/// pressure drop of a duct flow is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of
+/// v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all particles. `unstressed`, `rest`: their nets. `own`: collocation points whose rows this rank computes. References
@@ -74,8 +76,8 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: not set if all
-  /// particles are rigid and do not repeat on a lattice. Collective.
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: velocities and
+  /// loads due to deformable particles and images on a lattice; not set if there are neither. Collective.
   void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed forces

@@ -63,10 +63,11 @@ class SolidResponse {
   /// Computes rows of the velocity u at any points in the fluid. Not collective.
   void velocity_at(const Net& at, std::span<const int> rows, const Solids::Flow& flow, Net& u) { scene_.solids->velocity_at(at, rows, flow, u); }
 
-  /// Returns the integral over the cell of the velocity u that a flow of the solids, the load f and the velocity v of the particles cause. With three
-  /// periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates at the
-  /// distance D it has components along the plates only, and follows from the reciprocal theorem. With z the distance from one plate and
-  /// phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow phi e_i/mu, which has the stress sigma_i:
+  /// Returns the integral over the cell of the velocity u due to the flow `flow` of the solids, the load f and the velocity v of the particles. With
+  /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
+  /// at the distance D it has components along the plates only, and follows from the reciprocal theorem. S are the surfaces of the solids, C those of
+  /// the particles. With z the distance from one plate and phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow phi e_i/mu, which
+  /// has the stress sigma_i:
   ///
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) + int_C (1 - lambda) v.sigma_i n dG                         (2.49)
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);

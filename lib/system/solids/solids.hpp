@@ -118,8 +118,8 @@ class Solids {
   std::optional<PlateFactors> plates_;  // set if all solids are plates
   DenseFactors factors_;                // LU factors of the operator; if all solids are plates, only of its block for densities that are uniform on
                                         // each plate
-  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of earlier layers, which reach() has replaced; without the present
-                                        // layer
+  stokes::Evaluations evaluations_;     // kernel evaluations of the assembly and of the layers that reach() has replaced; the evaluations of the
+                                        // present layer_ are not included
 };
 
 }  // namespace tanktread::coupling

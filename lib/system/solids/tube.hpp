@@ -119,8 +119,8 @@ class Tube {
   double pressure_of(const Net& f, const Net& v = {});  ///< returns dp (2.7)
 
   /// Returns the correction (2.41) of pressure_of(f) for collocation errors. The ambient flow must be a duct flow, with the amplitude `amplitude`.
-  /// `work`: integral (2.11) of the residual of v_inf on the particle times f. In a channel, also corrects for the interpolation error of v_inf, by
-  /// its exact values `at_places` at the Gauss points `between`.
+  /// `work`: integral (2.11) over the particle of f times the residual of v_inf. In a channel, also corrects for the interpolation error of v_inf.
+  /// `between`: Gauss points for this error. `at_places`: exact values of v_inf at these Gauss points.
   double lacking_pressure(const BetweenSites& between, const Net& at_places, double amplitude, const Net& f, double work);
   Net solve_wall(const Net& rhs);  ///< returns the wall traction f^D that solves (1/mu) G_W f^D = rhs
 
@@ -186,7 +186,7 @@ class Tube {
   std::unique_ptr<Particle> particle_;
   Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
                                       // set by weigh_flow(), like the members below
-  Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
+  Net flow_of_wall_;  // weights w: if a wall traction cancels the velocity u on the wall, it causes the flow rate w.u through the inlet
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
                                                 // pressure drop, due to c and the wall traction that c causes
 };

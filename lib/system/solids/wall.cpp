@@ -197,7 +197,7 @@ Eigen::MatrixXd Wall::assembled() {
   const std::vector<Congruence> maps = congruences(surface_, sites_);
   const std::vector<Original> original = originals(maps, m);
   const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
-  std::vector<int> own = own_;  // rank-owned sites, sorted by the index of their original, so that sites with one original are adjacent
+  std::vector<int> own = own_;  // rank-owned sites, sorted by Original::point (see congruence.hpp), so that sites with equal originals are adjacent
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
   Eigen::MatrixXd complete = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     for (std::size_t first = 0, last = 0; first < own.size(); first = last) {

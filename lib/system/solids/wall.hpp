@@ -60,9 +60,10 @@ struct WallSolver {
 /// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
 /// recycled from earlier solves (2.24).
 ///
-/// A velocity that vanishes at the collocation points of a wall has one sign between them, so that fluid leaks through the wall. In a channel this
-/// leak would be a part of the flow rate, and for a train of particles it would grow with the pressure from one particle to the next. On the wall of
-/// a channel the mean velocity around each collocation point is therefore set to zero instead of the velocity at the point (2.39).
+/// If the velocity vanishes at the collocation points of a wall, the residual velocity between these points has the same sign everywhere, so that
+/// fluid leaks through the wall. In a channel this leak would be a part of the flow rate, and for a train of particles it would grow with the
+/// pressure from one particle to the next. On the wall of a channel the mean velocity around each collocation point is therefore set to zero instead
+/// of the velocity at the point (2.39).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
@@ -117,8 +118,8 @@ class Wall {
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
 
-  /// Returns A^-T weights: its product with any right-hand side rhs equals the product of `weights` with solve(rhs). Available only if the operator
-  /// is factored.
+  /// Returns w = A^-T `weights`. For any right-hand side rhs, the inner product of w and rhs equals the inner product of `weights` and solve(rhs).
+  /// Available only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
 
   const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall

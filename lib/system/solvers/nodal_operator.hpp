@@ -1,5 +1,5 @@
 #pragma once
-// The frozen single layer of the Jacobian: the trapezoidal rule with one node per control point, corrected for control points near the target.
+// Single layer of the Jacobian, frozen at an earlier shape: trapezoidal rule on the control points, corrected near the target.
 
 #include <functional>
 #include <optional>
@@ -33,8 +33,8 @@ class NodalOperator {
     Net sites;                          ///< x_B, collocation sites
     Eigen::SparseMatrix<double> values;  ///< R, collocation matrix, shape (N, N)
     Eigen::VectorXd weights;             ///< w_B, weights of the trapezoidal rule
-    Eigen::VectorXd areas;               ///< current area of each control point; C is near the target x_i if |x_C - x_i| < reach
-                                         ///< sqrt(area_C)
+    Eigen::VectorXd areas;               ///< current area of each control point. Control point C is near the target x_i if the distance |x_C - x_i|
+                                         ///< is below reach sqrt(areas[C])
     surface::Symmetry symmetry;          ///< symmetry of the surface and the densities; Symmetry() if there is none
   };
 
@@ -68,7 +68,7 @@ class NodalOperator {
   std::vector<Vec3> at_;                                 // positions of the targets
   surface::Symmetry symmetry_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> values_;  // R at the fundamental sites
-  std::vector<int> row_;                                 // for each site, the index of its fundamental site
+  std::vector<int> row_;                                 // for each site, the index in symmetry_.fundamental() of the fundamental site of its orbit
   Eigen::VectorXd weights_;
   std::vector<double> node_[3], force_[3];
   std::optional<stokes::TreeSum> tree_;                  // set if clusters are faster

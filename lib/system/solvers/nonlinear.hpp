@@ -24,8 +24,9 @@ class FixedPoint {
  public:
   using Map = std::function<Net(const Net&)>;
   using Norm = std::function<double(const Net&)>;
-  /// Returns the number of iterates that Anderson's method combines for a steady shape with `size` unknowns. Four iterates do not converge near a
-  /// fold or for travelling waves. Twenty do not converge on fine meshes. Forty are linearly dependent on coarse meshes.
+  /// Returns the number of iterates that Anderson's method should combine in searches for a steady shape with `size` unknowns. With 4 iterates, the
+  /// method does not converge near a fold or for travelling waves; with 20, it does not converge on fine meshes. 40 iterates are linearly dependent
+  /// on coarse meshes.
   static int deep(Eigen::Index size) { return std::clamp(static_cast<int>(size / 64), 20, 40); }
 
   /// `method`: `anderson` (Anderson 1965; Walker & Ni 2011) or matrix-free `newton-krylov`. `linear`: Belos solver and preconditioner of the linear

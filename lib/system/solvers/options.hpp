@@ -48,8 +48,8 @@ struct SolverOptions {
   IterativeOptions spectrum{.restart = 30}, steady{.restart = 30};
   std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver of crank-nicolson, passed unchanged
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
-  std::string double_layer = "auto";  ///< assembled: assembled once per velocity and used in all iterations; matrix-free: summed in each iteration;
-                                      ///< auto: matrix-free if far sums are taken by clusters
+  std::string double_layer = "auto";  ///< double layer. assembled: assembled once per velocity evaluation, for all iterations; matrix-free: summed in
+                                      ///< each iteration; auto: matrix-free if far sums use clusters
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: all
                                                   ///< unknowns in one system (BlockSystem), with this preconditioner
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the

@@ -19,7 +19,7 @@ namespace {
 using List = Teuchos::ParameterList;
 using Works = std::function<bool(const List&)>;
 
-constexpr Eigen::Index n = 60;           // number of unknowns, larger than the number of products that Krylov stores
+constexpr Eigen::Index n = 60;           // number of unknowns of the trial, larger than the number of products stored by class Krylov
 constexpr int most_products = 10 * n;  // number of matrix-vector products after which a method counts as not converging
 
 /// Returns the result of a trial, or false if a library throws anything.
