@@ -32,7 +32,7 @@ struct RunRequest {
   bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
   bool quiet = false;           ///< true to show no progress bar
-  bool of_ladder = false;       ///< true for a level of an accuracy ladder, which says itself why it ended and how to resume it
+  bool of_ladder = false;       ///< true for a level of an accuracy ladder; the ladder itself reports why it ended and how to resume it
   std::string deck_text;        ///< the effective deck, to be stored with the results
   /// Returns the scene of this deck with other values of keys, as settings `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;
@@ -53,7 +53,8 @@ struct Account {
   output::Entries<long> counts;
   std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
-  bool whole = true;            ///< true if the run reached its end; only then do missed binding expectations fail the run
+  bool whole = true;            ///< true if the run reached its end. Otherwise missed expectations, even binding ones (see deck::read), do not fail
+                                ///< the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
