@@ -53,8 +53,7 @@ struct Account {
   output::Entries<long> counts;
   std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
-  bool whole = true;            ///< true if the run reached its end. Otherwise missed expectations, even binding ones (see deck::read), do not fail
-                                ///< the run
+  bool whole = true;            ///< true if the run reached its end. Otherwise missed binding expectations (see deck::read) do not fail the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum

@@ -109,8 +109,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Data that give the index, in the table, of the difference between two interpolation nodes: difference_, differences_ and box_.order of
-/// PeriodicSum.
+/// Data of PeriodicSum (difference_, differences_, box_.order) that give the table index of the difference between two interpolation nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;
