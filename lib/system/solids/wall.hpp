@@ -131,9 +131,9 @@ class Wall {
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Returns mu times the flow rate along the duct that a unit force causes, for each point of `at` separately, one column per direction of the
-  /// force. If the wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1,
-  /// where rho is the distance from the axis x1 (2.44). In this case only the sum over several forces is meaningful, and these forces must sum to 0.
+  /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the
+  /// wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1, where rho is the
+  /// distance from the axis x1 (2.44). In this case only the flow rate of several forces together is meaningful, and these forces must sum to 0.
   Net flow_of_forces(const Net& at) const;
 
   /// Returns the flow rate that a double layer of unit strength at the point `at` with normal n causes, one entry per component of the strength. If
