@@ -362,7 +362,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
     const int code = run(arguments, registry, speaks);
     const bool prints = arguments.check || arguments.cite || arguments.reference || arguments.reference_series || arguments.rejections ||
                         arguments.schema ||
-                        !arguments.new_deck.empty();  // true if the result is text on standard output. The results of a run are files
+                        !arguments.new_deck.empty();  // true if the command prints its result on standard output; a run writes files
     if (speaks && prints) check_output();
     return code;
   } catch (const motion::Stopped&) {

@@ -24,8 +24,8 @@ int resist(const Scene& scene, const RunRequest& request);
 /// `simulate`. Collective.
 int flow_past_solids(const Scene& scene, const RunRequest& request);
 
-/// Records the row and the snapshot of a steady problem on the surface body.rest, adds the kernel evaluations of all ranks to the counts of the
-/// account, and closes the results. Returns the exit code like `simulate`. Collective.
+/// Records the row and the snapshot of a steady problem with the surface body.rest. Adds the kernel evaluations of all ranks to the counts in
+/// `account`, and closes the results. Returns the exit code like `simulate`. Collective.
 int record_steady(const Scene& scene, const RunRequest& request, const Body& body, const coupling::Ranks& ranks, Phases& phases, Columns& row,
                   const SurfacePicture& picture, Account account, const stokes::Evaluations& kernel);
 

@@ -27,7 +27,8 @@ namespace tanktread {
 
 namespace {
 
-/// Further reasons for which a run ends before its final time, as written to `status` of the summary.
+/// Further values of `status` in the summary, if a run ends before its final time: `steady` because the shape is steady, `past` because all particles
+/// have passed the position `Time/end when past`.
 const std::string steady = "steady", past = "past";
 
 /// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so

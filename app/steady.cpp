@@ -88,7 +88,7 @@ class SteadyRun {
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;
-    std::shared_ptr<System> latest;  // system of the latest amplitude below 1
+    std::shared_ptr<System> latest;  // system for the flow at the latest amplitude below 1
     const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
       if (amplitude == 1) return {of, &*of->equations};
       Scene weaker = of->scene;

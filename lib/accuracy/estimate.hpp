@@ -28,7 +28,7 @@ constexpr double safety = 1.2;
 /// Second safety factor: a request is met if the estimated error times this factor is at most the requested error.
 constexpr double margin = 1.5;
 
-/// Differences below this number times the scale of a series are round-off.
+/// Differences below this number times the magnitude of a series (`scale` of estimated()) count as round-off.
 constexpr double round_off = 1e-10;
 
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.

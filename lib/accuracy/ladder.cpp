@@ -155,12 +155,13 @@ class Ladder {
   }
 
   /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if the run ended or failed. A new level that its scene does not allow counts as failed if a coarser level is finished.
+  /// and can be resumed, or 0 if the run ended or failed. If the scene rejects the deck of a new level and a coarser level is finished, the level
+  /// counts as failed.
   int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
     resuming_ = false;
     const std::string deck = program_.deck(settings(task_.values, level));
-    std::string failure;  // of an earlier run of this deck, on the first rank
+    std::string failure;  // reason for which an earlier run of this deck failed; set on the first rank
     const auto known = coupling::decided([&] { return std::vector<double>{static_cast<double>(start_of(directory(name), level, deck, failure))}; });
     const auto start = static_cast<Start>(static_cast<int>(known[0]));
     resuming_ = start == Start::resume;
@@ -228,7 +229,7 @@ class Ladder {
     }
   }
 
-  /// Sets `failure` to the reason if the result is Start::failed.
+  /// Returns the state of a level in the directory `place`. If the result is Start::failed, sets `failure` to the reason.
   Start start_of(const fs::path& place, const Level& level, const std::string& deck, std::string& failure) const {
     if (!task_.resume) return Start::anew;
     if (finished(place, level, deck)) return Start::finished;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
 constexpr double least_quadrature = 1e-6;  // smallest error that single-precision far sums and near-panel rules reach
 
-/// Reads values of a deck and collects settings.
+/// Collects the settings `Section/key=value` of a level in `all`, computed from the values of the deck.
 class Setter {
  public:
   explicit Setter(const Values& deck) : deck_(deck) {}

@@ -87,6 +87,14 @@ double scale_of(const output::RunRecord& record, const std::string& series) {
   return most;
 }
 
+/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. That of an oscillation, which may be out
+/// of phase between levels, does not.
+bool is_noise(const std::vector<Outcome>& levels, const std::string& series) {
+  std::vector<double> sizes;
+  for (std::size_t k = levels.size() - 3; k < levels.size(); ++k) sizes.push_back(magnitude(curve(levels[k].record, series)));
+  return std::ranges::max(sizes) > 1.5 * std::ranges::min(sizes);
+}
+
 bool is_of_several(const output::RunRecord& record) {
   return std::ranges::any_of(record.series(), [](const output::Series& one) { return one.name.find('/') != std::string::npos; });
 }
@@ -164,8 +172,8 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   }
   if (request.of == Of::mean && is_of_several(levels.back().record)) found.statistical = statistical_error(whole);
   const std::vector<double> noise = norms(differences(request.series, Of::run, levels));
-  found.vanishes = request.relative && !tiny && noise.size() > 1 && magnitude(whole) < 0.1 * scale &&
-                   std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2;
+  found.vanishes = request.relative && !tiny && noise.size() > 1 && std::min(noise.back(), noise[noise.size() - 2]) > magnitude(whole) / 2 &&
+                   is_noise(levels, request.series);
   if (found.vanishes) found.estimate.untrusted = "the series is not larger than its differences between levels: request an absolute accuracy";
   if (const std::string why = obstacle(levels); !why.empty()) found.estimate.untrusted = why;
   found.met = found.estimate.trusted() && margin * found.estimate.error <= found.allowed;

@@ -52,8 +52,8 @@ struct Answer {
 /// was computed; it shows which share of the errors is due to the time integration.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
-/// Returns the error of `level` for a request that is due to one part of the discretisation (time integration or quadrature). `looser`: a run in
-/// which only this part is one level looser. `ratio`: factor by which one level reduces the error of this part.
+/// Returns the part of the error of `level` that is due to time integration only, or to quadrature only, for a request. `looser`: a run in which only
+/// this part of the discretisation is one level looser. `ratio`: factor by which one level reduces this part of the error.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
 /// Returns the reason, as a clause, why no error of this scene can be estimated from levels; empty if errors can be estimated. Checks the finest

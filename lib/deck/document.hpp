@@ -61,10 +61,10 @@ class Document {
 /// Reads and merges a deck, key by key. Each of `files` (XML if its name ends with .xml, otherwise YAML) overrides `stored` and the files before it.
 /// `settings` (`Section/key=value`) override the files. `stored` is YAML text from a checkpoint and may be empty. Throws UserError.
 ///
-/// An expectation (section Expect/<name>) is binding only for the deck that states it. It is no longer binding if a later file, or the settings
-/// together, change a key that results depend on without setting a key of the expectation again. The key `not binding` of the expectation then names
-/// the changed keys. Results depend on all keys except the keys of Output and Expect. They do not depend on Time/final time either, if the time `at`
-/// of the expectation is not after it. If `excuse` is not empty, it is set as `not binding` of all expectations.
+/// An expectation (section Expect/<name>) is binding only for the deck that states it. It stops being binding if a later file, or the settings
+/// together, change a key that affects results and set no key of the expectation. Its key `not binding` then names the changed keys. All keys affect
+/// results except the keys of Output and Expect, and Time/final time if it is not before the time `at` of the expectation. If `excuse` is not empty,
+/// it becomes the value of `not binding` in all expectations.
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored = {},
               const std::string& excuse = {});
 

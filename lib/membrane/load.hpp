@@ -65,8 +65,9 @@ class Load {
   /// Returns whether the load is symmetric under this image. If not, this symmetry is not used to reduce the number of unknowns.
   virtual bool admits(const surface::Image&) const { return false; }
 
-  /// Returns the dimensionless conditions under which the load moves with the particle in a rigid motion U + W x r. The search for steady shapes
-  /// leaves such motions free. A load that depends only on the shape has no condition. A force of fixed direction f requires W x f = 0.
+  /// Returns the dimensionless conditions that a rigid motion U + W x r must satisfy so that the load moves with the particle. The search for steady
+  /// shapes permits all motions that satisfy them. A load that depends only on the shape has no condition. If the load is a force of fixed direction
+  /// f, the condition is W x f = 0.
   virtual RigidConditions rigid_conditions() const { return RigidConditions::Identity(6, 6); }
 
   /// Returns whether the load changes if material points slide along the surface at constant shape.

@@ -34,8 +34,8 @@ void MaxwellElement::each_batch(const Net& x, const Use& use) const {
     }
 }
 
-/// Calls use(first, q, lane, row, metric of x) for the Gauss points q of every lane. first: index of the first Gauss point of the batch in relaxed_.
-/// row: index of the Gauss point among all Gauss points of the surface. Idle lanes have zero area.
+/// Calls use(first, q, lane, row, metric of x) for each Gauss point q of the element in each SIMD lane. first: index in relaxed_ of the first Gauss
+/// point of the batch. row: index of the Gauss point among all Gauss points of the surface. The area is zero in lanes without an element.
 template <class Use>
 void MaxwellElement::each_point(const Net& x, const Use& use) const {
   each_batch(x, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {

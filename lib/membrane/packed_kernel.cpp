@@ -69,7 +69,7 @@ struct Rule {
   template <int n>
   void evaluate(const Register* bezier, Register* a) const {
     constexpr int m = n == 2 ? 2 : 3;
-    Register along[max_p + 1][max_q][m][3];  // value and derivatives with respect to s, in each row j of Bezier points
+    Register along[max_p + 1][max_q][m][3];  // positions and their derivatives with respect to s at node k, for row j of Bezier points
     for (int j = 0; j <= p; ++j)
       for (int k = 0; k < q; ++k) {
         Register sum[m][3] = {};

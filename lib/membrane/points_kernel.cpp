@@ -136,8 +136,8 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // contributes to the moduli c13 and c22, because K = J_s^2 (g^11, g^12, g^22) depends on
-                                                             // the metric
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // contribution to the moduli c13 and c22 from the change of K with the metric, K = J_s^2
+                                                             // (g^11, g^12, g^22)
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);

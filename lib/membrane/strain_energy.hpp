@@ -66,8 +66,8 @@ class StrainEnergy {
  private:
   friend class ExpressionParser;
   enum class Kind { sum, product, shifted, scaled, power, root, exponential, logarithm };
-  /// An operation on the results with the indices `first` and `second` and on a constant. Results 0 and 1 are I1 and I2; the results of all
-  /// operations follow in order.
+  /// One operation of the energy expression. Its arguments are two earlier results, with the indices `first` and `second`, and a constant. Results 0
+  /// and 1 are I1 and I2; result k + 2 is computed by operation k.
   struct Operation {
     Kind kind;
     std::size_t first, second;

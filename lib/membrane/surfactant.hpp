@@ -54,7 +54,8 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< solves with diffusion only, on the shape stored by freeze()
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< solves (M + shift D K) c = m, thus includes only diffusion, on
+                                                                                 ///< the shape stored by freeze()
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }

@@ -1,6 +1,7 @@
 #pragma once
-// Sums over the functions of an element and over its Gauss points, on plain arrays. Arrays of k fields store one field after the other, [field n + q]
-// at n Gauss points. Control values are stored as [function k + field]. Tables of functions or of their derivatives are stored as [function n + q].
+// Sums over the functions of an element and over its Gauss points, on plain arrays. n is the number of Gauss points and k the number of fields. Field
+// f at Gauss point q has the index f n + q. Field f of the control value of function A has the index A k + f. In tables, function A or its derivative
+// at Gauss point q has the index A n + q.
 
 namespace tanktread::membrane {
 

@@ -27,7 +27,7 @@ struct AdaptationOptions {
   std::optional<double> reference_length;
   /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: the curvature is not used
   std::optional<double> reference_curvature_variation;
-  std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction: force per current area, per length
+  std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction (force per current area), force/length^3
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)

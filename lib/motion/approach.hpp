@@ -12,7 +12,7 @@ namespace tanktread::motion {
 
 /// Result of approach_steady: the weaker flows for which a steady shape was found on the way to the full flow.
 struct Approach {
-  std::vector<double> amplitudes;  ///< factors of the flow at which a steady shape was found, ascending; 1 is the flow of the scene
+  std::vector<double> amplitudes;  ///< flow amplitudes at which a steady shape was found, ascending; 1 is the amplitude of the scene
   SteadyReport last;               ///< report of the last search: at the full flow (amplitude 1), or the search that failed
 
   bool arrived() const { return !amplitudes.empty() && amplitudes.back() == 1; }

@@ -113,8 +113,8 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // estimated error: dG/dp is evaluated at `from`, so that the terms neglected in G(x, p) are of the order of
-                                   // (change of x and p) x (change of p)
+    solved.rest = moved * turned;  // estimated error due to dG/dp, which is evaluated at `from`: the norm of the change of (x, p) from `from`, times
+                                   // the change of p
     if (solved.rest < steady_.tolerance) return solved;
   }
   return {};

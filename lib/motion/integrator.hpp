@@ -27,7 +27,7 @@ struct State {
   Net x;                        ///< control net
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, latest first; the first is the slope at x
   std::vector<Place> places;    ///< earlier positions that a multistep scheme keeps, latest first
-  double slope_error = 0;       ///< bound of the error of history.front(), in the norm of `Time/tolerance` per unit of time
+  double slope_error = 0;       ///< error bound of the slope at x, history.front(), in the norm of `Time/tolerance` per unit of time
   Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if it was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations
@@ -59,8 +59,8 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. If the step falls below `Time/minimum step`, throws
-  /// RunFailure. The state is then unchanged, except for the effect of cross_kink().
+  /// Advances by one accepted step, not beyond `limit` or the next kink of the motion. Throws RunFailure if the step falls below `Time/minimum step`.
+  /// The state is then unchanged, unless cross_kink() has restarted it.
   virtual StepReport advance(coupling::Dynamics& dynamics, State& state, double limit) = 0;
 };
 
@@ -72,8 +72,8 @@ std::unique_ptr<Integrator> integrator(const TimeOptions& options, const std::sh
 /// rate of the motion r = |dx/dt|, the third derivative is approximated by r max(|d2x/dt2|, r^2), so the step does not depend on the unit of time.
 double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOptions& options);
 
-/// Returns the size of the next step, if the controller proposes `step`: the remaining time up to `limit` if `step` reaches the limit, half of the
-/// remaining time if two such steps reach it, otherwise `step`. The last step is then never tiny.
+/// Returns the size of the next step if the controller proposes `step`. Returns the remaining time up to `limit` if `step` reaches `limit`. Returns
+/// half of the remaining time if two steps of this size reach `limit`, so that the last step is never tiny. Otherwise returns `step`.
 double step_towards(double time, double limit, double step);
 
 /// Continuous output within a step: the cubic Hermite interpolant of positions and slopes at both ends, of fourth order, without further evaluations.

@@ -51,10 +51,10 @@ class Attempts {
   /// is not finite; `kind` names the scheme in the message.
   bool holds(double error, const char* kind) const;
 
-  /// Rejects the attempt. The size of the next attempt is `part` times the size of this attempt. `error`: error of the attempt divided by the
-  /// tolerance; 0 if unknown. After two successive rejections, the two errors give the power p of error ~ dt^p, at least 1/2. The next attempt is
-  /// then at most as large as p predicts for an acceptable error, but this bound is not below a tenth of the rejected size. (p is below 1 while a
-  /// shape relaxes after mesh refinement.) Source: Gustafsson 1994.
+  /// Rejects the attempt. The next attempt is `part` times as large. `error`: error of the attempt divided by the tolerance; 0 if unknown. If the
+  /// previous attempt was rejected with a larger error, the two errors give the power p of error ~ dt^p, at least 1/2. The size is then also limited
+  /// to the size that p predicts for an acceptable error, or to a tenth of the rejected size if this is larger. (p is below 1 while a shape relaxes
+  /// after mesh refinement.) Source: Gustafsson 1994.
   void reject(double part, double error = 0);
 
   /// Ends the step at y and returns the report. Sets the position and time of the state. Sets the size of the next step to `factor` times the size of

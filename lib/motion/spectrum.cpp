@@ -247,7 +247,7 @@ std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::Shape
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
-    // The mode that changes the conserved quantity most. Its shape does not identify it, because near a fold another mode has nearly the same shape.
+    // This mode changes the conserved quantity most. Its shape does not identify it, because near a fold another mode has nearly this shape.
     modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;
   }
   return modes;

@@ -97,8 +97,8 @@ void approach(SteadyEquations& equations, Net& x) {
   }
 }
 
-/// If the velocity times the step is more than this part of R_C, it counts as the error, however small the correction is: on a crumpled surface the
-/// Jacobian is so large that corrections are small although velocities are not.
+/// Largest value of (velocity times step)/R_C for which only the correction measures the error. A larger value counts as the error itself. On a
+/// crumpled surface the Jacobian is so large that corrections are small although velocities are not.
 constexpr double largest_motion = 0.1;
 
 }  // namespace

@@ -8,9 +8,10 @@
 
 namespace tanktread::quadrature {
 
-/// Shape of the metric at the target, rounded to few values (bins), so that one rule serves many elements. s and t are the local coordinates of the
-/// element. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents x_,s and x_,t is about `steps` times 15 degrees, with `steps`
-/// from 1 to 11. A rule for the rounded metric needs one or two Gauss points more, and is as accurate.
+/// Metric at the target up to a factor, rounded to few values (bins), so that many elements share one quadrature rule. s and t are the local
+/// coordinates of the element. |x_,t|^2 / |x_,s|^2 is about 2^doublings. The angle between the tangents x_,s and x_,t is about `steps` times 15
+/// degrees, with `steps` from 1 to 11. With one or two more Gauss points, a rule for the rounded metric is as accurate as a rule for the exact
+/// metric.
 struct Shear {
   int doublings = 0, steps = 6;
 

@@ -32,7 +32,7 @@ struct RunRequest {
   bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
   bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
   bool quiet = false;           ///< true to show no progress bar
-  bool of_ladder = false;       ///< true for a level of an accuracy ladder, which says itself why it ended and how to resume it
+  bool of_ladder = false;       ///< true for a level of an accuracy ladder; the ladder itself reports why it ended and how to resume it
   std::string deck_text;        ///< the effective deck, to be stored with the results
   /// Returns the scene of this deck with other values of keys, as settings `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;

@@ -43,8 +43,8 @@ coupling::Rigid rigid(const Scene& scene, const Body& body);
 /// Builds all particles of a scene in their resting shapes.
 std::vector<Member> members(const Scene& scene);
 
-/// Sets `followed`, the site of the material point `place` on the current mesh, if the mesh may adapt. The site is computed from `place` only, so a
-/// resumed run finds the same site.
+/// If the mesh may adapt, sets `followed` to the site of the parametric point `place` on the current mesh. `place` does not change, so a resumed run
+/// finds the same site.
 void follow(Member& member);
 
 /// Sets the blocks (rows in the nets of all particles), the geometries and the membranes of all members. Their bodies must exist.

@@ -24,7 +24,7 @@ struct Post {
   std::string path(const std::string& key = {}) const;  ///< returns the path of the post's section or of a key in it, for messages
 };
 
-/// Returns the lattice vector along the axis of a post, units length; zero if there is none.
+/// Returns the lattice vector along the axis of a post, in units of length; zero if no lattice vector is along the axis.
 Vec3 period_of(const Post& post, const stokes::PeriodicCell& cell);
 
 /// Moves the cylinders from the particles of a scene to its posts. Sets in the options of wall and flow whether the walls are plates. Sets the

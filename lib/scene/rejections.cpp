@@ -1,4 +1,4 @@
-// Combinations of choices that the program rejects, and choices for which particles are solved for in one system.
+// Combinations of choices that the program rejects, and choices that require one coupled system for the particles.
 
 #include <algorithm>
 

@@ -25,8 +25,8 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
 /// Adds the combinations of keys that searches for steady shapes, periodic motions and spectra exclude.
 void reject_searches(const Scene& scene, Rejections& to);
 
-/// Returns Steady/step, or its default. The default is bounded by a multiple of the membranes' relaxation times. The reason: in motions that no
-/// membrane opposes, the iteration amplifies velocity errors by the ratio of the step to these times.
+/// Returns Steady/step, or its default. The default is bounded by a multiple of the membranes' relaxation times. If no membrane opposes a motion, the
+/// iteration amplifies velocity errors in this motion by the ratio of the step to these times.
 double steady_step(const Scene& scene);
 
 /// Returns true if, after every step, the particle is moved so that its centroid is at the centre given in the deck: `Particle/drift`. Without this

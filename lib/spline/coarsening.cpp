@@ -84,7 +84,8 @@ struct Remover {
     return !gone.empty();
   }
 
-  /// Removes edges in one pass, in groups between two successive perpendicular edges, shortest group first. Returns whether any was removed.
+  /// Removes edges in one pass. The edges between two successive perpendicular edges (a bay) are removed together, the shortest bays first. Returns
+  /// whether any edge was removed.
   bool remove_bays() {
     const Lattice& l = lattice();
     std::vector<std::pair<std::size_t, Ray>> found;
@@ -200,7 +201,7 @@ TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairR
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // at a pole, a vertical line continues in the row of zero height (end knot): marks its edge there, too
+      if (!vertical || !l.pad) continue;  // below, at a pole: marks the edge that continues a vertical line in the row of zero height (end knot)
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

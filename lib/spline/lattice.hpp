@@ -33,7 +33,7 @@ struct Lattice {
   std::vector<std::array<std::uint8_t, 4>> corner;  ///< [v][k]: corner (0 .. 3) of adjacent cell k at which vertex v lies
 
   std::vector<std::array<int, 4>> corners;        ///< vertices (x, y), (x+1, y), (x+1, y+1), (x, y+1) of each cell, outward orientation
-  std::vector<std::array<std::uint8_t, 4>> slot;  ///< direction at corner k of each cell towards corner k + 1
+  std::vector<std::array<std::uint8_t, 4>> slot;  ///< direction (slot) from corner k of each cell to its corner k + 1
 
   std::vector<int> extraordinary;              ///< vertices of valence 3
   std::vector<std::uint8_t> is_extraordinary;  ///< for each vertex, nonzero if it is extraordinary

@@ -14,8 +14,8 @@
 namespace tanktread::spline {
 namespace {
 
-/// Returns the blossom (polar form), at three knots (lattice units), of the periodic cubic spline whose coefficients are the cosines (or sines) of
-/// the azimuths of the initial mesh.
+/// Returns the blossom (polar form), at three knots (lattice units), of a periodic cubic spline on the initial mesh. Its coefficients are the cosines
+/// (or sines) of the azimuths of the mesh vertices.
 double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
   const int m = l.units / l.base, span = int(std::floor(knots[1] / l.base));
   double d[4];
@@ -74,7 +74,8 @@ std::array<Eigen::Vector2d, 3> around(const std::array<Eigen::Vector2d, 3>& midd
   return {sum - 2 * middle[0], sum - 2 * middle[1], sum - 2 * middle[2]};
 }
 
-/// Weight of the function of an anchor (vertex of the tensor-product net) in the function of a control point.
+/// Weight with which the spline function of an anchor (vertex of the tensor-product net) contributes to the basis function of the control point
+/// `point`.
 struct Share {
   int point;
   double weight;

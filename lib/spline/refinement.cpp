@@ -43,9 +43,9 @@ std::vector<Ray> first_bay(const TMesh& mesh, const TJunction& t) {
   return path;
 }
 
-/// Returns a score for the violations after a trial insertion of the edges: the number of crossings of extensions plus half the number of missing
-/// edges, both counted by ExtendedMesh. Adds a penalty if the edges enter the `rings` rings of elements around an extraordinary point, which must
-/// remain uniform.
+/// Returns a score for the violations after a trial insertion of the edges `bay`: the number of crossings of extensions plus half the number of
+/// missing edges, both counted by ExtendedMesh. The first `rings` rings of elements around an extraordinary point must remain uniform; if the edges
+/// enter them, the score includes a penalty.
 double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
   const double penalty = broken_zones(extended.mesh(), bay, rings).empty() ? 0 : 1000;
   extended.insert(bay);

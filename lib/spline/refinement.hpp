@@ -43,8 +43,8 @@ struct Mark {
   bool s = true, t = true;
 };
 
-/// Rules for the mesh, which the repair after a refinement enforces. The spline spaces are nested only with all of them. Tests switch single rules
-/// off to show this.
+/// Rules for the mesh, which the repair after a refinement enforces. The spline spaces are nested only if all rules hold. Tests switch off one rule
+/// at a time to show this.
 struct RepairRules {
   bool no_overlaps = true;        ///< no lattice vertex is on the face extensions of two T-junctions that point at each other
   bool nested_extensions = true;  ///< the extended mesh (T-mesh with extensions) still contains all edges that it had before the refinement

@@ -9,10 +9,10 @@
 
 namespace tanktread::spline {
 
-/// Distances (lattice units) from an anchor to the first and second vertex with a perpendicular edge (see `touches`) in each direction (slot). If the
-/// ray first meets an extraordinary point, at distance d, the distances are d and 2 d, as if the mesh were reflected there, because the elements
-/// around the point have equal sizes. If the anchor is an extraordinary point, the distances are also d and 2 d. At a pole the end knot is repeated.
-/// Lattice::length converts these distances to parametric distances.
+/// Knots of an anchor: reach[k] contains the distances (lattice units) in direction (slot) k to the first and the second vertex with a perpendicular
+/// edge (see `touches`). If the first one is an extraordinary point, at the distance d, the second distance is 2 d, as if the mesh were reflected
+/// there, because the elements around the point have equal sizes. If the anchor is an extraordinary point, the second distance is also twice the
+/// first one. At a pole the end knot is repeated. Lattice::length converts these distances to parametric distances.
 struct Knots {
   int reach[4][2];
 };

@@ -109,7 +109,7 @@ class Layer {
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 
-  /// Returns whether far sums use clusters, so that a few products are faster by `apply` than by assembling.
+  /// Returns whether far sums use clusters. If so, a few products are computed faster by `apply` than with assembled rows.
   bool by_clusters() const { return tree_.has_value(); }
 
   /// Sets the shape x, which is kept for any number of densities. `measure`: area to which the density of a single layer refers.
@@ -199,7 +199,7 @@ class Layer {
   struct Reference {
     std::vector<double> bezier, weight;  // bezier: Bezier points of the unstressed surface. weight: quadrature weights of this surface at the far
                                          // nodes, areas included
-    std::vector<bool> present;           // true for elements where Measure::by_element selects the current area
+    std::vector<bool> present;           // per element: whether Measure::by_element refers the density to its current area
   };
 
   bool single() const { return kernel_ == Kernel::single_layer; }

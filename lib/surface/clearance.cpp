@@ -93,8 +93,8 @@ class OutlineSearch {
   bool near(double gap) const { return gap < best_.gap - tolerance(); }
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
-  /// Collects the elements that may contain the point nearest to the outline. Lower bounds of their distances follow from the largest disc inside the
-  /// outline about its centroid.
+  /// Collects the elements that may contain the point nearest to the outline. Other elements are excluded by lower bounds of their distances,
+  /// computed from the largest disc inside the outline about its centroid.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {

@@ -54,8 +54,8 @@ PrincipalAxes principal_axes(const Measures& measures);
 /// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
 constexpr int n_moments = 11;
 
-// A range of values on a closed surface: of a coordinate, or of the distance from a point in a plane section. The functions below compute its ends
-// by Newton's method for the exact polynomials of the surface.
+// Smallest and largest value of a quantity on a closed surface: a coordinate, or the distance of a plane section of the surface from a point. The
+// functions below compute them by Newton's method for the exact polynomials of the surface.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range

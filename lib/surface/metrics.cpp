@@ -22,8 +22,8 @@ struct LinePiece {
   spline::Site first, last;
 };
 
-/// Returns the parts into which the borders of Bezier elements divide the mid-line of a mesh element. The line begins at `start` and is straight in
-/// the plane of its macro face (face of the cube). `direction`: 0 if the line is parallel to x of this face, 1 if parallel to y.
+/// Divides the mid-line of a mesh element at the borders of Bezier elements, and returns its parts. The line begins at `start` and is straight in the
+/// plane of its macro face (face of the cube). `direction`: 0 if the line is parallel to x of this face, 1 if parallel to y.
 std::vector<LinePiece> pieces(const spline::Space& space, const spline::Locator& locate, spline::Place start, int direction, double length) {
   std::vector<LinePiece> result;
   const double end = (direction == 0 ? start.x : start.y) + length;

@@ -71,8 +71,9 @@ struct Resolution {
   Errors merged;  ///< errors of the element of twice the length that contains this element; 16 times `errors` if there is none
 };
 
-/// Returns the estimated errors, along s and along t, of elements(mesh), in the order of elements(mesh). A line of sample points ends at an
-/// extraordinary point or a pole; if it has fewer than five points, the estimate is 0. A side of an element that is collapsed to a pole is ignored.
+/// Returns the estimated discretisation errors along s and along t for each element of elements(mesh), in this order. A line of sample points ends at
+/// an extraordinary point or a pole; if it has fewer than five points, the estimate is 0. A side of an element that is collapsed to a pole is
+/// ignored.
 std::vector<std::array<Resolution, 2>> resolution(const spline::TMesh& mesh, const spline::Space& space, const Net& rest, const Net& net,
                                                   const FieldAt& load, const FieldsAt& fields = {});
 

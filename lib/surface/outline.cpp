@@ -183,8 +183,8 @@ Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, con
   return best;
 }
 
-/// Returns whether p is inside the polygon of the chords. If p is so close to the outline that polygon and curve may differ, uses the normal at the
-/// nearest point of the outline instead.
+/// Returns whether p is inside the outline, which is approximated by the polygon of its chords. If p is so close to the outline that polygon and
+/// curve may differ, the normal at the nearest point of the outline decides instead.
 bool Outline::within(const Vec2& p, const Nearest& nearest) const {
   if (nearest.distance <= 2 * sag_) {
     Vec2 out = normal(nearest.side, nearest.u);

@@ -18,7 +18,8 @@ struct Unit {
   std::vector<double> coordinate;
 };
 
-/// Returns the splines over a period of unit length around 0. The seam, where the period begins and ends, lies at a quarter of a periodic element.
+/// Returns splines of period 1 with `elements` equal periodic elements, on one period around 0. The seam, where this period begins and ends, divides
+/// a periodic element at a quarter of its length.
 Unit unit_period(int elements) {
   std::vector<double> knots;
   for (int k = 0; k < elements; ++k) knots.push_back((k + 0.5) / elements - 0.5);

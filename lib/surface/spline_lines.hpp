@@ -12,8 +12,8 @@
 
 namespace tanktread::surface {
 
-/// Cubic splines in one variable: intervals between knots (pieces) with four functions each, and collocation points, each with all pieces that
-/// contain it.
+/// Cubic splines in one variable. Lists the intervals between knots (pieces) with their four functions, and for each collocation point all pieces
+/// that contain it.
 struct Line {
   struct Piece {
     std::array<int, 4> functions;

@@ -39,8 +39,9 @@ struct Reflection {
   Vec3 operator()(const Vec3& x) const { return middle + of_vector(x - middle); }
 };
 
-/// Returns the image with these signs if it maps the space and all these nets onto themselves. Elements may be mapped to other elements. Tolerances:
-/// 1e-10 of the first net's size for positions (the accuracy of refined fits), 1e-10 for basis functions, 1e-9 for sites.
+/// Returns the map with these signs of the coordinates if it maps the space and all nets onto themselves; otherwise nothing. Elements may be mapped
+/// to other elements. Tolerances: 1e-10 of the first net's size for positions (the accuracy of refined fits), 1e-10 for basis functions, 1e-9 for
+/// sites.
 std::optional<Image> image(const spline::Space& space, std::span<const Net* const> nets, const Vec3& signs);
 
 /// A group of reflections that map a surface onto itself. Its fundamental control points are orbit representatives, all in one connected part of

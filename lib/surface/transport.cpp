@@ -68,8 +68,8 @@ struct Circuit {
 using kernel::n_harmonics;
 using Values = Eigen::Matrix<double, n_harmonics, 1>;
 
-/// Integrals over the surface scaled by 1/R: of products h_i h_j of solid harmonics (the lower triangle), of h_i v.n, and of h_i n. The integrals of
-/// x_i n_i are V/R^3 each, where V is the volume.
+/// Integrals over the surface scaled by 1/R, with the solid harmonics h_i. `products`: int h_i h_j dG, lower triangle only. `motion`: int h_i v.n dG.
+/// `normals`: int h_i n dG. The integrals of x_i n_i are V/R^3 each, where V is the volume.
 struct Sums {
   Eigen::Map<Eigen::Matrix<double, n_harmonics, n_harmonics>> products;
   Eigen::Map<Values> motion;

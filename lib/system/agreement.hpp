@@ -29,7 +29,7 @@ std::string failure_of_any(const std::function<void()>& act);
 /// RunFailure. Collective.
 void together(bool acts, const std::function<void()>& act);
 
-/// Returns the largest outcome of all ranks and, if it is not 0, the reason given by one rank. Collective; see `largest`.
+/// Returns the largest `mine` of all ranks. If it is not 0, also returns one of the reasons that ranks gave. Collective; see `largest`.
 std::pair<int, std::string> worst_of_all(int mine, const std::string& reason);
 
 /// Returns whether a net that all ranks hold is finite, as determined by the first rank. Collective.

@@ -183,7 +183,7 @@ bool Capsule::in_front_of_wall(const Net& x) {
   return !parameters_.wall || stokes::in_front({&*parameters_.wall, 1}, targets_.at_sites() * x);
 }
 
-/// Returns whether the defect of a velocity is computed by (3.14), without solving for the velocity.
+/// Returns whether defect() uses (3.14), which does not require a solve for the velocity.
 bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() && schur(); }
 
 Net Capsule::defect(const Net& x, const Net& u) {

@@ -97,9 +97,9 @@ class Capsule : public Dynamics {
   double norm(const Net& displacement) const override;  ///< ignores the mean displacement along x1 in a straight tube, where all x1 are equivalent
   Net symmetric(Net field) const override { return parameters_.symmetry.completed(std::move(field)); }
 
-  /// Sets the virtual work of additional forces for all later calls, one row per control point; an empty net removes the forces. `contacts`: contact
-  /// forces, which keep their directions and material points. `fields`: loads due to the fields on surfaces, given as minus their contribution to
-  /// dE/dx (4.2).
+  /// Sets the virtual work of additional forces, one row per control point, for all later calls. An empty net removes the forces. The forces are
+  /// either contact forces (`contacts`), which keep their directions and material points, or loads due to the fields on surfaces (`fields`), given as
+  /// minus their contribution to dE/dx (4.2).
   enum class Forces { contacts, fields };
   void set_forces(Forces of, Net work);
 

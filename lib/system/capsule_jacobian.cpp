@@ -10,7 +10,7 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns whether the particle's membrane resists area changes much more than shear: its area modulus exceeds `times` its shear modulus.
+/// Returns whether the particle's membrane nearly conserves its area: its area modulus exceeds its shear modulus by more than the factor `times`.
 bool keeps_area(const Particle& one) {
   constexpr double times = 50;
   return !one.rigid && membrane::area_modulus(one.material.law) > times * membrane::modulus(one.material.law);

@@ -21,9 +21,10 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
-/// Solves P B P v = rhs (4.2) for v, where rhs = P rhs. P is the projection (2.8) that removes changes of the volumes, given by the vectors b and c;
-/// if b and c are empty, the volumes are free and P = 1. In a tube, B either includes the response of the wall to v (option `schur`), or
-/// solve_blocks() solves for v and the wall tractions together. The initial guess is `guess`; if it is empty or there are rigid bodies, it is rhs.
+/// Solves P B P v = rhs (4.2) for v, where P rhs = rhs. The vectors b and c define the projection P (2.8), which removes changes of the volumes. If b
+/// and c are empty, the volumes are free and P = 1. In a tube, B includes the response of the wall to v with the option `schur`; with other options,
+/// solve_blocks() solves for v and the wall tractions together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise
+/// `guess`.
 Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();

@@ -46,7 +46,7 @@ class Dynamics {
   /// and `missed` expect defects with the same B.
   virtual Net defect(const Net& x, const Net& u) { return velocity(x) - u; }
 
-  /// Returns true if the velocity requires a linear solve that the defect of a given velocity does not require.
+  /// Returns true if velocity() requires a linear solve but defect() does not.
   virtual bool defect_spares_system() const { return false; }
 
   /// Returns the result of `solve` for r = shift (v - u), where v is the velocity at the current shape and u a given velocity. The argument is the
@@ -55,24 +55,24 @@ class Dynamics {
     return solve(shift, shift * defect, tolerance, secants);
   }
 
-  /// Returns B (dv - J delta), the error of the Jacobian J of the last linearisation for the displacement delta, which changes the velocity by dv. B
-  /// is the operator of `defect`. Used by Secants. `change` is the change of the defect B (v - u) due to delta, where u = (x - c)/shift with a
-  /// constant net c: if B is the identity, it is dv - delta/shift.
+  /// Returns B (dv - J delta), the error of the Jacobian J of the last linearisation. Here dv is the change of the velocity due to the displacement
+  /// delta, and B is the operator of `defect`. Used by Secants. `change`: change of the defect B (v - u) due to delta, where u = (x - c)/shift with a
+  /// constant net c. If B is the identity, `change` is dv - delta/shift.
   virtual Net missed(const Net& change, const Net& delta, double shift) = 0;
 
   /// Returns J delta at x, where the velocity is v and the norm of delta is comparable to the size of the shape. Uses the frozen operators (4.3) if
   /// there are any, and otherwise a finite difference of velocities, which takes one evaluation.
   virtual Net derivative(const Net& x, const Net& v, const Net& delta) { return difference(x, v, delta); }
 
-  /// Returns the change, due to the displacement delta, of the velocity with which meshes relax along interfaces, at the last linearisation. Returns
-  /// no rows if no mesh relaxes.
+  /// Returns the change of the mesh relaxation velocity along interfaces due to the displacement delta, at the last linearisation. Returns no rows if
+  /// no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
   /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. If the iteration fails, x is not finite afterwards.
   virtual void restore_volume(Net& x) = 0;
 
-  /// Improves the initial guess y of a stage of the step with the given shift. Membranes that nearly conserve area then have the tensions that they
-  /// had in the shape `before` the stage.
+  /// Improves the initial guess y of a stage with the shift gamma dt: membranes that nearly conserve area get the tensions that they had in the shape
+  /// `before` the stage.
   virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
   /// Returns fields that move points along surfaces without changing the shape: rotations of the mesh of each drop whose mesh slides.

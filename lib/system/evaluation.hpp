@@ -46,7 +46,7 @@ class Evaluation {
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 
-  Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
+  Tube::Checks checks();                                 ///< returns the residuals of the conditions (2.14) for the response of the tube
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();
@@ -64,7 +64,7 @@ class Evaluation {
  private:
   friend class Capsule;
   void find_unknowns();
-  const Net& moving();  // fluid velocity solved for at this shape, never copied from the evaluation `near_`
+  const Net& moving();  // fluid velocity from a solve at this shape. It is never a copy of the velocity of `near_`
   const Net& viscous_work();
 
   Capsule* system_;

@@ -61,7 +61,7 @@ Net along_interface(const Net& normals, Net field) {
   return field;
 }
 
-/// Returns the change of the normal part n (n.field) of a field if its normals n change by `change`.
+/// Returns the change of n (n.field), the normal part of `field`, if the normals n change by `change` and the field does not change.
 Net turned(const Net& normals, const Net& change, Net field) {
   for (Eigen::Index i = 0; i < field.rows(); ++i) {
     const double across = normals.row(i).dot(field.row(i)), tilted = change.row(i).dot(field.row(i));
@@ -141,7 +141,7 @@ void InterfaceMotion::slide(const Net& x, const Net& f, Net& w) const {
     if (!drop.relaxed) continue;
     const spline::Block& block = drop.block;
     const Mat3 turn = rotation_between(block.rows(mesh_.unstressed()), block.rows(x));
-    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, in which its single layer A0 is given
+    const Net density = block.rows(f) * turn;  // rotated to the axes of the initial shape, in which the single layer A0 of the drop is stored
     const Eigen::Map<const Eigen::VectorXd> there(density.data(), density.size());
     for (size_t k = 0; k < drop.points.size(); ++k)
       w.row(drop.points[k]) = -drop.speed * (turn * (drop.layer.middleRows<3>(3 * static_cast<Eigen::Index>(k)) * there)).transpose();

@@ -77,10 +77,10 @@ Blocks velocity_blocks(std::span<const Particle> particles);
 /// Sets the rows of rigid bodies to 0.
 void clear_rigid(std::span<const Particle> particles, Net& net);
 
-/// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). A load that depends
-/// on integrals over the whole surface (such as the area) returns the part of this rank in nets (sum nets), which the caller sums over ranks and
-/// symmetry images and passes back. Several loads of one particle use consecutive sum nets; loads of different particles use different rows of the
-/// same sum nets. Uses no MPI.
+/// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). A load may depend on
+/// integrals over the whole surface (such as the area). It then returns the contribution of this rank to the integrals in nets (sum nets). The caller
+/// sums these nets over ranks and symmetry images and passes them back. Several loads of one particle use consecutive sum nets. Loads of different
+/// particles use different rows of the same sum nets. Uses no MPI.
 class Loads {
  public:
   Loads() = default;

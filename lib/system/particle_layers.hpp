@@ -69,7 +69,7 @@ class ParticleLayers {
   Net apply_single(const Net& x, const Net& f);
 
   void place_double(const Net& x);  ///< sets the surface of the double layer, if there is one
-  Net apply_double(const Net& v);   ///< returns D v on the surface of place_double()
+  Net apply_double(const Net& v);   ///< returns D v, with D on the surface that place_double() set
 
   /// Sets the surface x for apply(), and assembles the rows of the layers if the options ask for it. `single`: whether apply() will need A.
   void assemble(const Net& x, bool single);
@@ -77,8 +77,7 @@ class ParticleLayers {
   /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface that assemble() set. An empty f is treated as zero.
   Net apply(const Net& x, const Net& v, const Net& f);
 
-  /// Returns the rows of D at these collocation sites on every rank, on the surface of assemble(). Each row is provided by the rank that owns its
-  /// point.
+  /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The rank that owns a site provides its row.
   stokes::Rows<double> double_rows(std::span<const int> sites);
 
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of this rank

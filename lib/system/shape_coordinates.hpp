@@ -48,7 +48,8 @@ class ShapeCoordinates {
   ShapeCoordinates(const spline::Space& space, std::span<const Particle> particles, const surface::Symmetry& symmetry, const Net& x,
                    const VelocityProjection* projection = nullptr, const Vec3& parity = Vec3::Ones());
 
-  /// Makes meshes that relax by themselves follow displacements of x (4.26), by the linearised mesh motion of `dynamics`. Collective.
+  /// Determines how relaxing meshes follow displacements of x (4.26): they slide along the surface until the linearised mesh motion of `dynamics`
+  /// vanishes. Collective.
   void follow(Dynamics& dynamics, const Net& x);
 
   /// Adds the coordinates of the fields on the surfaces (4.34). They represent changes relative to the state y. `motion` must outlive this object.
@@ -96,7 +97,7 @@ class ShapeCoordinates {
   const VelocityProjection* projection_;
   Net normals_;  // normals of drops at the sites where velocities are projected onto the splines
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
-  Net state_;                           // state y relative to which add_fields() defines changes
+  Net state_;                           // state y; the field coordinates of add_fields() are changes relative to y
   Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of a state's field coefficients that symmetry and parity allow, one column
                                         // per basis vector
 };

@@ -75,8 +75,8 @@ surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& 
 
 std::optional<Net> label_rotation(const spline::Space& space, const spline::Block& block, const Net& unstressed, const Net& x, int axis,
                                   const membrane::SymmetricSolver& collocation) {
-  // A rotation counts as a map of the unstressed surface onto itself if its ratio of normal velocity to velocity (root mean squares) is at most this
-  // value. A fitted sphere with 3 x 3 elements per face has the ratio 1e-3.
+  // A rotation counts as a map of the unstressed surface onto itself if the normal component of its velocity is at most this fraction of the velocity
+  // (root mean squares). On a fitted sphere with 3 x 3 elements per face the fraction is 1e-3.
   constexpr double fitted = 1e-2;
   const Vec3 centre = block.rows(unstressed).colwise().mean().transpose();
   Net field = Net::Zero(x.rows(), 3);

@@ -19,14 +19,14 @@ class Volumes {
   const surface::Geometry& geometry() const { return geometry_; }
   double error(double volume, std::size_t p) const { return volume / kept_[p] - 1; }  ///< V/V0 - 1 of particle p
 
-  /// Returns b = dV/dx, the gradient of the volume of each particle in its rows.
+  /// Returns b = dV/dx: the rows of each particle contain the gradient of the volume of this particle.
   Net gradient(const Net& x) const;
 
   /// Applies the projection P of (2.8) to v for each particle, so that its volume does not change.
   void constrain(Net& v, const Net& b, const Net& c) const;
 
-  /// Moves x onto the volumes V0 by Newton's method with V = x.(dV/dx)/3 (V: cubic form in x). Sets x to NaN if the iteration fails. `along(b)`:
-  /// displacement, in the rows of each particle, that changes its volume.
+  /// Changes the volumes of x to V0 by Newton's method. V is a cubic form in x, so V = x.(dV/dx)/3. Sets x to NaN if the iteration fails. `along(b)`:
+  /// direction of the displacement of each particle that changes its volume, for b = dV/dx.
   void restore(Net& x, const std::function<Net(const Net& b)>& along) const;
 
  private:

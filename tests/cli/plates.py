@@ -203,8 +203,8 @@ def a_flow_that_changes_in_time_is_the_flow_of_that_time():
         for word, by in zip(words, (gradient, velocities)):
             there = there.replace(word, by)
         here = CAPSULE.replace(words[0] + "}", f"{words[0]}, history: {{times: [0.0, 0.01], {history}}}}}")
-        run(deck(here), "--output", "here", "--quiet")
-        run(deck(there), "--output", "there", "--quiet")
+        run(deck(here), "--output", "here", "--overwrite", "--quiet")
+        run(deck(there), "--output", "there", "--overwrite", "--quiet")
         for name in names:
             off = abs(series("here", name) - series("there", name)).max()
             check(off < 1e-10 * max(1, abs(series("there", name)).max()), f"{name}: {off}")

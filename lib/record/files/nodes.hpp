@@ -43,7 +43,8 @@ class Nodes {
   /// Returns the values of a field with control values of shape (N, 3), at the nodes. Shape (n_nodes, 3).
   Net values(const Net& control_values) const;
 
-  /// Calls use(node, before, now) for every node in order, with positions and derivatives of two surfaces on the first element that has the node.
+  /// Calls use(node, jet_before, jet_now) for every node in order. The jets are the position and derivatives at the node of the surfaces `before` and
+  /// `now`, evaluated on the first element that contains the node.
   template <class Use>
   void each_node(const Net& before, const Net& now, Use use) const {
     std::vector<surface::Jet> jets_before, jets_now;

@@ -81,7 +81,7 @@ class Pairs {
     if (!(found.gap < reach)) return found;
     const auto& [a, b] = found.sites;
     const surface::ClosestPoints refined = surface::nearest_points(first.patches[a.element], second.patches[b.element], found);
-    constexpr double slack = 1e-2;  // in local coordinates; farther outside of an element, its polynomial is not the surface
+    constexpr double slack = 1e-2;  // tolerance in local coordinates; farther outside of an element, its polynomials do not represent the surface
     const auto inside = [](const spline::Site& at) { return std::max(std::abs(at.s - 0.5), std::abs(at.t - 0.5)) <= 0.5 + slack; };
     return inside(refined.sites[0]) && inside(refined.sites[1]) ? refined : found;
   }

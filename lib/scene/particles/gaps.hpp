@@ -41,9 +41,9 @@ std::vector<Approach> approaches(const std::vector<Member>& members, const Net& 
 /// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest radius R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the width exceeds a limit that every element of
-/// the current mesh resolves. `cell`: cell of the lattice; films to images of particles and of the wall count, too. `wall`: wall of the tube around
-/// the particle, or null; x is given in the coordinates of the wall.
+/// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the film is so wide that every element of the
+/// current mesh resolves it (AdaptationOptions::film_resolution). `cell`: cell of the lattice; films between the particle and periodic images of
+/// particles and of the wall count, too. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);
 

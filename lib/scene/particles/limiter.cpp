@@ -71,7 +71,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// Returns the known contact between the two particles of `contact` that is less than half an element away from it; null if there is none.
+/// Returns the known contact of the same two particles at a distance from `contact` of less than half an element; null if there is none.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));

@@ -66,7 +66,7 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
   return site;
 }
 
-/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. In a fluid at rest, it is R_C per unit of time.
+/// Returns the unit of velocity: rate x R_C, or the mean velocity in a tube. If the fluid is at rest, the unit is R_C divided by the unit of time.
 double unit_speed(const Scene& scene, const Body& body) { return scene.speed() > 0 ? scene.speed() : body.radius; }
 
 /// Returns an array with one number per rank: `mine` for this rank and 0 for all others, so that a sum over ranks collects the numbers.

@@ -55,7 +55,7 @@ struct Together {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Add columns that several kinds of rows have.
+/// Add one group of columns each. Rows of several kinds contain these columns.
 void add_points(int n_points, Columns& to);
 void add_size(const surface::Measures& measures, Columns& to);
 void add_stresslet(const Mat3& stresslet, Columns& to);

@@ -35,7 +35,7 @@ class Cap {
   /// int (1 / 8 pi) T_ijk(y, x) n_k dS(x) with the index i of T along x1. Only for points off the plane of the cap.
   Vec3 double_layer_flow(const Vec3& y, const Vec3& n) const;
 
-  /// Returns the flow rate along x1 through the cap of the field c (2.13): int c_1 dS over the cap.
+  /// Returns the flow rate of the field c (2.13) through the cap, along x1: int c_1 dS over the cap.
   double own_flow() const;
 
  private:

@@ -175,8 +175,8 @@ class Row {
   void element(const OutlineElement& e) {
     e_ = &e;
     weight_.setZero();
-    double t = site_.t;  // parameter of the target. A target at the first knot of a closed side is also at the last knot; the period is then added to
-                         // t
+    double t = site_.t;  // parameter of the target. At the first knot of a closed side, the target also lies at the end of the last element, where
+                         // its parameter is t plus the period
     if (site_.side == e.side && t < e.begin && surface::closed(space_.outline().side(e.side))) {
       const auto [first, last] = surface::range(space_.outline().side(e.side));
       t += last - first;

@@ -122,7 +122,7 @@ void add_stresslets(const Charges& points, const double* target, double* u) {
   });
 }
 
-/// Computes the sum over the nodes as the sum over their runs. `add` adds the sum over one run.
+/// Computes the sum over the nodes in runs, each of at most `single_run` nodes. `add` adds the sum over one run to u.
 template <class Nodes>
 void sum_of_runs(void (*add)(const Nodes&, const double*, double*), const Nodes& nodes, const double* target, double* u) {
   std::fill_n(u, 3 * far_block, 0.);

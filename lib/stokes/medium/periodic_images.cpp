@@ -49,7 +49,7 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // term m + 1 of the power series. The power is (-x^2)^m/m!, because (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // terms of `first`, `second`: term m + 1 of a power series, divided by x^2; (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);

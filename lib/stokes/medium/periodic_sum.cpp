@@ -10,8 +10,8 @@ namespace tanktread::stokes {
 
 namespace {
 
-/// Rounds the extent outwards in the directions that are not periodic, to multiples of a step between an eighth and a quarter of its length. A moving
-/// shape then seldom needs a new table, and the box depends on the shape only.
+/// Rounds the extent outwards in the directions that are not periodic, to multiples of a step. The step is between an eighth and a quarter of the
+/// length of the extent. A moving shape then seldom needs a new table. The rounded extent depends only on the current shape, not on earlier ones.
 std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent) {
   for (int d = cell.n(); d < 3; ++d) {
     const double step = std::exp2(std::floor(std::log2(extent[1][d] - extent[0][d]))) / 4;
@@ -20,8 +20,8 @@ std::array<Vec3, 2> rounded(const PeriodicCell& cell, std::array<Vec3, 2> extent
   return extent;
 }
 
-/// Returns how many images are near: all images up to this number of steps along each lattice vector, in both directions. Also returns the distance
-/// of the nearest of all other images. For any two points in the box, this distance is at least about `far` box lengths.
+/// Returns, for each lattice vector, the number of steps in both directions up to which images are near. Also returns the distance of the nearest
+/// image that is not near. For any two points in the box, this distance is at least about `far` box lengths.
 std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const Mat3& box, double far) {
   const double longest = box.colwise().norm().maxCoeff();
   std::array<int, 3> steps{0, 0, 0};
@@ -109,7 +109,7 @@ std::vector<double> columns(PeriodicKernel::Kind kind, const std::vector<double>
   return result;
 }
 
-/// Data to find the table index of the difference between two interpolation nodes.
+/// Data of PeriodicSum (difference_, differences_, box_.order) that give the table index of the difference between two interpolation nodes.
 struct Differences {
   const std::array<std::vector<int>, 3>* number;
   const std::array<std::size_t, 3>* many;

@@ -26,7 +26,7 @@ int chebyshev_order(double tolerance, double z) {
 /// which of two mirrored positions comes first. Clusters would then depend on the number of ranks, and sums would change by a part of the tolerance.
 constexpr int compared_bits = 33;
 
-/// Extents that differ by less than this ratio count as equal, for the same reason.
+/// Two extents count as equal if their ratio is above this value, so that rounding errors do not decide about the clusters either.
 constexpr double equal_extents = 1 - 1e-6;
 
 /// Returns the axes rotated as little as possible so that one of them is the normal.

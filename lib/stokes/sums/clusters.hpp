@@ -24,8 +24,8 @@ struct Cluster : ChebyshevBox {
   bool leaf() const { return child[0] < 0; }
   int n_points() const { return last - first; }
 
-  /// Returns whether the Chebyshev nodes of this box are accurate for targets in `other` shifted by `beyond`, or for sources in `other` if this is a
-  /// box of targets.
+  /// Returns whether interpolation at the Chebyshev nodes of this box is accurate for interactions with `other`, shifted by `beyond`. One of the two
+  /// boxes contains sources, the other one targets.
   bool serves(const ChebyshevBox& other, const Vec3& beyond) const;
 };
 

@@ -22,8 +22,8 @@ using Sites = std::vector<std::vector<spline::Site>>;
 struct SelfPair {
   int panel = 0;
   quadrature::Shear shear;         ///< metric of the panel at the site, rounded to a bin; the rule was constructed for this bin
-  quadrature::PolarOrders orders;  ///< raised orders if the panel is distorted, otherwise 0; if only the radial order is not 0, the rule is tensor
-                                   ///< Gauss of this order
+  quadrature::PolarOrders orders;  ///< raised orders if the panel is distorted, otherwise 0. If only the angular orders are 0, the rule is a tensor
+                                   ///< Gauss rule of the radial order
   const PointTable* table = nullptr;
   std::vector<Pack> weights;      ///< weights of the rule times the area element of the unstressed surface
   std::vector<double> bernstein;  ///< Bernstein polynomials and their derivatives at the site: B_i(s), B_j(t), B_i'(s), B_j'(t)

@@ -110,7 +110,7 @@ void TreeSum::take_part() {
   });
 }
 
-/// Determines which source clusters need strengths at their Chebyshev nodes for the pairs of clusters to be summed.
+/// Marks the source clusters whose Chebyshev nodes need strengths: clusters whose nodes enter a pair, and all their descendants that have nodes.
 void TreeSum::ask() {
   const std::vector<Cluster>& all = sources_.all();
   in_use_.assign(all.size(), 0);

@@ -24,8 +24,8 @@ namespace tanktread::coupling {
 /// P_I, P_O the velocities (2.29) due to the duct flow through the inlet and the outlet. The wall operator is constructed by all ranks when a
 /// velocity is first needed; Tube uses the same factors. Members of DuctFlow other than velocities refer to the inlet.
 ///
-/// In a periodic channel of period L, Poiseuille flow in a circular tube with the pressure gradient dp/L replaces c dp and P. Then f is the traction
-/// of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
+/// In a periodic channel of period L, Poiseuille flow in a circular tube with the pressure gradient dp/L replaces the terms dp c, P_I and P_O. Then f
+/// is the traction of the fluid inside minus the traction of a fictitious fluid outside, whose velocity also vanishes on the wall.
 class ChannelFlow : public stokes::DuctFlow {
  public:
   ChannelFlow(const surface::TubeOptions& options, double viscosity, double mean_velocity, const quadrature::Options& quadrature,

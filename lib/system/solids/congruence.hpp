@@ -11,7 +11,8 @@ namespace tanktread::coupling {
 /// One orthogonal map Q of the cross-section, extended by Q e1 = e1, that maps the wall to itself: rotation about x1, reflection, or both.
 struct Congruence {
   Mat3 q;
-  std::vector<int> image, source;  ///< image[k]: Q maps control point k of every ring to control point image[k] of the same ring; source: inverse
+  std::vector<int> image, source;  ///< image[k]: Q maps control point k of every cross-section (ring) to control point image[k] of this
+                                   ///< cross-section. source: inverse of image
 };
 
 /// Returns the maps found, with the identity first. For a circle with n points around, these are 2 n maps, for a rectangle 4, and for the section of
@@ -21,7 +22,8 @@ struct Congruence {
 /// A(Q i, Q p) = Q A(i, p) Q^T.
 std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& sites);
 
-/// For a point of a ring: another point of the ring that a map moves to it. The matrix rows of only this other point are assembled.
+/// Orbit representative of a point of a cross-section (ring): the point of the ring from which a map leads to the given point. Matrix rows are
+/// assembled only for representatives.
 struct Original {
   int point;               ///< index in the ring; the smallest that a map moves to the given point
   const Congruence* from;  ///< the map that moves `point` to the given point; points into the list given to originals()

@@ -102,8 +102,8 @@ FreeBody::FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre,
   drift_ = mobility_ * modes_.response.rightCols(modes_.response.cols() - 6);
 }
 
-/// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes: the rigid motion relative to the
-/// flow, the negative strain rate of the flow and, if the flow is quadratic, its negative quadratic coefficients.
+/// Returns the amplitudes of the modes (RigidModes) of the disturbance velocity on the body, in body-fixed axes. These are the rigid motion relative
+/// to the flow, minus the strain rate of the flow and, if the flow is quadratic, minus its quadratic coefficients.
 Eigen::VectorXd FreeBody::amplitudes(const Net& place) const {
   const Mat3 turn = rotation_of(place), l = turn.transpose() * flow_.gradient(centre_of(place)) * turn;
   Eigen::VectorXd a(modes_.response.cols());

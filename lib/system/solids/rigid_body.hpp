@@ -100,8 +100,8 @@ class FreeBody : public LoneRigidBody {
 
   RigidModes modes_;
   Eigen::Matrix<double, 6, 6> mobility_;            ///< column k: rigid motion due to the unit force (k = 0, 1, 2) or unit torque (k = 3, 4, 5)
-  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< rigid motion of a free body relative to the flow, for each strain and quadratic
-                                                    ///< flow
+  Eigen::Matrix<double, 6, Eigen::Dynamic> drift_;  ///< column k: rigid motion of a free body relative to the flow, due to unit strain flow or unit
+                                                    ///< quadratic flow k
 };
 
 /// A free body in a tube or near a plane wall, with the equation (2.40), which is solved at each position. In a tube the force density and the motion
@@ -114,7 +114,7 @@ class FreeBody : public LoneRigidBody {
 /// finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
-  /// `body`: equation of the body, with its tube or wall. `surface`: net of the body in its initial position.
+  /// `body`: equation (2.40) of the traction on the body, including the tube or the plane wall. `surface`: net of the body in its initial position.
   FreeBodyInTube(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, double viscosity,
                  const Rigid& driven = {});
 

@@ -54,7 +54,7 @@ class RigidParticles {
   bool empty() const { return bodies_.empty(); }
   bool prescribed() const;  ///< true if the motion of any body is prescribed
 
-  /// Moves every body to the position that fits its rows of x best, and sets its rows of x to this position.
+  /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
   void place(Net& x);
 
   /// Sets forces on the bodies in addition to the prescribed forces, by their virtual work with one row per control point of all particles. The
@@ -66,18 +66,18 @@ class RigidParticles {
   void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
                                              ///< df of a body induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion
-  void complete(const Net& w, Net& v) const;  ///< completes the double layer (2.23) in the rows of bodies. Subtracts w, and adds the correction
-                                              ///< of the collocation error (OwnLacking). In addition, adds the rigid motion <w> if the force and
+  void complete(const Net& w, Net& v) const;  ///< completes the double layer (2.23) in the rows of bodies: subtracts w, and adds the
+                                              ///< collocation-error correction (OwnLacking) of the layer. Then adds the rigid motion <w> if force and
                                               ///< torque are given, and otherwise the correction of the load completing_load()
   Net completing_load(const Net& w) const;   ///< load (mu/R_C) <w> of bodies with prescribed motion, with <w> the rigid motion nearest to w (2.23); 0
                                              ///< in other rows
   void move(Net& v);                         ///< in the rows of bodies: stores the unknown w (2.23) and replaces it by the velocity V
   /// Sets the motion, force and torque of body p to values that were not computed from (2.23). Sets the rows of the body in v to this motion.
   void move(std::size_t p, const RigidMotion& motion, const Vec3& force, const Vec3& torque, Net& v);
-  /// On a lattice, the velocities are solved for with each body replaced by its image in the cell. `enter` sets the ambient velocity at each body
-  /// minus the ambient velocity at its image: shifts[p] is the position of particle p minus the position of its image, and `gradient` is the velocity
-  /// gradient of the flow. After the solve, `carry` moves particle p, if it is a body, from its image back to its position: it adds `along` to the
-  /// centre and `faster` to the velocity.
+  /// On a lattice, the solve for the velocities uses the image of each body in the cell. Before the solve, `enter` sets for each body the ambient
+  /// velocity at the body minus the ambient velocity at its image. shifts[p]: position of particle p minus the position of its image. `gradient`:
+  /// velocity gradient of the flow. After the solve, `carry` moves particle p back from its image if it is a body: adds `along` to the centre and
+  /// `faster` to the velocity.
   void enter(std::span<const Vec3> shifts, const Mat3& gradient);
   void carry(std::size_t p, const Vec3& along, const Vec3& faster);
 
@@ -134,8 +134,8 @@ class RigidParticles {
     Net field(const RigidMotion& of) const;                             // values of the rigid motion `of` at the control points of the body
     Net lacking_of(const RigidMotion& load) const;                      // collocation-error correction (OwnLacking) of the single layer R^-1 A f of
                                                                         // the load f = a + b x r
-    Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of the double layer R^-1 H w;
-                                                                        // `w`: net of all particles
+    Net lacking_of(const Net& w) const;                                 // collocation-error correction (OwnLacking) of R^-1 H w, the double layer of
+                                                                        // the body with density w; `w`: net of all particles
   };
   const Body& body(std::size_t p) const { return bodies_[static_cast<std::size_t>(of_particle_[p])]; }
 

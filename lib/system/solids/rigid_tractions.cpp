@@ -149,7 +149,7 @@ Net RigidTractions::force_densities(const Net& y) const {
   return f;
 }
 
-/// Returns the unknowns y. If the surroundings do not respond, adds the velocity that the force densities cause on deformable particles.
+/// Returns the unknowns y. If responds() is false, adds the velocity that the force densities cause on deformable particles to their rows.
 Net RigidTractions::completed(const Eigen::VectorXd& unknowns) {
   Net y = as_net(unknowns);
   if (responds() || alone_) return y;
@@ -225,7 +225,7 @@ double RigidTractions::lacking_pressure(const Net& x, const Net& f, const Net& v
   double work = 0;
   if (by_work) {
     left_ = flat(residual_.integrated(x, load(f), v, between, walls_));
-    work = lacks(f, -flat(f))[0];  // the density that v_inf requires on free bodies is -f
+    work = lacks(f, -flat(f))[0];  // on free bodies, the force density that belongs to v_inf is -f
   }
   return walls_.tube->lacking_pressure(residual_.points(), between, flow.amplitude(), f, work);
 }

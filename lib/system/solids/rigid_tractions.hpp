@@ -69,9 +69,9 @@ class RigidTractions {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies
 
-    /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to f; empty on a lattice. Rows of
-    /// bodies: velocity at the sites due to y. Other rows: v minus the control values of the velocity due to y, projected onto constant volumes.
-    /// Collective.
+    /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to the force densities f in y;
+    /// empty on a lattice. Rows of bodies contain the velocity at the sites due to y. All other rows contain v minus the control values of the
+    /// velocity due to y, projected onto constant volumes. Collective.
     std::function<Net(const Net& y, const Net& caused)> product;
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };

@@ -33,9 +33,10 @@ Vec3 carried(const SolidScene& scene, const Solids::Flow& flow);
 ///   u = (1/mu) G_S f + U,   u = V - v_inf + (1/mu) G_C df - (1/8 pi) int_C (1 - lambda) T v n dG on the solids            (2.47)
 ///
 /// V is the prescribed velocity of the solids, which changes in time like the flow; df and v are load and velocity of the particles. f and U are the
-/// solution of (2.46) for the force F = |C| g + int df dG, where |C| is the volume of the cell and g the mean pressure gradient. With this F the forces
-/// on the fluid of one cell balance g. The layers of the particles include all images. `empty` is the part of the solution without particles, and `respond` the part that is
-/// linear in df and v. Nets of particles are replicated on all ranks. All calls except queries are collective.
+/// solution of (2.46) for the force F = |C| g + int df dG, where |C| is the volume of the cell and g the mean pressure gradient. With this F, the
+/// total force on the fluid in one cell balances the pressure gradient g. The layers of the particles include all images. `empty` is the part of the
+/// solution without particles, and `respond` the part that is linear in df and v. Nets of particles are replicated on all ranks. All calls except
+/// queries are collective.
 class SolidResponse {
  public:
   /// `space`: common space of all particles. `flow`: ambient flow. References must outlive this object.

@@ -184,9 +184,9 @@ class Tube {
   Phases& phases_;
   std::shared_ptr<Wall> wall_;
   std::unique_ptr<Particle> particle_;
-  Net flow_weights_, force_weights_;  // weights with which the wall traction contributes to the flow rate through the inlet and to the axial force;
-                                      // set by weigh_flow(), like the members below
-  Net flow_of_wall_;  // weights w: if a wall traction cancels the velocity u on the wall, it causes the flow rate w.u through the inlet
+  Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
+                                      // these and all following members
+  Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
   double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
                                                 // pressure drop, due to c and the wall traction that c causes
 };

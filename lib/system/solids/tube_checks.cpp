@@ -13,8 +13,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surface itself
-                                                             // then contributes to all targets
+constexpr int everything = std::numeric_limits<int>::max();  // first row for Layer::see_images_only(), larger than every row number: no target is
+                                                             // restricted to images of the surface
 constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // leak() multiplies the tolerance of integrals over the wall by
                                                            // check_sharpness, because pressures are large, and limits the result to at most
                                                            // `sharpest`

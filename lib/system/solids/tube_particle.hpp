@@ -56,7 +56,7 @@ struct Tube::Particle {
   };
   Cause cause(const Net& f, const Net& v, const Wall& wall);
 
-  /// Returns the weights of the double-layer strength (1 - lambda) v in the flow rate along the duct that this double layer causes. Cached for the
+  /// Returns the weights w of the double-layer strength q = (1 - lambda) v: the double layer causes the flow rate w.q along the duct. Cached for the
   /// current shape.
   const Net& flow_of_strength(const Wall& wall);
 
@@ -85,8 +85,8 @@ struct Tube::Particle {
                                                ///< empty if lambda = 1
   std::vector<int> nearest;                    ///< index of the particle's nearest site for each target on the wall
   std::optional<stokes::Layer::Near> dual_on_wall, wall_on_sites;  ///< near-field corrections, cached for the iterations if lambda != 1.
-                                                                   ///< dual_on_wall: of the double layer at the wall. wall_on_sites: of the wall's
-                                                                   ///< layer at the sites
+                                                                   ///< dual_on_wall: corrections of the particle's double layer at the wall.
+                                                                   ///< wall_on_sites: corrections of the wall's layer at the particle's sites
 
   struct Frozen {
     FrozenOperator single, dual, wall;

@@ -85,8 +85,8 @@ class Wall {
   const Net& targets() const { return targets_; }
   const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
 
-  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Reads only the rows of u that some
-  /// rank has in `own_targets`. Collective.
+  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Reads only the rows of u of targets
+  /// that are in own_targets() on some rank. Collective.
   Net collocated(const Net& u) const;
 
   /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes the rows of
@@ -106,8 +106,8 @@ class Wall {
   /// Returns the lowest and highest coordinates of the wall in the axes of the cell.
   std::array<Vec3, 2> across() const { return cell_->range(surface_.net); }
 
-  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. The two differ only if the wall is
-  /// periodic: f is then periodic, but the space is not. `from_space` multiplies by the transpose of this map.
+  /// Converts control values of a traction f, one row per site, to control values on the space of the layer. Returns f unchanged unless the wall is
+  /// periodic: f is then a periodic spline, but the space is not periodic. `from_space` multiplies by the transpose of this map.
   Net on_space(const Net& f) const { return cell_ ? Net(surface_.open_from_periodic * f) : f; }
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
@@ -132,9 +132,9 @@ class Wall {
   Net flow_weights() const;
   Net force_weights() const;
 
-  /// Returns mu times the flow rate along the duct that a unit force causes, for each point of `at` separately, one column per direction of the
-  /// force. If the wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1,
-  /// where rho is the distance from the axis x1 (2.44). In this case only the sum over several forces is meaningful, and these forces must sum to 0.
+  /// Returns mu times the flow rate along the duct due to a unit force, one row per point of `at` and one column per direction of the force. If the
+  /// wall is open, this is the integral c (2.13) over the inlet. If the wall is periodic with the period L, this is -rho^2/(4 L) e1, where rho is the
+  /// distance from the axis x1 (2.44). In this case only the flow rate of several forces together is meaningful, and these forces must sum to 0.
   Net flow_of_forces(const Net& at) const;
 
   /// Returns the flow rate that a double layer of unit strength at the point `at` with normal n causes, one entry per component of the strength. If

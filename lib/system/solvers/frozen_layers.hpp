@@ -47,7 +47,7 @@ class FrozenLayers {
   NodalOperator nodal_;                                     // A; the options select either nodal_ or single_
   FrozenOperator single_, double_;
   Net at_;                 // shape at which the layers were assembled
-  Corotation corotation_;  // rotations of the particles from `at_` to the shape of turn_to()
+  Corotation corotation_;  // rotations of the particles from `at_` to the shape passed to turn_to()
 };
 
 }  // namespace tanktread::coupling

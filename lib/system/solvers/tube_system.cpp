@@ -32,7 +32,7 @@ double flux_of(const BlockSystem& s, const spline::Block& block, const Net& v) {
   return product(v) / product(s.normal);
 }
 
-/// Adds `factor` times the field n of one particle to v.
+/// Adds `factor` times the normal field n = M0^-1 b on one particle to v.
 void add_normal(const BlockSystem& s, const spline::Block& block, double factor, Eigen::Map<Net>& v) {
   v.middleRows(block.first_point, block.n_points) += factor * block.rows(s.normal);
 }

@@ -129,8 +129,8 @@ def draw_curves(upper, lower, known, end):
 def report(run, known):
     for label, curve in known.items():
         names = [("taylor_inertia", "in D")] + [("inclination", "degrees")] * has_inclination(run)
-        apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {words}" for name, words in names
-                 if name in curve.dtype.names]
+        apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {words}"
+                 for name, words in names if name in curve.dtype.names]
         log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
 
 
