@@ -34,7 +34,7 @@ struct RunRequest {
   bool quiet = false;           ///< true to show no progress bar
   bool of_ladder = false;       ///< true for a level of an accuracy ladder, which says itself why it ended and how to resume it
   std::string deck_text;        ///< the effective deck, to be stored with the results
-  /// Returns the scene of this deck with other values of keys, as settings `Section/key=value`.
+  /// Returns the scene of this deck with some keys changed by `settings`, each of which is `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
