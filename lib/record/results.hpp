@@ -41,9 +41,9 @@ struct RunRequest {
 
 /// Names of files in the results directory that are copies of files named by the deck. With the copies, a run can be resumed without the originals.
 constexpr const char* kept_flow_history = "flow_history.csv";
-std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
-std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file with the positions of a particle's copies
+std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
+std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
+std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file with the positions of a particle's copies
 /// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder.
 std::string kept_name(const std::string& file);
 

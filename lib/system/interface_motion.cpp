@@ -122,7 +122,7 @@ RigidMotion shared_motion(const Moving& drop) {
   return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
 }
 
-/// Returns the rotation about the mean that fits one net best to another.
+/// Returns the rotation about the mean of the control points that fits `from` best to `to`.
 Mat3 rotation_between(const Net& from, const Net& to) {
   return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
 }

@@ -58,7 +58,7 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices of this drop's sites among the sites of the projection
+    std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision makes the mesh motion independent of
                                   // units and axes
   };
