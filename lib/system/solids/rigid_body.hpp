@@ -144,7 +144,7 @@ class FreeBodyInTube : public LoneRigidBody {
   std::optional<RigidModes> modes_;  // solutions without the response of the tube
   mutable Net place_;                 // position of the latest solve
   mutable Solution solution_;         // solution at this position
-  mutable Eigen::VectorXd unknowns_;  // solution of the system in the tube
+  mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts
   mutable long iterations_ = 0;
 };
 

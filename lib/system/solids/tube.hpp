@@ -99,8 +99,8 @@ class Tube {
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
-  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. This is accurate enough, because u is a small and
-  /// smooth part of a Jacobian.
+  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
+  /// accurate enough, because the contribution of u is small and smooth.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
