@@ -372,7 +372,7 @@ class SteadyRun {
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
-  std::optional<output::Checkpoint> mesh_;                              // mesh of `systems_`, if it is not the mesh of the deck
+  std::optional<output::Checkpoint> mesh_;                              // mesh of systems_; not set if it is the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;

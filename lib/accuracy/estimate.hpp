@@ -11,9 +11,9 @@ namespace tanktread::accuracy {
 ///
 ///   e_l = 1.2 C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                  (9.1)
 ///
-/// The factor 1.2 was found with estimates in 18 scenes. Of the 118 estimates for the series that users request, 92 % were 1/3 to 3 times the true
-/// error; of the 905 estimates for all series, 89 %. Two other estimates are less accurate: with the largest or the mean C of several levels, and
-/// with a ratio r fitted to the differences, e_l = d_l/(r - 1), because one difference may be small by chance.
+/// The factor 1.2 was found with estimates in 18 scenes. In these scenes, 92 % of the 118 estimates for the series that users request were 1/3 to 3
+/// times the true error, and 89 % of the 905 estimates for all series. Two alternatives are less accurate: the largest or the mean C of several
+/// levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to the differences, one of which may be small by chance.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is

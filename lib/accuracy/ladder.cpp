@@ -79,8 +79,8 @@ class Ladder {
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns whether an earlier part of a resumed ladder has made level k or saw it fail, so that it will probably cost nothing. Its deck is not
-  /// compared, because it depends on shares that are measured later.
+  /// Returns whether an earlier part of a resumed ladder has finished level k or recorded its failure. The level then probably need not be run again.
+  /// The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
   bool is_over(int k) const {
     return coupling::decided([&] {
       std::error_code absent;
@@ -219,7 +219,7 @@ class Ladder {
     say("  level " + name + " failed: " + why);
   }
 
-  /// Returns why a run of this deck in this directory failed; empty if it did not fail or was not made.
+  /// Returns the recorded reason for the failure of a run of this deck in this directory. Empty if no failure of this deck is recorded there.
   static std::string kept_failure(const fs::path& place, const std::string& deck) {
     try {
       const std::string text = text_of_file(place / failure_file, (place / failure_file).string(), 10'000'000), start = deck + before_reason;

@@ -9,7 +9,7 @@
 
 namespace tanktread::accuracy {
 
-/// Part of a series whose error a request limits.
+/// Error of a series that a request limits: the largest error over the run, the error of the last value, or the error of the time average.
 enum class Of { run, end, mean };
 
 /// A request: `[<particle>/]<series>=<value>[%]`; `\@end` or `\@mean` may follow the series.

@@ -22,7 +22,8 @@ class Phases {
 
   using Clock = std::chrono::steady_clock;
 
-  /// Runs the clock of one phase during its lifetime. If `since` is given, the phase begins at this earlier time, and no other phase may run then.
+  /// Runs the clock of one phase during its lifetime. If `since` is given, the time of the phase counts from this earlier time, and no other phase
+  /// may have run since then.
   class [[nodiscard]] Scope {
    public:
     Scope(Phases& phases, std::string_view name) : phases_(phases) { phases_.enter(name); }

@@ -23,7 +23,7 @@ class AreaConstraint {
   /// Sets up one area condition per Gauss point. `mobility`: velocity per force m_A of each control point.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
-  /// Returns true if no material of the membrane integrates its area elasticity separately.
+  /// Returns true if there are no area conditions, because no material of the membrane has an area elasticity with a separate quadrature (3.13).
   bool empty() const { return points_.empty(); }
 
   /// Evaluates, at the shape x, the area condition t of every Gauss point and the scaled gradient D of these conditions, for the operator P (4.25).
@@ -35,9 +35,9 @@ class AreaConstraint {
   /// Returns P r.
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
-  /// Moves the shape x in two steps by the operator P (4.25) with this `time`, so that the area at every Gauss point nearly equals the area in the
-  /// shape `like`. The remaining area error is of second order in the initial one. Afterwards the conditions are evaluated at the new x, as by
-  /// place(x).
+  /// Moves the shape x so that the area at every Gauss point nearly equals the area in the shape `like`. Takes two steps with the operator P (4.25),
+  /// in which `time` is a parameter. The remaining area error is of second order in the initial error. Afterwards, t and D are evaluated at the new
+  /// x, as by place(x).
   void bring(Net& x, const Net& like, double time);
 
  private:

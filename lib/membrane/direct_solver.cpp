@@ -198,7 +198,7 @@ struct DirectSolver::Impl {
     return left;
   }
 
-  // Returns the relative residual of a test solve, whose exact solution has no small or repeated entries.
+  // Solves a system whose exact solution is known and has no small or repeated entries. Returns the relative residual.
   double residual(const DirectSolver& self) const {
     Net known(a.rows(), 3);
     for (int i = 0; i < known.size(); ++i) known.data()[i] = 1 + 0.5 * std::sin(1.7 * i);

@@ -35,7 +35,8 @@ class Field {
   /// power that the field dissipates as heat in the membrane; dissipation in the surface flow is not included
   virtual double dissipation() const { return 0; }
 
-  /// Stores the state set last and the slip (fluid minus control-point velocity) for the four linearised functions value_change() to solve().
+  /// Stores the state set last and the slip (fluid minus control-point velocity). The four linearised functions from value_change() to solve() use
+  /// them.
   virtual void linearise(const Net& slip) = 0;
 
   /// Returns the change of the values of the field (concentration or strain) for the change dx of the shape and dq of the coefficients.

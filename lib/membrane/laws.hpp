@@ -44,8 +44,8 @@ struct NeoHookean {
   friend bool operator==(const NeoHookean&, const NeoHookean&) = default;
 };
 
-/// Skalak's law, Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2), with the shear modulus G_s; strain hardening. C sets the resistance to area changes.
-/// (3.3)  P-8
+/// Skalak's law of a strain-hardening membrane, Psi = G_s/4 (I1^2 + 2 I1 - 2 I2 + C I2^2), with the shear modulus G_s (3.3). C sets the resistance to
+/// area changes. P-8
 struct Skalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< C, dimensionless resistance to area changes
@@ -246,7 +246,7 @@ struct Bending {
   double modulus = 0;               ///< bending modulus E_b, force x length; 0: no bending
   /// if true, the spontaneous curvature c0 is twice the mean curvature chi of the unstressed surface at each material point
   bool curved_when_relaxed = true;
-  double spontaneous_curvature = 0;  ///< spontaneous curvature c0 if curved_when_relaxed is false, 1/length
+  double spontaneous_curvature = 0;  ///< spontaneous curvature c0, 1/length; not used if curved_when_relaxed is true
 
   friend bool operator==(const Bending&, const Bending&) = default;
 };

@@ -8,11 +8,11 @@
 
 namespace tanktread::membrane {
 
-/// Solves with the mass matrix M0 of the unstressed surface, which Amesos2 factors once per mesh (3.7), and with the mass matrix S of any later
-/// configuration (3.6). Systems with S are solved by conjugate gradients with the preconditioner D M0 D, D_A^2 = S_AA/M0_AA, which has the diagonal
-/// of S. D M0 D differs from S only by how much the stretch varies over the support of one function, so a few iterations suffice, at a tenth of the
-/// cost of a factorisation. If they do not converge, S is factored. The result depends only on S, not on earlier configurations. For symmetric
-/// surfaces and fields, only the unknowns of the fundamental domain are solved for.
+/// Solves systems with the mass matrix M0 of the unstressed surface (3.7) and with the mass matrix S of any later configuration (3.6). Amesos2
+/// factors M0 once per mesh. Systems with S are solved by conjugate gradients. Their preconditioner D M0 D, with the diagonal matrix
+/// D_A^2 = S_AA/M0_AA, has the diagonal of S. It differs from S only because the stretch varies over the support of a basis function. A few
+/// iterations therefore suffice, at a tenth of the cost of a factorisation. If they do not converge, S is factored. The result depends only on S, not
+/// on earlier configurations. For symmetric surfaces and fields, only the unknowns of the fundamental domain are solved for.
 class MassSolver {
  public:
   explicit MassSolver(const DirectSolverOptions& options = {}, const surface::Symmetry& symmetry = surface::Symmetry());

@@ -69,7 +69,7 @@ class MaxwellElement : public Field {
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  // units of the coefficients, one row per Gauss point: coefficients are the components of C divided by g^11, sqrt(g^11 g^22), g^22 of `initial`
+  // divisors of the components of C (3.23) in the coefficients, one row per Gauss point: g^11, sqrt(g^11 g^22), g^22 of the shape `initial`
   Net unit_;
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch

@@ -27,8 +27,8 @@ struct Part {
                                     ///< has only this elasticity
   std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It also has the terms that split_material()
                                     ///< moves to another material
-  std::vector<bool> sampled;        ///< per material: false for the shear part of a split law, whose tensions are evaluated at the Gauss points of
-                                    ///< the area part
+  std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at its Gauss points. False for the shear part of a split law:
+                                    ///< the Gauss points of its area part are used instead
   std::vector<Group> groups;
   std::vector<std::vector<ReferencePoint>> reference;  ///< per group: reference points; point q of batch k has the index n_gauss k + q
   std::vector<std::vector<Pack>> relaxed_curvature;    ///< per group: c0 of `Bending` at the Gauss points; empty without bending

@@ -31,7 +31,8 @@ struct TangentPointOf {
 };
 using TangentPoint = TangentPointOf<Pack>;
 
-/// Computes the reference points from the tangents of the unstressed surface. The first `used` lanes hold elements.
+/// Computes the metric and area (ReferencePoint) of the unstressed surface at n Gauss points from its tangents a. The first `used` lanes hold
+/// elements.
 void reference_points(int n, int used, const Pack* a, const double* weight, ReferencePoint* reference);
 
 /// Computes int Psi over the elements of a batch, lane by lane.

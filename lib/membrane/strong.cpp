@@ -20,7 +20,7 @@ Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int
   const Number a11 = dot(a[0], a[0]), a12 = dot(a[0], a[1]), a22 = dot(a[1], a[1]);
   const Number i1 = (r22 * a11 - 2.0 * r12 * a12 + r11 * a22) * inverse - 2.0, i2 = (a11 * a22 - a12 * a12) * inverse - 1.0;
   const Response<Number> psi = law.response(i1, i2);
-  const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G|, divided by |G| because the next lines contain cofactors of the metrics
+  const Number scale = 2.0 * sqrt(inverse);  // 2 sqrt|G|, times the factor 1/|G| of the cofactors in the next lines
   const Number same = scale * (psi.psi1 * (row == 0 ? r22 : r11) + psi.psi2 * (row == 0 ? a22 : a11));
   const Number mixed = scale * (psi.psi1 * (-r12) + psi.psi2 * (-a12));
   Vector<Number> sum;

@@ -33,7 +33,7 @@ struct AdaptationOptions {
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
   /// largest allowed length of an element next to a film, divided by sqrt(film width x R_C); set if there are films
   std::optional<double> film_resolution;
-  static constexpr double default_film_resolution = 0.7;   ///< film_resolution if there are films; 0.5 for several rigid bodies
+  static constexpr double default_film_resolution = 0.7;   ///< default of film_resolution; 0.5 for rigid bodies among several particles
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
   int interval = 1;                                        ///< accepted steps between checks
   int levels = 4;                                          ///< largest number of bisections of an element of the initial mesh in one direction
@@ -64,9 +64,9 @@ std::vector<spline::Mark> marks(const std::vector<surface::ElementMetrics>& metr
 /// `coarsening margin` times every limit of (P-37).
 std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& metrics, const AdaptationOptions& options);
 
-/// add_films() adds marks for elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film.
-/// keep_films() removes merges whose merged element would exceed this length times `coarsening margin`. `lengths` (of elements, along s and t) and
-/// `widths` (of films) are in the order of elements(mesh). Marks of one element are united. L_min does not apply.
+/// add_films() marks elements that are longer than `film resolution` times sqrt(width x R_C), where width is the width of the adjacent film. Elements
+/// shorter than L_min are also marked. The mark is united with an earlier mark of the element. keep_films() removes merges whose merged element would
+/// exceed this length times `coarsening margin`. `lengths` (of elements, along s and t) and `widths` (of films) are in the order of elements(mesh).
 void add_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,
                std::vector<spline::Mark>& marks);
 void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::vector<double>& widths, const AdaptationOptions& options,

@@ -62,8 +62,8 @@ class Branch {
   /// is 0. Collective.
   using Family = std::function<std::shared_ptr<SteadyEquations>(double parameter, double second)>;
 
-  /// Adapts the mesh to the last of the given shapes, which is steady at `parameter`, and transfers all shapes to the new mesh. The Family of this
-  /// branch must return equations on the new mesh from then on. Returns false if the mesh does not change. Collective.
+  /// Adapts the mesh to the last of the given shapes, which is steady at `parameter`, and transfers all shapes to the new mesh. From then on, the
+  /// function Family of the branch must return equations on the new mesh. Returns false if the mesh does not change. Collective.
   using Remesh = std::function<bool(double parameter, std::vector<Net>& shapes)>;
 
   /// Starts the branch at `parameter`, with the steady shape that a search from `x` finds. `second`: value of the second parameter if the first fold

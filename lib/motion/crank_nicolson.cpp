@@ -46,7 +46,7 @@ CrankNicolson::Iteration CrankNicolson::iterate(coupling::Dynamics& dynamics, co
 StepReport CrankNicolson::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
   Attempts attempts(options_, state, limit);
-  const bool known = by_error_ && state.history.size() > 1;  // if true, State::memory contains two values of the last accepted step: its
+  const bool known = by_error_ && state.history.size() > 1;  // true if State::memory contains two values of the last accepted step: its
                                                              // size, and its error divided by the tolerance
 
   for (;;) {

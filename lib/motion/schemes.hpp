@@ -44,7 +44,7 @@ class Attempts {
         proposed_(options.fixed_step.value_or(std::min(state.step, options.maximum_step.value_or(1e300)))) {}
 
   /// Returns the size of the next attempt, at most `longest`. Throws RunFailure if the controller requests a step below `Time/minimum step`, unless
-  /// this step reaches the limit.
+  /// this step reaches the time `limit`.
   double next(double longest = 1e300);
 
   /// Returns whether an attempt with this error, divided by the tolerance, is accepted. Throws RunFailure if a step of fixed size has an error that
@@ -178,14 +178,14 @@ class Bdf3 : public Scheme {
   TrBdf2 starter_;
 };
 
-/// Chooses the scheme of each step. The choice uses the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
+/// Chooses the scheme of each step from the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
 ///
-/// If the frozen operator would be larger than `Time/largest operator`, every step uses RKC2, which needs no frozen operator. If a velocity requires
-/// the solution of a linear system but the residual of a stage does not (3.14), every step uses TR-BDF2. Otherwise:
+/// If the frozen operator would be larger than `Time/largest operator`, every step uses RKC2, which needs no frozen operator. If the velocity is the
+/// solution of a linear system but the residual of a stage is computed without a solve (3.14), every step uses TR-BDF2. Otherwise:
 ///
 ///   BS3 is used as long as the step that the error allows is stable, dt < 2.3/rho. This includes the first step.
-///   If the error allows a longer step, TR-BDF2 is used, and its work per unit of time (in velocity evaluations) is measured.
-///   If this work exceeds 1.5 times the work of BS3, 3/min(dt, 2.3/rho), BS3 is used again.
+///   If the error allows a longer step, TR-BDF2 is used. Its work per unit of time is measured, in velocity evaluations.
+///   If this work exceeds 1.5 times the work of BS3, BS3 is used again. BS3 takes three evaluations per step min(dt, 2.3/rho).
 ///   TR-BDF2 is tried again when rho has changed by a third or fifty steps have passed.
 class Automatic : public Scheme {
  public:

@@ -44,8 +44,8 @@ SteadyEquations::SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupl
 
 std::vector<Net> SteadyEquations::neutral(const Net& x) {
   // Thresholds of the orthogonalisation: a field is dropped if its component orthogonal to the previous fields is smaller than this fraction of its
-  // norm. `rounding`, for rigid motions, is above round-off. `between_meshes`, for relabellings, is above the mesh error: on an axisymmetric drop a
-  // relabelling and a rigid rotation differ only by this error.
+  // norm. `rounding`, for rigid motions, is above round-off. `between_meshes` is for motions of points along the surface (relabellings) and is above
+  // the mesh error: on an axisymmetric drop, such a motion and a rigid rotation differ only by the mesh error.
   constexpr double rounding = 1e-6, between_meshes = 0.05;
   std::vector<Net> all;
   for (const coupling::RigidMotion& motion : free_) join(all, dynamics_.moved(x, motion), rounding);

@@ -37,10 +37,10 @@ struct PolarOrders {
 /// (tests/verify/layers.cpp).
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance);
 
-/// Returns the orders for an element that is not affine. Estimates the poles of the integrand also from the actual positions of the corners. If these
-/// poles are closer to the interval of integration than the poles of the affine element, the orders are larger than without `corner` and `affine`.
-/// Both arrays hold the corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: `corner` the actual positions, `affine` the positions
-/// predicted by the tangents at the target.
+/// Returns the orders for an element that is not affine. Estimates the poles of the integrand for the affine element and also from the actual
+/// positions of the corners. Uses the poles that are closer to the interval of integration and require the larger orders. Both arrays hold the
+/// corners (0, 0), (1, 0), (1, 1), (0, 1) relative to the target: `corner` the actual positions, `affine` the positions predicted by the tangents at
+/// the target.
 PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tolerance, const std::array<Vec3, 4>& corner,
                          const std::array<Vec3, 4>& affine);
 

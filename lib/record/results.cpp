@@ -296,8 +296,8 @@ output::Entries<std::string> Results::known_errors() const {
   return errors;
 }
 
-/// Writes the summary. Warns about missed expectations that are not binding. Returns the missed binding expectations, which fail the run, in one
-/// line.
+/// Writes the summary. If a missed expectation has the key `not binding`, only warns about it. Returns one line with the other missed expectations,
+/// which make the run fail.
 std::string Results::finish(const Account& account, const Phases& phases) {
   output::Summary summary;
   summary.status = account.status;

@@ -34,16 +34,16 @@ struct RunRequest {
   bool quiet = false;           ///< true to show no progress bar
   bool of_ladder = false;       ///< true for a level of an accuracy ladder; the ladder itself reports why it ended and how to resume it
   std::string deck_text;        ///< the effective deck, to be stored with the results
-  /// Returns the scene of this deck with other values of keys, as settings `Section/key=value`.
+  /// Returns the scene of this deck with some keys changed by `settings`, each of which is `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;
   std::map<std::string, std::string> provenance;  ///< data of the program: version, git_commit, compiler
 };
 
 /// Names of files in the results directory that are copies of files named by the deck. With the copies, a run can be resumed without the originals.
 constexpr const char* kept_flow_history = "flow_history.csv";
-std::string kept_surface(const ParticleKind& kind);  ///< returns the name for the file of a particle's shape
-std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name for the file of the stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name for the file with the positions of a particle's copies
+std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
+std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
+std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file with the positions of a particle's copies
 /// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder.
 std::string kept_name(const std::string& file);
 

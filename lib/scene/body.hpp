@@ -27,7 +27,7 @@ struct FlowPlane {
                            ///< axis of inertia
 
   bool fixed() const { return axes.isIdentity(0); }                     ///< returns true if the plane is x1 x3
-  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the directions a, b x a and b
+  Vec3 components(const Vec3& x) const { return axes * x; }             ///< returns the components of x along the rows of `axes`
   Net turned(const Net& x) const { return fixed() ? x : Net(x * axes.transpose()); }
   std::string description() const;
 };
@@ -60,7 +60,7 @@ struct Body {
   /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh
   /// and does not change if the mesh changes.
   double volume = 0;
-  double initial_area = 0;  ///< mass int c dG of the surfactant at the start of the run, on the first mesh; 0 until it is computed
+  double initial_area = 0;  ///< initial mass int c dG of the surfactant, computed on the first mesh at the start of the run; 0 before
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times

@@ -18,10 +18,10 @@ std::optional<output::Checkpoint> run_before(const Scene& scene);
 /// null. Throws UserError if the file or checkpoint holds another surface.
 Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint* before);
 
-/// Returns the control net of the membrane's stress-free shape on the body's mesh, before any pre-inflation; by default the resting shape. Throws
-/// UserError if a file holds another surface, or if the resting shape has no axis. `first`: the body on the mesh of the deck, which differs from
-/// `body` if an earlier run has refined the mesh. A spheroid is fitted on the mesh of `first` and transferred, as the resting shape was, so that the
-/// points of both shapes still correspond to each other.
+/// Returns the control net of the membrane's stress-free shape on the mesh of `body`, before any pre-inflation. The default is the resting shape.
+/// `first`: the body on the mesh of the deck, which differs from the mesh of `body` if an earlier run has refined it. A spheroid is fitted on the
+/// mesh of `first` and transferred like the resting shape, so that points with equal parameters on both shapes still correspond to each other. Throws
+/// UserError if a file holds another surface, or if the resting shape has no axis.
 Net stress_free_shape(const Scene& scene, const Body& body, const Body& first);
 
 }  // namespace tanktread

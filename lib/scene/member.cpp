@@ -95,7 +95,7 @@ void arrange(std::vector<Member>& members) {
     member.block = blocks[p];
     if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
     Body& body = *member.body;
-    body.symmetry = surface::Symmetry(body.space.n_points);  // a symmetry of one particle need not be a symmetry of several particles
+    body.symmetry = surface::Symmetry(body.space.n_points);  // trivial group: several particles need not have a symmetry of one of them
     share_or_make(members, p);
   }
 }

@@ -60,7 +60,7 @@ std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, c
                                            std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);
 
-/// Returns the particles for registered series, at the shape x and the fluid velocity v. Empty if the deck asks for no such series.
+/// Returns the particles at the shape x and the fluid velocity v, for user-defined series. Empty if the deck asks for no user-defined series.
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);
 
 /// Writes to a checkpoint, or reads from it, the data of the members in addition to the state: volumes, nets and adapted meshes. Throws

@@ -11,7 +11,7 @@ namespace tanktread {
 
 namespace {
 
-/// Adds the choices that exclude user-defined loads and fields.
+/// Adds to `to` the choices that contradict user-defined loads and fields.
 void reject_registered(const Scene& scene, Rejections& to) {
   to.pair(!scene.loads.empty() && scene.load_is_strong(), "Membrane/loads", "Membrane/load `strong`",
           "loads are included by virtual work, in the form `weak` only");

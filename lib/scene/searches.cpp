@@ -82,7 +82,8 @@ std::vector<coupling::RigidMotion> free_motions(const Scene& scene, const stokes
   const std::vector<Mat3> gradients = flow.gradients(places);
   const auto of_lattice = static_cast<Eigen::Index>(3 * lattice.size());
   Eigen::MatrixXd change = Eigen::MatrixXd::Zero(13 + of_lattice + of_loads.rows(), 6);
-  if (scene.wall.present) change.row(12).head<3>() = scene.rate() * scene.wall.normal.normalized();  // the periods along a wall exclude rotations
+  // A wall excludes translations along its normal. The periods along the wall exclude rotations.
+  if (scene.wall.present) change.row(12).head<3>() = scene.rate() * scene.wall.normal.normalized();
   change.bottomRows(of_loads.rows()) = scene.rate() * of_loads;
   change.bottomRightCorner(of_loads.rows(), 3) /= size;
   for (int k = 0; k < 6; ++k) {

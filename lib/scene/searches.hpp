@@ -29,15 +29,15 @@ void reject_searches(const Scene& scene, Rejections& to);
 /// iteration amplifies velocity errors in this motion by the ratio of the step to these times.
 double steady_step(const Scene& scene);
 
-/// Returns true if, after every step, the particle is moved so that its centroid is at the centre given in the deck: `Particle/drift`. Without this
-/// key, returns true for a deformable particle without walls whose centre is a stagnation point of an affine flow with a growing direction (planar
-/// hyperbolic, four-roll, extension). In such a flow, a displacement by round-off grows like e^(rate t) and would carry away a particle of steady
-/// shape.
+/// Returns true if the particle is moved after every step so that its centroid is at the centre given in the deck. The key `Particle/drift` decides
+/// this. If it is not set, returns true for a deformable particle without walls whose centre is a stagnation point of an affine flow with a growing
+/// direction (planar hyperbolic, four-roll, extension). In such a flow, a displacement by round-off grows like e^(rate t) and would carry away a
+/// particle of steady shape.
 bool holds_centre(const Scene& scene);
 
-/// Moves the state so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an affine flow with
-/// gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is therefore also a motion, and a time s
-/// earlier its displacement was exp(-L s) c.
+/// Displaces the state by a vector c so that its centroid is at `place`, together with the slopes and earlier positions of the time scheme. In an
+/// affine flow with gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is therefore also a motion.
+/// So slopes change by L c, and the position at a time s earlier is displaced by exp(-L s) c.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
 
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.

@@ -18,8 +18,8 @@ bool in_rings(const Lattice& l, const PlacedEdge& e, int corner, int h) {
   return false;
 }
 
-/// Returns whether the edge must not be removed: it is on a line of the initial mesh, or it belongs to the uniform rings of elements around an
-/// extraordinary point (see in_rings).
+/// Returns whether the edge must not be removed: it is on a line of the initial mesh, or close to an extraordinary point, where the mesh must remain
+/// uniform (see in_rings).
 bool is_kept(const TMesh& mesh, const PlacedEdge& e) {
   const Lattice& l = *mesh.lattice;
   if ((e.horizontal ? l.height(e.y) : e.x) % l.base == 0) return true;
@@ -121,8 +121,8 @@ struct Remover {
     return out;
   }
 
-  /// Returns the extraordinary points, including `first`, whose spacings h must double together because their rings of elements share edges to be
-  /// removed. Empty if one of these edges must stay.
+  /// Returns the extraordinary points, including `first`, whose spacings h can be doubled only together, because their rings (the uniform layers of
+  /// elements around them) share edges to be removed. Empty if one of these edges must stay.
   std::vector<int> doubling_group(int first) const {
     const Lattice& l = lattice();
     std::vector<int> group{first};

@@ -1,6 +1,6 @@
 #pragma once
-// A T-mesh with the extensions of its T-junctions, which are updated when edges are added or removed, and the uniform rings of elements around its
-// extraordinary points.
+// A T-mesh with the extensions of its T-junctions, which are updated when edges are added or removed. Also functions that keep the mesh uniform in
+// layers of elements (rings) around its extraordinary points.
 
 #include <map>
 #include <set>
@@ -85,9 +85,10 @@ class ExtendedMesh {
   int crossings_ = 0;
 };
 
-/// Returns the indices of the extraordinary points whose zone a path of new edges breaks. The zone of an extraordinary point with spacing h is the
-/// square within `rings` h of it in each of the faces at the point. In this zone the mesh must be the uniform lattice of spacing h. A path breaks the
-/// zone if it has an edge there that is not on the lattice of spacing h. Spline spaces are nested under refinement only with three rings.
+/// Returns the indices of the extraordinary points whose zone a path of new edges breaks. The zone of an extraordinary point consists of one square
+/// per face at the point. The point is a corner of the squares. Their side is `rings` times the spacing h of the point. In the zone, the mesh must be
+/// the uniform lattice of spacing h. A path breaks the zone if it has an edge there that is not on this lattice. Spline spaces are nested under
+/// refinement only if `rings` is 3.
 std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings);
 
 /// Returns the lines that bisect the twelve elements in the two innermost rings around an extraordinary point. If these lines are added, the rings

@@ -29,9 +29,9 @@ Eigen::MatrixXd averaged_bicubic();
 ///
 ///   x_,v (right face) + x_,u (left face) = w0 (1 - t)^2 c'(t),   w0 = 2 cos(2 pi / 3)                                     (1.2)
 ///
-/// and such that the Dirichlet energy of the change over the 5 x 5 grids of all faces is smallest. This is the full least-squares form of the
-/// extraction in reference [70] of the paper. In the data published there, the coefficients of the inner point (2, 2) for the outer points of the
-/// ring are missing, so that the rows do not sum to 1.
+/// and such that the Dirichlet energy of the change over the 5 x 5 Bezier points of all faces is smallest. This is the full least-squares form of the
+/// extraction in reference [70] of the paper. The data published there lack the coefficients of the inner point (2, 2) for the outer control points
+/// of OneRing, so that their rows do not sum to 1.
 Eigen::MatrixXd constrained_biquartic();
 
 /// Bicubic piece of face 0, which is the face between spokes 0 and 1 of an extraordinary point. The face is the unit square 0 <= u, v <= 1, with the

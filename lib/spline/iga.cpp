@@ -140,7 +140,7 @@ constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284
 /// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
 /// points. `places`: candidate points, as numbered_places() returns them.
 int separate_element(const Space& space, const std::vector<int>& places) {
-  std::vector<int> towards = indices(space.n_points + places.size());  // leads from a point to a connected point, finally to the root of its part
+  std::vector<int> towards = indices(space.n_points + places.size());  // parent of each point in its tree of connected points
   const auto root = [&](int point) {
     while (towards[point] != point) point = towards[point] = towards[towards[point]];
     return point;

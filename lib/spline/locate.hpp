@@ -17,8 +17,8 @@ struct Place {
 Place place(const Lattice& lattice, int vertex);
 Place place(const Space& space, const Site& site);
 
-/// Returns for every Bezier element the index of the element of the T-mesh, in elements(mesh), that contains it. To mark a Bezier element for
-/// refinement is to mark this T-mesh element.
+/// Returns, for every Bezier element, the index in elements(mesh) of the element of the T-mesh that contains it. A Bezier element is marked for
+/// refinement by marking this T-mesh element.
 std::vector<int> mesh_elements(const TMesh& mesh, const Space& space);
 
 /// Finds the Bezier element of lowest index whose closure contains a parametric point. A locator is built once per space; the space must outlive

@@ -146,8 +146,8 @@ class Shares {
 double open_knot(int i, int r) { return std::clamp(i - 3, 0, r); }
 
 /// Returns the permutation of Bezier points that turns an element with a side at a pole so that the pole is at u = 1, as PolePiece requires. Bezier
-/// point 4 v + u of the turned element is point order[4 v + u] of the element. `ahead`: the pole at the end of the meridian, otherwise the pole at
-/// its start.
+/// point 4 v + u of the turned element is point order[4 v + u] of the element. `ahead`: true if the pole is at the end of the meridian, false if it
+/// is at the start.
 std::array<int, 16> seen_from_base(bool ahead) {
   std::array<int, 16> order;
   for (int v = 0; v < 4; ++v)

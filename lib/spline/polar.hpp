@@ -56,14 +56,14 @@ std::vector<PolarAnchor> anchors(const PolarMesh& mesh);
 /// The collocation matrix then has the condition number of tensor-product splines.
 Space space(const PolarMesh& mesh);
 
-/// Returns the space on a mesh made by polar() and then refined: analysis-suitable T-splines with one control point per anchor, except at the poles,
-/// in the order of the lattice vertices.
+/// Returns the space on a mesh made by polar() and then refined. It consists of analysis-suitable T-splines with one control point per anchor, except
+/// at the poles. Control points are in the order of the lattice vertices.
 ///
-/// With `c1`, the functions next to a pole have positions d_j in the tangent plane, on the unit circle for the initial mesh (see above). Knot
-/// insertion transfers the d_j to the functions of a finer mesh. They are then multiplied by the ratio of the heights of the first element in the
-/// finer and in the initial mesh, so that spaces of nested meshes are nested. The triangle around the d_j and the pole is chosen again. `plain`
-/// spaces are nested, too. `bezier_transform` spaces are not nested, but they have the control points of the `plain` spaces, between which fields can
-/// be transferred.
+/// With `c1`, the functions next to a pole have positions d_j in the tangent plane. On the initial mesh, the d_j are on the unit circle (see the
+/// function above). On a finer mesh, they are computed in two steps, so that spaces of nested meshes are nested: Knot insertion transfers the d_j to
+/// the new functions. Then the d_j are multiplied by the height of the first element in the finer mesh, divided by its height in the initial mesh.
+/// The triangle around the new d_j and the pole is chosen again. `plain` spaces are nested, too. `bezier_transform` spaces are not nested. They have
+/// the control points of the `plain` spaces, between which fields can be transferred.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).

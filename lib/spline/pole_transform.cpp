@@ -51,7 +51,8 @@ Eigen::MatrixXd triangle_of_degenerate() {
 }
 
 Eigen::MatrixXd quadrilateral_of_triangle(const Corners& corners) {
-  // Evaluates the cubic Bernstein polynomials of the triangle at 4 x 4 points and interpolates the values by bicubic Bernstein polynomials.
+  // Evaluates the cubic Bernstein polynomials of the triangle, with the factor 3!/(i! j! k!), at 4 x 4 points. Interpolates the values by bicubic
+  // Bernstein polynomials.
   constexpr double factorial[4] = {1, 1, 2, 6};
   Eigen::MatrixXd values(16, 10);
   Eigen::VectorXd U(16), V(16);

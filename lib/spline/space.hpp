@@ -36,7 +36,8 @@ struct Site {
 struct Space {
   int n_points = 0;
   std::vector<Element> elements;
-  /// Collocation points. Each is given by its sites (element, local coordinates) on all elements whose closure contains it. The first site is used.
+  /// Collocation points. Each is given by its sites (element, local coordinates) on all elements whose closure contains it. Values are
+  /// evaluated at the first site.
   std::vector<std::vector<Site>> collocation;
   std::string description;  ///< one line for the printed plan of a run: mesh, degree, extraordinary points or poles
 };

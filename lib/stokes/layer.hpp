@@ -75,7 +75,7 @@ class Layer {
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
   /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
-  /// for each element, whether Measure::by_element means the current area rather than the unstressed area.
+  /// meaning of Measure::by_element for each element: the current area if true, the unstressed area if false.
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
@@ -103,9 +103,9 @@ class Layer {
   /// on a lattice. The blocks assembled for near control points do not include the wall.
   void set_wall(const PlaneWall& wall);
 
-  /// If far sums use clusters, divides the far sums at the sites `everybody` among callers 0 .. parts - 1. `apply` then fills these rows with a part
-  /// of the layer potential, and the caller must sum the rows over all callers. Near-singular and singular quadrature is included only by the caller
-  /// that requests the row.
+  /// If far sums use clusters, divides the far sums at the sites `everybody` among callers 0 .. parts - 1. In these rows, `apply` then computes only
+  /// the part of this caller, and the rows must be summed over all callers. Near-singular and singular quadrature is included only by the caller that
+  /// requests the row.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 

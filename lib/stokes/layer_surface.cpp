@@ -24,8 +24,8 @@ int far_order(const quadrature::Options& options, bool on_surface = true) {
   return options.tolerance >= 1e-10 ? 9 : 11;
 }
 
-/// Returns for each element its parametric size divided by the mean parametric distance of the control points around it. The distance is the square
-/// root of the parametric area per control point. The ratio is 1 on a uniform mesh.
+/// Returns for each element its parametric size divided by the mean parametric spacing of the control points around it. The squared spacing is the
+/// mean parametric area per control point. The ratio is 1 on a uniform mesh.
 std::vector<double> shares(const spline::Space& space) {
   std::vector<double> area(space.n_points, 0);  // per control point
   for (const spline::Element& e : space.elements) {
@@ -41,10 +41,10 @@ std::vector<double> shares(const spline::Space& space) {
   return out;
 }
 
-/// Returns the number of Gauss points per direction of the far rule for each element. Some elements are small compared with the distance of the
-/// surrounding targets: elements next to extraordinary points of Catmull-Clark surfaces, and bisected elements at T-junctions. They need fewer
-/// points, because the integrand is smoother on a small element and its part of the area is small. They keep enough points for half the digits of the
-/// tolerance, because the shape of elements next to extraordinary points requires them (tests/verify/layers.cpp).
+/// Returns the number of Gauss points per direction of the far rule for each element. Fewer points suffice on elements that are small compared with
+/// the spacing of the surrounding targets: elements next to extraordinary points of Catmull-Clark surfaces, and bisected elements at T-junctions. On
+/// a small element the integrand is smoother, and the error counts less because the area is small. These elements keep enough points for half the
+/// digits of the tolerance, because the shape of elements next to extraordinary points requires them (tests/verify/layers.cpp).
 std::vector<int> far_orders(const spline::Space& space, const quadrature::Options& options, int order) {
   std::vector<int> orders(space.elements.size(), order);
   if (options.rule != "adaptive") return orders;

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array coordinates{0, 1, 2};
 
-/// Disc that gives a lower bound of the distance from a piece of the surface to the outline. The disc contains no point of the outline that can be
-/// nearest to a point of the piece. So a point of the piece at the distance d from `centre` is at least radius - d away from the outline. gap(d^2)
-/// returns this bound.
+/// Disc that gives a lower bound of the distance from a piece of the surface to the outline. For every point of the piece, the nearest point of the
+/// outline is outside the disc. If the distance of the point from `centre` is d, its distance from the outline is therefore at least radius - d.
+/// gap(d^2) returns this bound.
 struct Disc {
   Vec2 centre;
   double radius;
@@ -137,8 +137,8 @@ class OutlineSearch {
     return part;
   }
 
-  /// Compares the distance of a corner of the piece with the smallest distance found. If the distance of the corner exceeds its lower bound from the
-  /// disc of the piece, the bound can be improved: a new disc is fitted to the piece.
+  /// Computes the distance from a corner of the piece to the outline, and updates the smallest distance found. If the distance of the corner exceeds
+  /// the lower bound that follows from the disc of the piece, fits a new disc to the piece to improve the bound.
   void look_at_corner(ElementPart& piece) {
     const Vec2 x = piece.corner.tail<2>();
     const double expected = piece.disc.gap((x - piece.disc.centre).squaredNorm());

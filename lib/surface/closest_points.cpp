@@ -274,9 +274,9 @@ double distance(const Vec3& x, const Sampled& element) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < element.place.size(); ++k)
     if (const double squared = (element.place[k] - x).squaredNorm(); squared < least) least = squared, nearest = k;
-  // `across`: distance from the tangent plane at the nearest sample point. If the foot of the perpendicular on this plane is far from the sample
-  // point, it may be beyond the element's edges. The tangent plane of another element is then nearer, so the distance from the sample point is
-  // returned.
+  // `across`: distance of x from the tangent plane at the nearest sample point. `along`: distance of the foot of the perpendicular on this plane from
+  // the sample point. If `along` is large, the foot may be beyond the element's edges, and another element is nearer than this plane. In this case,
+  // the distance from the sample point is returned.
   const double across = (x - element.place[nearest]).dot(element.normal[nearest]), along = std::sqrt(std::max(0., least - across * across));
   return along > element.box.diagonal().norm() / 4 ? std::sqrt(least) : std::max(across, 0.);
 }

@@ -119,8 +119,9 @@ class Geometry {
   /// the curve in which the plane x2 = centroid_2 cuts the surface. Extreme points are found by Newton's method, to round-off.
   Deformation deformation(const Net& net) const;
 
-  /// Number of ranges that extremes() returns for deformation(): distances of section points from the centroid (0), coordinates x1, x2, x3 (1, 2, 3).
-  /// The ranges of a whole surface are the unions of the ranges of its parts. deformation() throws RunFailure if the plane misses the surface.
+  /// Number of ranges (smallest and largest value) that extremes() returns for deformation(): distances of section points from the centroid (0),
+  /// coordinates x1, x2, x3 (1, 2, 3). The ranges of a whole surface are the unions of the ranges of its parts. deformation() throws RunFailure if
+  /// the plane of the section does not intersect the surface.
   static constexpr int n_extremes = 4;
   std::array<Range, n_extremes> extremes(const Net& net, const Vec3& centroid, std::span<const int> elements) const;
   static Deformation deformation(const Measures& measures, const std::array<Range, n_extremes>& extremes);

@@ -68,7 +68,7 @@ struct Errors {
 struct Resolution {
   double length = 0;  ///< mean length of the edges
   Errors errors;
-  Errors merged;  ///< errors of the element of twice the length that contains this element; 16 times `errors` if there is none
+  Errors merged;  ///< errors of the merged element of twice the length; estimated as 16 times `errors` if there is no such element
 };
 
 /// Returns the estimated discretisation errors along s and along t for each element of elements(mesh), in this order. A line of sample points ends at

@@ -137,7 +137,7 @@ struct TubeOptions {
   std::optional<Eigen::Vector2d> sides;      ///< sides of the rectangle along x2 and x3
   std::optional<std::string> outline;        ///< path of the file with the points of the outline; set for the cross-section `file`
 
-  std::optional<double> length;  ///< length of the wall; if not set, 2 pi times the tube radius, or more for a long particle
+  std::optional<double> length;  ///< length of the wall; default: the larger of 2 pi R_T and the particle's length plus 4.6 R_T (R_T: tube radius)
   double period = 0;  ///< period of the duct along x1, as given by the section Domain; 0 if the duct is not periodic
   /// period L along x1 of tube and particles; not set if the tube is not periodic, or if the section Domain gives the period
   std::optional<double> periodic_length;

@@ -170,8 +170,9 @@ Nearest Outline::nearest(const Vec2& p) const {
   return best;
 }
 
-/// Returns the point of the outline nearest to p, where p lies within the distance r of x, and `its` is the point of the outline nearest to x. A
-/// point y with |y - x|^2 - |its - x|^2 > 2 r |y - its| is farther from p than `its`, so chords that contain only such points are skipped.
+/// Returns the point of the outline nearest to p. `x`: a point within the distance r of p. `its`: the point of the outline nearest to x. If a point y
+/// of the outline satisfies |y - x|^2 - |its - x|^2 > 2 r |y - its|, it is farther from p than `its`. Chords that contain only such points are
+/// skipped.
 Nearest Outline::nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const {
   Nearest best;
   best.distance = std::numeric_limits<double>::infinity();

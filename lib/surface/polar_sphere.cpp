@@ -83,7 +83,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // the control point at a pole stays on the axis
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // fixes the radius 0 of the control point at a pole
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }

@@ -60,7 +60,7 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
 
 /// Returns points of the limit surface of the initial net at vertices of a lattice.
 Net limit_points(const spline::Lattice& l, const std::vector<int>& vertices) {
-  const spline::TMesh coarse = spline::cube(3, 5);  // five levels: the limit surface is exact up to 1/32 of an element from the corners of the cube
+  const spline::TMesh coarse = spline::cube(3, 5);  // five levels: exact except within 1/32 of an element from a corner of the cube
   const spline::Space space = spline::space(coarse, spline::ExtraordinaryRule::catmull_clark);
   const Net net = coarse_net(*coarse.lattice)(spline::anchors(coarse), Eigen::all);
   const spline::Locator locator(space);

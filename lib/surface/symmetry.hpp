@@ -19,7 +19,7 @@ struct Turn {
   bool exchanged = false, turned[2] = {false, false};
 
   std::array<double, 2> operator()(double s, double t) const;
-  int bernstein(int b, int p) const;  ///< index of the image of entry b of a (p + 1) x (p + 1) grid under this map
+  int bernstein(int b, int p) const;  ///< index of the entry to which this map moves entry b of a (p + 1) x (p + 1) grid
   Turn after(const Turn& first) const;
 };
 

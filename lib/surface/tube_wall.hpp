@@ -13,13 +13,13 @@
 
 namespace tanktread::surface {
 
-/// Cylinder with an outline as its cross-section, along x1 from `start` to `end` and open at both ends. The surface is a tensor product of cubic
-/// splines. Around the outline they are periodic; if the outline has corners, each side has open splines that share no control point with other
-/// sides. Along x1 the knots are open and denser around x1 = 0. The normal x_,s x x_,t (s along x1, t around) points into the fluid.
+/// Cylinder along x1 from `start` to `end`, open at both ends, with an outline as its cross-section. The surface is a tensor product of cubic
+/// splines. The splines around the outline are periodic if the outline has no corners. Otherwise, each side has open splines that share no control
+/// point with other sides. Along x1 the knots are open and denser around x1 = 0. The normal x_,s x x_,t points into the fluid (s along x1, t around).
 ///
-/// Control point i n_around + k is point k of ring i; rings ascend along x1. Collocation points are Greville points; the points of the first and last
-/// ring lie on the rims. Collocation points at a corner, where two sides meet, are moved away from the corner by half of the distance to the next
-/// point.
+/// Control point i n_around + k is point k of ring i. A ring is the row of control points around one cross-section. Rings ascend along x1.
+/// Collocation points are Greville points; the points of the first and last ring lie on the rims. Collocation points at a corner, where two sides
+/// meet, are moved away from the corner by half of the distance to the next point.
 struct TubeWall {
   spline::Space space;
   Net net;
@@ -45,10 +45,10 @@ struct TubeWall {
 /// is proportional to 1 + (g - 1)/(1 + (x1/w)^4), where w is the larger of the tube radius R_T and `half_length`, half the length of the particle.
 TubeWall tube_wall(const Outline& section, const TubeOptions& options, double length, double half_length = 0);
 
-/// Returns the wall of a section over one period, approximately [-period/2, period/2), with `elements` elements along it and the grading of the
-/// options. The geometry is an open spline surface. Densities on it are periodic splines; the matrix E maps their coefficients to control values on
-/// the space. The wall begins and ends at a quarter of a periodic element, so that neither a collocation point nor the midpoint of an element lies on
-/// its ends.
+/// Returns one period of a periodic wall with the cross-section `section`, approximately for x1 in [-period/2, period/2). It has `elements` elements
+/// along x1, graded as the options require. The geometry is an open spline surface. Densities on it are periodic splines; the matrix E maps their
+/// coefficients to control values on the space. The ends of the wall lie at a quarter of an element of the periodic splines, so that neither a
+/// collocation point nor the midpoint of an element lies on an end.
 TubeWall periodic_tube_wall(const Outline& section, const TubeOptions& options, double period, int elements, double half_length = 0);
 
 /// Returns the wall of a channel (2.31). The centre line C and the scaled axes f2 N and f3 e3 of the cross-section are interpolated by cubic splines

@@ -60,8 +60,8 @@ void Capsule::push_bodies(const Net& x) {
   rigid_.push(push);
 }
 
-/// Returns the load of the membranes at x, which is the shape of `e` or, on a lattice, this shape with particles moved into the cell. If `other` is
-/// given, replaces it by M0^-1 times `other` (M0: mass matrix).
+/// Returns the load of the membranes at x. This is the shape of `e`; on a lattice, each of its particles has been moved into the cell. If `other` is
+/// given, replaces `*other` by M0^-1 times `*other`, with the mass matrix M0.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   if (parameters_.strong_load) {

@@ -1,4 +1,4 @@
-// Particles in a periodic cell, among solids in it, and in a tube.
+// Functions of Capsule for particles in a periodic cell, among solids in the cell, and in a tube.
 
 #include <memory>
 #include <vector>

@@ -41,8 +41,8 @@ class CapsuleJacobian {
 
   /// Returns B v, or v if control points slide along an interface.
   Net left(const Net& v) { return interface_ ? v : viscous_product(v); }
-  RateChange rate_change(const Net& dx, const Net& work);      ///< `rate` is B J dx, or J dx if control points slide
-  RateChange velocity_change(const Net& dx, const Net& work);  ///< `rate` is J dx
+  RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if points slide
+  RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the matrix of `solve`
@@ -57,8 +57,8 @@ class CapsuleJacobian {
   Net solve(double shift, const Net& rhs, double tolerance, const Secants& secants);
 
   /// Returns the displacement along which a volume is restored. By default it is the direction c of (2.8). If the membrane nearly conserves area, it
-  /// is the solution of an implicit step with the right-hand side c: c itself would change the area, and the resulting stress, proportional to the
-  /// large dilatation modulus, would affect the next step.
+  /// is the solution of an implicit step with the right-hand side c. The displacement c itself would change the area, and the resulting stress,
+  /// proportional to the large dilatation modulus, would affect the next step.
   Net inflation(const Net& c);
 
   /// Moves the start y of a stage so that membranes that nearly conserve area have the area of `before`.

@@ -44,8 +44,8 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero, which the flow deforms, except in a duct; empty if the scene is not
-                                             ///< periodic
+  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero; empty if the scene is not periodic. The flow deforms the cell, but not
+                                             ///< the cell of a duct
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none

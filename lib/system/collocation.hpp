@@ -16,8 +16,8 @@ namespace tanktread::coupling {
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites,
                                          Eigen::VectorXd spline::Basis::* which = &spline::Basis::value);
 
-/// Gauss points q on a surface, to integrate the residual of collocation, which is zero only at the collocation sites. On an element of size h the
-/// residual is about h^4 times a quartic polynomial, for which as many Gauss points per direction as the spline degree suffice.
+/// Gauss points q on a surface, to integrate the residual of collocation. The residual is zero only at the collocation sites. On an element of size h
+/// it is about h^4 times a quartic polynomial. To integrate this, as many Gauss points per direction as the spline degree suffice.
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)

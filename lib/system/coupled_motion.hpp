@@ -32,7 +32,7 @@ class CoupledMotion : public Dynamics {
 
   Net start(const Net& shape) const;                         ///< state at the start of a run with this shape
   Net shape(const Net& y) const { return y.topRows(n_); }    ///< control net
-  Net with_shape(Net y, const Net& shape) const;             ///< the state y with its control net replaced
+  Net with_shape(Net y, const Net& shape) const;             ///< the state y with `shape` as its control net
   Eigen::VectorXd coefficients(const Net& y, std::size_t k) const;
   void set_coefficients(Net& y, std::size_t k, const Eigen::VectorXd& q) const;
   const std::vector<On>& fields() const { return fields_; }

@@ -19,8 +19,8 @@ class Dynamics {
  public:
   virtual ~Dynamics() = default;
 
-  /// Sets the time for all later calls, within a step that began at `start`. If the motion is discontinuous in time at `time`, a step that ends there
-  /// uses the limit from before, and a step that starts there uses the limit from after.
+  /// Sets the time for all later calls, within a step that began at `start`. If the motion jumps at the time `time`, a step that ends there uses the
+  /// limit from earlier times, and a step that starts there uses the limit from later times.
   virtual void at(double /*time*/, double /*start*/) {}
 
   /// Returns the first time after `time` at which the motion is not smooth in time; no step may cross it.

@@ -46,7 +46,7 @@ class Evaluation {
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 
-  Tube::Checks checks();                                 ///< returns the residuals of the conditions (2.14) for the response of the tube
+  Tube::Checks checks();                                 ///< returns by how much the tube's response violates the conditions (2.14)
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();

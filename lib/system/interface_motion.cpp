@@ -89,8 +89,8 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. |b| is used as the area weight of a site.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // regularisation, relative to the sum of area y.y. If the shape deviates from a sphere by less than 3 %, noise would
-                                 // dominate the result. It then tends to 0 instead, and the mesh rotates with the fluid
+  constexpr double hold = 1e-3;  // regularisation of `moments`, divided by `inertia`. If the shape deviates from a sphere by less than 3 %, noise
+                                 // would dominate the result. The regularised result tends to 0, and the mesh rotates with the fluid
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;
@@ -122,7 +122,7 @@ RigidMotion shared_motion(const Moving& drop) {
   return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
 }
 
-/// Returns the rotation about the mean that fits one net best to another.
+/// Returns the rotation about the mean of the control points that fits `from` best to `to`.
 Mat3 rotation_between(const Net& from, const Net& to) {
   return nearest_rotation((to.rowwise() - to.colwise().mean()).transpose() * (from.rowwise() - from.colwise().mean()));
 }

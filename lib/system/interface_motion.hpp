@@ -58,7 +58,7 @@ class InterfaceMotion {
     bool relaxed;
     double speed;
     std::vector<int> points;      // rank-owned control points
-    std::vector<int> places;      // indices of this drop's sites among the sites of the projection
+    std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
     stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision makes the mesh motion independent of
                                   // units and axes
   };
@@ -81,8 +81,8 @@ class InterfaceMotion {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
-  Latest latest_, known_;  // latest_: data of the latest velocity. known_: copy of latest_ for the shape at which the system was linearised; empty if
-                           // the latest velocity belongs to another shape
+  Latest latest_, known_;  // latest_: data of the latest velocity. known_: copy of latest_, made when the system was linearised; empty if the latest
+                           // velocity then belonged to another shape
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

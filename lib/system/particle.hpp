@@ -21,7 +21,7 @@ namespace tanktread::coupling {
 struct Rigid {
   bool prescribed = false;
   RigidMotion motion;                                  ///< prescribed motion
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< used if the motion is not prescribed
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< given force and torque if the motion is not prescribed
 };
 
 /// Material and discretisation of a particle. Its rows in the stacked nets are given by `block`.

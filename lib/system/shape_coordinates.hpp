@@ -25,22 +25,22 @@ namespace tanktread::coupling {
 ///
 ///     y_i = n_i.(R d)_i,   d = R^{-1} (n_i y_i)                                                                   (4.15)
 ///
-///   Here n_i is the unit normal of x at site i and R the collocation matrix. If y contains a translation of the drop, the tangential part is added
-///   to d, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the control values of
-///   the scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
+///   Here n_i is the unit normal of x at site i and R the collocation matrix. If y contains a translation of the drop, d also contains the tangential
+///   part of the translation, so that translations are represented exactly. If velocities are projected (VelocityProjection), y contains instead the
+///   control values of the scalar field that fits n.d best, because tangential mesh motion would change (4.15) to fourth order in the element size.
 /// - Rigid body: the coefficients of six orthonormal fields, which span its translations and rotations.
 ///
-/// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i, by which a relaxing mesh remains at
-/// rest on the displaced shape. With the relaxation rate w of the mesh and its derivative w'(d) along d,
+/// Relaxing meshes: after `follow` has been called, d contains in addition a tangential displacement R^{-1} t_i. It is chosen so that the relaxation
+/// velocity w of the mesh does not change: a mesh at rest remains at rest on the displaced shape. With the derivative w'(d) of w along d,
 ///
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// Symmetry: if the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there.
 /// They represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not
-/// (1, 1, 1), no other part of the system may use the symmetry.
+/// (1, 1, 1), all other parts of the system must be constructed without the symmetry.
 ///
-/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y contains in addition coordinates y_q of the change dq of the field
-/// coefficients q. The change of q due to the tangential part of d is subtracted:
+/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y also contains coordinates y_q. They are the change dq of the field
+/// coefficients q, minus the change of q due to the tangential part of d:
 ///
 ///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q if control points only slide along the surface by t      (4.34)
 class ShapeCoordinates {

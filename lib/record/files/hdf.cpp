@@ -66,7 +66,7 @@ Id::Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), clo
 Id new_file() {
   silence();
   static int files = 0;  // number of files in memory so far: HDF5 distinguishes open files by their names, so each gets a name of its own
-  if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // keeps the caches of closed files, half a megabyte each, for reuse
+  if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // no limits: the caches of closed files, half a megabyte each, are kept for reuse
   const std::string name = "memory " + std::to_string(++files);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");
   check(H5Pset_fapl_core(access, 1 << 18, false), "no file in memory");

@@ -82,7 +82,7 @@ class Deforming : public ParticleSystem {
     motion::State own = fields_->of_shape(state);
     const stokes::AmbientFlow& flow = capsule_->flow();
     const Mat3 deformed =
-        flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // of the lattice, over the step (2.51)
+        flow.deformation(state.time) * flow.deformation(state.time - step).inverse();  // deformation of the lattice in the step (2.51)
     coupling::Contacts contacts = contacts_;
     for (coupling::Contact& one : contacts.all) one.beyond = deformed * one.beyond;
     const bool first = contacts_.impulse == 0, holds = limiter.hold(own, step, contacts);

@@ -22,7 +22,7 @@ class Free : public ParticleSystem {
   coupling::Dynamics& dynamics() override { return *free_; }
   const Body& body() const override { return body_; }
   Net start() const override { return coupling::placed(free_->centre()); }
-  /// Restores the counts of work of the run, minus the work of setting up this program again, because the run has already counted its set-up.
+  /// Restores the counts of work of the run. Subtracts the work of the repeated set-up, because the counts already include the first set-up.
   bool resume(Resumed& resumed) override {
     const coupling::Work again = work();
     before_ = resumed.totals.work;

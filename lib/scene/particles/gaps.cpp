@@ -126,8 +126,9 @@ class NearestPair {
 
   double gap() const { return gap_; }  ///< smallest gap; infinite if there are no pairs
 
-  /// Returns the index of the pair that is reported if the smallest gap of all ranks is `least`; the number of pairs if no pair has this gap. Of
-  /// equal gaps, which symmetric scenes have, that of the particles named first is reported, so that rounding does not decide.
+  /// Returns the index of the pair to be reported, where `least` is the smallest gap of all ranks. If several pairs have this gap, for example in a
+  /// symmetric scene, selects the pair of the particles named first, so that rounding does not decide. The result is the number of pairs if no pair
+  /// has this gap.
   std::size_t with_gap(double least) const {
     std::size_t first = pairs_.all().size();
     for (const auto& [gap, k] : found_)

@@ -82,8 +82,8 @@ Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   return found == held_.end() ? nullptr : &*found;
 }
 
-/// Returns the gap that a contact must restore. By default, this is the smallest allowed gap `limit_`. If the pair already has another contact and
-/// the gap is below limit_, returns a value between (1 - slack) limit_ and limit_, so that the gap opens gradually.
+/// Returns the gap that a contact must restore. This is the smallest allowed gap `limit_`, unless the pair already has another contact and the gap is
+/// below `limit_`. In this case, the required gap is between (1 - slack) limit_ and limit_, so that the gap opens gradually.
 double Limiter::target(const Approach& found) const {
   const bool first = std::ranges::none_of(held_, [&](const Held& one) { return of_same_pair(one.contact, found.contact); });
   if (first || found.gap > limit_) return limit_;

@@ -13,13 +13,13 @@
 
 namespace tanktread {
 
-/// Moves the particles after a step so that no gap between two of them is below `limit`. The forces are non-negative and act along the normals at the
-/// nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps, and this is repeated until the
-/// true gaps satisfy it. If a pair with a contact is also below the limit at other positions, contacts are added there. If the gap at such an
-/// additional contact is less than 1 % below the limit, it returns to the limit gradually, at the rate of the motion. During a step, the forces found
-/// after the previous step act. They are corrected after the step, and the corrected forces act during the next step. The error per step by lasting
-/// contacts is then of the order of the squared step size. The displacement due to a contact force is computed with the coupled system of all
-/// particles; after an implicit step it includes the effect of the stiffness of deformable particles.
+/// Moves the particles after a step by contact forces, so that no gap between two particles is below `limit`. The forces are non-negative and act
+/// along the normals at the nearest points for the duration of the step. They solve the complementarity problem (4.23) of the linearised gaps. The
+/// problem is linearised again until the true gaps satisfy it. If a pair with a contact is also below the limit at other positions, contacts are
+/// added there. If the gap at an added contact is less than 1 % below the limit, it returns to the limit gradually, at the rate of the motion. The
+/// forces found after one step act during the next step, and are corrected after it. For lasting contacts, the error per step is then of the order of
+/// the squared step size. The displacement due to a contact force is computed with the coupled system of all particles. After an implicit step it
+/// includes the effect of the stiffness of deformable particles.
 class Limiter {
  public:
   /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. Objects passed

@@ -15,7 +15,7 @@ namespace tanktread {
 struct RigidSolution {
   Net density;         ///< force per area on the fluid, control values; the traction on the body is its negative
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< force and torque on the body, about its centre
-  Vec3 integral;       ///< force computed only as the integral of the traction
+  Vec3 integral;       ///< force from the integral of the traction, without correction of collocation errors
   Mat3 stresslet = Mat3::Zero();
   int iterations = 0;  ///< iterations of the solver for this traction and for the corrections of the forces
   double pressure_drop = unknown;  ///< additional pressure drop caused by the body in a tube (2.7)

@@ -20,8 +20,8 @@ constexpr int limited_steps = 10;   // number of consecutive steps limited by st
 constexpr double folding = 0.05;    // warning threshold of jacobian_ratio, which is at least 0.5 on uniform elements and 0.1 at a degenerate pole
 constexpr double slenderness = 10;  // threshold of aspect_ratio
 constexpr double lost_volume = 1e-3;
-constexpr double stiff_area = 3e4;  // warning threshold of global area stiffness divided by the other stiffnesses; above it, time steps become very
-                                    // small
+constexpr double stiff_area = 3e4;  // threshold of K/G_s and K R_C^2/E_b, with the modulus K of the total area and the bending modulus E_b. If both
+                                    // are above it, time steps become very small
 
 
 /// Returns the largest wave number that a mesh of element size h can represent.

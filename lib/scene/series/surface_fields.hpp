@@ -89,8 +89,8 @@ class SurfaceFields {
 std::vector<output::Field> snapshot_fields(std::span<const Member> members, const Body& all, const output::Nodes& nodes, const Net& x,
                                            const Net& load, const Net& velocity);
 
-/// Returns one lattice vector per node. It moves the particle of the node so that the mean of the particle's control points is in the cell around the
-/// origin.
+/// Returns one lattice vector per node, to be added to the position of the node. It moves the node's particle so that the mean of the particle's
+/// control points is in the cell around the origin.
 output::Rows into_cell(std::span<const Member> members, const stokes::PeriodicCell& cell, const output::Nodes& nodes, const Net& x);
 
 }  // namespace tanktread

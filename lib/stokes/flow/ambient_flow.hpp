@@ -88,7 +88,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // registered flow, to which field_, 0 except between plates, is added; null for the other types
+  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to it, and is 0 except between plates
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;

@@ -292,11 +292,11 @@ Eigen::VectorXd BoundaryProfile::add_nodes(const OutlineSpace& space, const Eige
 }
 
 /// Improves psi of (2.17) between the collocation points by Cauchy's formula int (F - F_i)/(zeta - zeta_i) d zeta = 0 for F = v_c + i psi. The
-/// integral is the sum over the nodes j; its term at j = i is the increment dF_i = dv_c + i q dl of F along the node's length. Only psi is changed,
-/// not v_c:
+/// integral is replaced by a sum over the nodes j. Its term j = i is the increment dF_i = dv_c + i q dl of F along the length dl of the node. The
+/// formula is solved for F_i. Only psi is changed, not v_c:
 ///   F_i = [ sum_j F_j c_ij + dF_i ] / sum_j c_ij,   c_ij = dzeta_j/(zeta_j - zeta_i), j /= i                                       (2.18)
-/// Before the first sweep, psi is the integral of the cubic spline for q. The error of this spline alternates in sign from knot to knot. The
-/// coefficients of psi in the sum vary smoothly from node to node, so that the error averages out.
+/// Before the first sweep, psi is the integral of the cubic spline for q. The error of this spline alternates in sign from knot to knot. The sum
+/// averages the error out, because the coefficients of psi vary smoothly from node to node.
 void BoundaryProfile::sweep(const Eigen::VectorXd& flux) {
   using Complex = std::complex<double>;
   const std::size_t n = x_.size();

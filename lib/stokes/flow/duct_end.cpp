@@ -14,8 +14,8 @@ namespace {
 using surface::Vec2;
 
 constexpr int far_around = 24, order_far = 5, order_close = 7;
-constexpr double far = 1.2, smallest = 1e-5;  // distance beyond which the far nodes suffice, and smallest size of a cell, both divided by the radius
-                                              // of the end
+constexpr double far = 1.2, smallest = 1e-5;  // far: distance from the plane of the end beyond which the nodes of far_ suffice. smallest: size below
+                                              // which a cell is not divided. Both are divided by the radius of the duct
 
 Mat3 axes(const surface::Channel::Section& place) {
   Mat3 axes;

@@ -24,7 +24,8 @@ constexpr double degree = std::numbers::pi / 180;
 /// Returns the solution F at s = 1 of dF/ds = (A + s B) F with F(0) = I, A = `first` and B = `change`. The interval is divided into parts so short
 /// that the Taylor series of F converges fast on each.
 Mat3 linear_deformation(const Mat3& first, const Mat3& change) {
-  // Number of terms of the Taylor series in an interval of length h = 1/parts. As h (|A| + |B|) <= 1/2, the first neglected term is below 1e-16.
+  // Number of terms of the Taylor series in an interval of length h = 1/parts. As h (|first| + |change|) <= 1/2, the first neglected term is below
+  // 1e-16.
   constexpr int terms = 20;
   const int parts = 1 + static_cast<int>(2 * (first.norm() + change.norm()));
   const double h = 1. / parts;

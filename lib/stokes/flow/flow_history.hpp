@@ -41,8 +41,8 @@ struct FlowHistory {
   /// step that starts at the jump, and the values before the jump for all other steps.
   Moment at(double time, double start) const;
 
-  /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.51). Exact up to
-  /// round-off. L in 1/time.
+  /// Returns the deformation F that a uniform gradient L causes from time 0 to `time` >= 0: dF/dt = a Q L Q^T F, F(0) = I (2.51), with the amplitude
+  /// a and the rotation Q of this history. Exact up to round-off. `gradient`: L, 1/time.
   Mat3 deformation(const Mat3& gradient, double time) const;
 
   /// Returns the rotation by an angle in degrees about `axis`.

@@ -46,7 +46,7 @@ void kernel_values(const PanelNodes<Real>& panel, const double* target, std::uin
   }
 }
 
-// Adds the moments for four basis functions and six kernel entries at a time: 24 packs of sums, which stay in registers if there are that many.
+// Adds the moments for four basis functions and six kernel entries at a time. The 24 packs of sums stay in registers if the processor has enough.
 template <class Real>
 void add_products(const PanelNodes<Real>& panel, const Real* g, int first, Real* sums) {
   using Several = typename RegisterOf<Real>::Type;

@@ -37,8 +37,8 @@ class ImageSum {
   /// (forces) or the 6 components of S in the order 11, 22, 33, 12, 13, 23.
   Net sum(std::span<const std::vector<double>> carried);
 
-  /// Returns the part of the sum that belongs to the nodes first, first + 1, ... of `carried`, at one target. The caller subtracts this part if
-  /// near-singular quadrature replaces these nodes. `carried`: source strengths of these nodes.
+  /// Returns the contribution of the nodes first, first + 1, ... to the sum at one target. `carried`: source strengths of these nodes. The caller
+  /// subtracts this contribution if near-singular quadrature replaces the nodes.
   Vec3 sum(const Charges& carried, int first, const Vec3& target) const;
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum

@@ -209,9 +209,9 @@ void PeriodicKernel::add_free(const Vec3& r, double factor, double* values) cons
     for (int c = 0; c < 6; ++c) values[6 * a + c] += (c < 3 ? 1 : 2) * scale * r[a] * r[stresses[c][0]] * r[stresses[c][1]];
 }
 
-/// Adds all images along the one period h e except the near images, in pairs at +n h and -n h, and subtracts (I + e e)/|n h| from each Stokeslet
-/// (2.43). The first `direct` pairs are summed directly. The other pairs are replaced by an integral over 1/n and the first term of the
-/// Euler-Maclaurin formula.
+/// Adds all images along the single lattice vector h, with the direction e, except the near images. They are added in pairs at +n h and -n h, and
+/// (I + e e)/|n h| is subtracted from each Stokeslet (2.43). The first `direct` pairs are summed directly. The sum over the other pairs is replaced
+/// by an integral over the variable 1/n and the first term of the Euler-Maclaurin formula.
 void PeriodicKernel::add_row(const Vec3& r, double* values) const {
   constexpr int direct = 60, nodes = 12;
   const Vec3 h = cell_.vectors().col(0), e = h.normalized();

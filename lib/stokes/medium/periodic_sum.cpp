@@ -83,7 +83,8 @@ std::vector<double> differences(const std::vector<double>& nodes, std::vector<in
   return all;
 }
 
-/// Interpolates values [component][x][y][z] at nodes to values [x][y][z][component] at other positions.
+/// Interpolates values [component][x][y][z] at nodes to values [x][y][z][component] at other positions. by[d]: values of the interpolation functions
+/// of direction d, shape (positions, nodes).
 std::vector<double> interpolated(std::vector<double> values, const std::array<Eigen::MatrixXd, 3>& by) {
   const auto contract = [&](const Eigen::MatrixXd& matrix) {  // multiplies by a matrix along the last index, and moves this index to the front
     const Eigen::Index rest = static_cast<Eigen::Index>(values.size()) / matrix.cols();

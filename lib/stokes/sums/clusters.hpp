@@ -57,7 +57,7 @@ class Clusters {
  private:
   struct Group {
     Vec3 centre;
-    double along;  // coordinate of `centre` along the axis by which the cluster that contains the group is split
+    double along;  // coordinate of `centre` along the axis along which the cluster of the group is split
     int number;
   };
   double rounded(double x) const { return step_ * std::round(x / step_); }

@@ -19,9 +19,9 @@ namespace tanktread::stokes {
 class NearField {
  public:
   /// `tolerance`: permitted error divided by int dG / r over the closed surface that contains the panel. This integral is estimated as sqrt(4 pi A),
-  /// where A is the area of this surface. `steep`: true for the double layer. At targets off the closed surface of the panel its integrand grows like
-  /// 1 / r^2 instead of 1 / r. At targets on this surface, subtracting the density at the target lowers the singularity by one order. `off_surface`:
-  /// true if there are targets that are not on any surface.
+  /// where A is the area of this surface. `steep`: true for the double layer. Its integrand grows like 1 / r^2 at targets that are not on the closed
+  /// surface of the panel. At targets on this surface it grows like 1 / r, because the density at the target is subtracted. `off_surface`: true if
+  /// there are targets that are not on any surface.
   NearField(const Panels& panels, double tolerance, int smooth_order, bool steep, bool off_surface);
 
   /// Sets the shape from the Bezier points of the panels that are not symmetry images. The points must outlive the calls below. If a panel is an

@@ -54,7 +54,7 @@ class BodyLayer {
   stokes::Layer layer_;                  // single layer at the sites of the bodies
   std::optional<stokes::Layer> beyond_;  // single layer at the points `others_`; empty if there are none
   Net at_, flux_, outward_;  // at_: collocation sites. flux_: flux vector b of each body. outward_: vector s (R c)/(b.c) of the regularising term
-                             // (2.10), see make_regular()
+                             // (2.10), with a scale s and the collocation matrix R
   Eigen::MatrixXd matrix_;                // kept only for `velocity`
   stokes::Rows<double> rows_of_others_;  // rows of the single layer A at the points `others_`; empty if `keep_rows` is false
   std::optional<DenseFactors> factors_;

@@ -6,7 +6,7 @@
 namespace tanktread::coupling {
 namespace {
 
-/// Returns the row of `ring` within `close` of `at`, or -1.
+/// Returns the row of `ring` (points around one cross-section) whose distance from the position `at` is below `close`; -1 if there is none.
 int row_at(const Eigen::Ref<const Net>& ring, const Vec3& at, double close) {
   Eigen::Index row;
   return (ring.rowwise() - at.transpose()).rowwise().norm().minCoeff(&row) < close ? static_cast<int>(row) : -1;

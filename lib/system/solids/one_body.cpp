@@ -81,8 +81,8 @@ Eigen::MatrixXd OneBodyInverses::columns(const RigidParticles& placed, std::size
 
 namespace {
 
-/// Largest thickness h of a film for which a film inverse is set up, divided by the smaller radius R of the two bodies. Thicker films need no
-/// inverse: the wave numbers k are at least about 1/R, so that the eigenvalues, of the order of k h (see FilmInverses), are not small.
+/// Largest thickness h of a film for which FilmInverses computes an inverse, divided by the smaller radius R of the two bodies. Thicker films need no
+/// inverse, because their eigenvalues are not small: they are of the order of k h, with wave numbers k of at least about 1/R.
 constexpr double widest = 0.5;
 
 /// A body, its collocation sites, and a ball about the mean of the sites that contains all of them.
@@ -108,7 +108,7 @@ struct Side {
 };
 
 /// Returns C = -H M^-1 (see FilmInverses): the effect of the body `by` on the sites of another body. M is the operator of the isolated body `by`.
-/// `rows`: rows of the double layer H for the sites of the other body. `sites`: sites of `by`, for which the columns of M^-1 are used.
+/// `rows`: rows of the double layer H for the sites of the other body. `sites`: sites of `by`. C has only the columns of these sites.
 Eigen::MatrixXd coupling(const stokes::Rows<double>& rows, const Side& by, std::span<const int> sites, const OneBodyInverses& alone,
                          const RigidParticles& placed) {
   return -rows.middleCols(3 * by.block.first_point, 3 * by.block.n_points) * alone.columns(placed, by.particle, sites);

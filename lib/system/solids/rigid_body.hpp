@@ -84,9 +84,9 @@ class LoneRigidBody : public Dynamics {
   long evaluations_ = 0;
 };
 
-/// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega', where
-/// (U', Omega') follows from the given force and torque (or zero) and the remaining part of the flow about x_c. Each call takes only a few products
-/// of small matrices.
+/// A free body in unbounded flow (2.20):  U = v_inf(x_c) + U',  dq/dt = (0, Omega) q/2,  Omega = curl v_inf(x_c)/2 + Omega'. Here (U', Omega')
+/// follows from the given force and torque, which are 0 by default, and from the remaining part of the flow about x_c. A call costs only a few
+/// products of small matrices.
 class FreeBody : public LoneRigidBody {
  public:
   FreeBody(RigidTractions& body, const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven = {});
@@ -144,7 +144,7 @@ class FreeBodyInTube : public LoneRigidBody {
   std::optional<RigidModes> modes_;  // solutions without the response of the tube
   mutable Net place_;                 // position of the latest solve
   mutable Solution solution_;         // solution at this position
-  mutable Eigen::VectorXd unknowns_;  // solution of the system in the tube
+  mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts
   mutable long iterations_ = 0;
 };
 

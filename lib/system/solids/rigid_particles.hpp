@@ -57,8 +57,8 @@ class RigidParticles {
   /// Moves every body to the position that fits the rows of the body in x best. Replaces these rows by the control points of the moved body.
   void place(Net& x);
 
-  /// Sets forces on the bodies in addition to the prescribed forces, by their virtual work with one row per control point of all particles. The
-  /// forces act on material points and have fixed directions in space. If `work` has no rows, there are no such forces.
+  /// Sets forces on the bodies in addition to the prescribed forces. `work`: virtual work of these forces, one row per control point of all
+  /// particles; no rows if there are no such forces. The forces act on material points and have fixed directions in space.
   void push(const Net& work);
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
@@ -112,7 +112,7 @@ class RigidParticles {
     Rigid rigid;
     Net pushed;  // virtual work of the forces set by push(); no rows if there are none
     double radius = 0, viscosity = 0;
-    Net rest;             // control net at rest relative to the centre of volume
+    Net rest;             // control net in the reference orientation, relative to the centre of volume
     std::shared_ptr<const OwnLacking> lacking;  // shared by equal bodies
     Eigen::VectorXd weight;              // int N_A dG
     Net moment;                          // int N_A r dG

@@ -47,8 +47,8 @@ namespace tanktread::coupling {
 /// v_inf (2.41).
 class RigidTractions {
  public:
-  /// `space`: common space of all particles. `unstressed`, `rest`: their nets. `own`: collocation points whose rows this rank computes. References
-  /// must outlive this object.
+  /// `space`: common space of all particles. `unstressed`, `rest`: control nets of their unstressed and resting shapes. `own`: collocation points
+  /// whose rows this rank computes. References must outlive this object.
   RigidTractions(const spline::Space& space, const Net& unstressed, const Net& rest, std::span<const Particle> particles, double viscosity,
                  const quadrature::Options& quadrature, const SolverOptions& solvers, const std::optional<stokes::PlaneWall>& wall, Tube* tube,
                  const std::vector<int>& own, Ranks& ranks);
@@ -67,7 +67,7 @@ class RigidTractions {
   /// y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
-    bool responds;  ///< false: the velocity on the bodies depends on y only through the single layers of the bodies
+    bool responds;  ///< true if the velocity on the bodies depends on y through more than their single layers
 
     /// Returns B y, the left-hand side of the linear system for y. `caused`: velocity at all collocation sites due to the force densities f in y;
     /// empty on a lattice. Rows of bodies contain the velocity at the sites due to y. All other rows contain v minus the control values of the
@@ -80,8 +80,9 @@ class RigidTractions {
   /// loads due to deformable particles and images on a lattice; not set if there are neither. Collective.
   void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
-  /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed forces
-  /// and torques of the bodies, or motions. The other arguments are explained at place(). Results are kept until the next call. Collective.
+  /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force
+  /// and torque, or prescribed motion, of each body. `flow`: ambient flow. `centres`, `around`: as for place(). Results are kept until the next call.
+  /// Collective.
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 

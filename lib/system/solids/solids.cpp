@@ -87,8 +87,8 @@ void Solids::make_layer() {
   layer_->place(surface_.net);
 }
 
-/// The range depends on x only, so that a resumed run computes the same velocities. It grows in steps, so that a moving particle seldom needs a new
-/// layer.
+/// Includes x in the range of coordinates for which the layer is set up. The range depends only on the current x, so that a resumed run computes the
+/// same velocities. It grows in steps, so that a moving particle seldom needs a new layer.
 void Solids::reach(const Net& x) {
   if (cell_.n() == 3) return;
   const auto [low, high] = cell_.range(x);

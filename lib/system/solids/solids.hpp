@@ -91,7 +91,7 @@ class Solids {
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
   const surface::SolidSurface& surface() const { return surface_; }
-  const std::array<Vec3, 2>& across() const { return across_; }  ///< range of the solids' coordinates, in the axes of the cell
+  const std::array<Vec3, 2>& across() const { return across_; }  ///< lowest and highest coordinates of the solids, in the axes of the cell
   stokes::Evaluations evaluations() const { return evaluations_ + layer_->evaluations(); }
 
  private:

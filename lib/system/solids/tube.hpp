@@ -99,8 +99,8 @@ class Tube {
   void velocity_at(const Net& x, const Response& response, std::span<const int> rows, Net& u);
 
   /// Stores the operators of the current shape as low-precision blocks. `frozen_response` applies them: it returns the response u at the particle's
-  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. This is accurate enough, because u is a small and
-  /// smooth part of a Jacobian.
+  /// collocation points. If the wall's system is solved by iteration, `frozen_response` returns 0. The Jacobian then omits u. This is
+  /// accurate enough, because the contribution of u is small and smooth.
   void freeze();
   Net frozen_response(const Net& f, const Net& v = {});
 
@@ -127,8 +127,8 @@ class Tube {
   /// Independent checks of a response: its errors in the conditions (2.14). A response without discretisation errors satisfies them exactly.
   struct Checks {
     double flux = 0;          ///< disturbance of the flow rate through the inlet, divided by Q
-    double force = 0;         ///< axial force balance of the disturbance: dp times section area, minus the axial forces on wall and particle; divided
-                              ///< by section area times radius times pressure gradient of the empty duct
+    double force = 0;         ///< unbalanced axial force of the disturbance: dp times section area, minus axial forces on wall and particle. It is
+                              ///< divided by the product of section area, radius and pressure gradient of the empty duct
     double cap_velocity = 0;  ///< largest disturbance velocity on the caps, divided by the mean velocity
     double pressure_by_flux = 0, pressure_by_force = 0;  ///< pressure drops that would make `flux` zero (pressure_by_flux) or `force` zero
                                                          ///< (pressure_by_force)
@@ -143,8 +143,8 @@ class Tube {
   };
   Leak leak(const Net& f);
 
-  /// Returns f^D.leak.velocity - dp leak.flow, the contribution of the wall and the inlet to the collocation-error correction (2.42). `leak`:
-  /// discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
+  /// Returns the inner product of f^D and leak.velocity, minus dp times leak.flow: the contribution of the wall and the inlet to the
+  /// collocation-error correction (2.42). `leak`: discretisation error of the response to one load. `of`: response (f^D, dp) to another load.
   double work(const Leak& leak, const Response& of) const;
 
   /// Returns the flow rate of the duct flow: Q times its current factor `amplitude`. If the pressure drop of the duct flow is prescribed, returns the

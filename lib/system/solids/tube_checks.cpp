@@ -13,11 +13,11 @@ namespace tanktread::coupling {
 
 namespace {
 
-constexpr int everything = std::numeric_limits<int>::max();  // first row for Layer::see_images_only(), larger than every row number: no target is
-                                                             // restricted to images of the surface
-constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // leak() multiplies the tolerance of integrals over the wall by
-                                                           // check_sharpness, because pressures are large, and limits the result to at most
-                                                           // `sharpest`
+constexpr int everything = std::numeric_limits<int>::max();  // argument of Layer::see_images_only that exceeds every row number: the surface itself
+                                                             // then contributes to all targets
+constexpr double check_sharpness = 1e-2, sharpest = 1e-8;  // check_sharpness: factor by which leak() multiplies the tolerance of
+                                                           // integrals over the wall, because pressures are large. sharpest: upper limit of
+                                                           // this product
 
 /// Adds points on the straight lines from the centroid of a section to points of its outline, except points that are not inside the outline. `place`:
 /// maps points of the section into space.

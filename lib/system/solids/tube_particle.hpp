@@ -33,8 +33,8 @@ struct Tube::Particle {
   void place(const Net& x, double origin, const stokes::DuctFlow& flow, Wall& wall, double pressure_drop);
 
   /// Stores the operators of the current shape as low-precision blocks. `pressure_of_wall`: weights with which a velocity on the wall contributes to
-  /// the pressure drop dp, or empty. If they are given, the weights with which the particle's velocity v contributes to dp are computed from them and
-  /// the double layer. This is done before the rows of the double layer are rounded, because low precision would be too inaccurate.
+  /// the pressure drop dp, or empty. If it is not empty, also computes the weights with which the particle's velocity v contributes to dp, from these
+  /// weights and the double layer. For accuracy, this is done before the rows of the double layer are rounded.
   void freeze(Wall& wall, const Net& pressure_of_wall);
 
   const stokes::Layer::Near* kept(const std::optional<stokes::Layer::Near>& near) const { return near ? &*near : nullptr; }

@@ -201,7 +201,7 @@ Eigen::MatrixXd Wall::assembled() {
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
   Eigen::MatrixXd complete = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
-      std::vector<int> some, row;  // sites whose rows are assembled; for each own site, its index among them
+      std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
       for (; last < own.size() && some.size() < at_a_time; ++last) {
         const int site = own[last] - own[last] % m + original_of(own[last]).point;
         if (some.empty() || some.back() != site) some.push_back(site);

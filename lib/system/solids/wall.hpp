@@ -90,8 +90,8 @@ class Wall {
   Net collocated(const Net& u) const;
 
   /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes the rows of
-  /// the operator at given targets. In a channel, each result is the weighted mean (2.39) of the rows at a collocation point and at the adjacent
-  /// midpoints of elements, as in `collocated`.
+  /// the operator at given targets. In a channel, the rows at a collocation point are the weighted mean (2.39) of the rows at this point and at the
+  /// adjacent midpoints of elements. collocated() forms the same mean of velocities.
   template <class Real>
   void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
                  stokes::Rows<Real>& rows) const;

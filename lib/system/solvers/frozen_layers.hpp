@@ -20,7 +20,8 @@ class FrozenLayers {
   FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
                const membrane::MassMatrix& mass, ParticleLayers& layers);
 
-  /// Assembles the layers at the shape `at`. `x`: the same shape; if there is a lattice, each particle in `x` has been moved into the cell.
+  /// Assembles the layers at the shape `at`. `x`: equal to `at`; if there is a lattice, `at` with each particle moved by a lattice vector into the
+  /// cell.
   void assemble(const Net& at, const Net& x);
 
   /// Computes the rotations of the particles from the assembled shape to x, if the layers are assembled.

@@ -25,8 +25,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Unit in which positions and residuals are passed to NOX. It is small so that their values are large. NOX would treat differences of residuals
-/// below 1e-16 as singular, and these occur near the solution.
+/// Unit in which positions and residuals are passed to NOX. The numbers are large because the unit is small. NOX would treat differences of residuals
+/// below 1e-16 as singular. Near the solution, such differences would occur in units of order 1.
 constexpr double unit = 0x1p-20;
 
 Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
@@ -213,7 +213,7 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
     return {0, false};
   } catch (const Thyra::CatastrophicSolveFailure&) {
     return {0, false};
-  } catch (const std::runtime_error& error) {  // of this type itself: thrown by Anderson's method if differences of iterates depend on each other
+  } catch (const std::runtime_error& error) {  // exactly this type: thrown by Anderson's method if differences of iterates are linearly dependent
     if (typeid(error) != typeid(std::runtime_error)) throw;
     return {0, false};
   } catch (const Teuchos::Exceptions::InvalidParameter& error) {

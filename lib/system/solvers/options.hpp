@@ -61,7 +61,7 @@ struct SolverOptions {
                                                   ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
-  /// Returns whether the double layer is assembled, given whether far sums are taken by clusters.
+  /// Returns whether the double layer is assembled. `by_clusters`: true if far sums use clusters.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
   /// Returns `system`; its solver and parameter list, if not set, are replaced by the solver and list for all systems.
@@ -70,9 +70,9 @@ struct SolverOptions {
   void declare(deck::Section& section);
 };
 
-/// Solves a small test system with each solver whose name or parameter list the deck sets: Belos', Amesos2's, and NOX' with the method
-/// `nonlinear_solver` (Time/nonlinear solver). Throws UserError, naming the key, if a solver or a list fails, or if NOX does not use a parameter.
-/// Collective.
+/// Solves a small test system with each solver of Belos, Amesos2 or NOX whose name or parameter list the deck sets. NOX uses the method
+/// `nonlinear_solver` (Time/nonlinear solver). Throws UserError, naming the key, if a solver or a parameter list fails, or if NOX does not use a
+/// parameter. Collective.
 void try_solvers(const SolverOptions& solvers, const std::string& nonlinear_solver);
 
 }  // namespace tanktread::coupling
