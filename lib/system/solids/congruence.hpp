@@ -23,7 +23,7 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 
 /// For a point of a ring: another point of the ring that a map moves to it. The matrix rows of only this other point are assembled.
 struct Original {
-  int point;               ///< index in the ring; the smallest that a map moves to the given point
+  int point;               ///< index in the ring of this other point: the smallest index of all points that maps move to the given point
   const Congruence* from;  ///< this map; it points into the list given to originals()
 };
 
