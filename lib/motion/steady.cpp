@@ -76,7 +76,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Makes implicit time steps, which begin short and grow to equations.step(). Ends when a step of this full length changes x by little.
+/// Makes implicit time steps until a step of the full length equations.step() changes x by less than `little`. Earlier steps are shorter.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
