@@ -27,8 +27,9 @@ int elements_per_side(int level);
 /// Returns Time/tolerance at a level, 2e-3/4^level.
 double tolerance(int level);
 
-/// Returns the expected size of the error of a level, 1 at level 0: the geometric mean of the error of the mesh, n^-4, and of the tolerances,
-/// 4^-level. Depends only on the level of the mesh, because a looser time integration or quadrature is assumed to contribute little.
+/// Returns the expected error of a level divided by the error of level 0. It is the geometric mean of the error of the mesh, (n/n_0)^-4, and of the
+/// tolerances, 4^-k, with n elements per side at mesh level k. Only the mesh level counts, because a looser time integration or quadrature is assumed
+/// to contribute little.
 double expected_error(const Level& level);
 
 /// Factors by which one level reduces the errors of time integration and of quadrature. The time tolerance limits the local error of a step and falls

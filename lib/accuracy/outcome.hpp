@@ -41,7 +41,7 @@ struct Answer {
   Request request;
   Estimate estimate;
   double value = 0;      ///< value to which the error belongs: the largest magnitude over the run, the last value, or the average
-  double allowed = 0;    ///< requested bound of the error, in the unit of the series; for a relative request, round-off if the series vanishes
+  double allowed = 0;    ///< largest error that the request allows, in the unit of the series; for a relative request, at least the round-off error
   bool met = false;
   bool vanishes = false;  ///< true if a relative request cannot be met: the values of the series are not larger than its differences between levels
   double statistical = std::numeric_limits<double>::quiet_NaN();  ///< statistical error of a time average over several particles, not included in

@@ -13,9 +13,10 @@ namespace tanktread::accuracy {
 std::string sentence(const Answer& answer);
 
 /// Makes the results of the finest level the results in the directory of the ladder. The directory then has the files of this level, with
-/// `/error/<series>` in `run.h5`, the field `position error` in snapshots if there are three levels and no obstacle(), and the sections `error`,
-/// `accuracy` and `expect` in `summary.yaml`. `why`: reason why the ladder ended without meeting all requests; empty if it met them. `seconds`: wall
-/// seconds of all runs. Prints a warning for each missed expectation that is not binding, and returns one line that lists the others. Serial.
+/// `/error/<series>` in `run.h5`, the field `position error` in snapshots if there are three levels and obstacle() reports nothing, and the sections
+/// `error`, `accuracy` and `expect` in `summary.yaml`. `why`: reason why the ladder ended without meeting all requests; empty if it met them.
+/// `seconds`: wall seconds of all runs. Prints a warning for each missed expectation that has the key `not binding`. Returns one line that lists all
+/// other missed expectations. Serial.
 std::string publish(const Task& task, const std::vector<Outcome>& levels, const std::vector<Answer>& answers, const std::vector<SeriesError>& errors,
                     const std::string& why, double seconds);
 

@@ -32,8 +32,8 @@ double ratio(const Unit& a, const Unit& b) {
   return cv_convert_double(converter.get(), 1);
 }
 
-/// Returns the text `kind`, for example `force/length`, with the words of the list replaced by their units in turn. A unit must not contain a word
-/// that is replaced later.
+/// Returns the text `kind`, for example `force/length`, with each word in `words` replaced by its unit. The words are replaced one after another, so
+/// a unit must not contain a later word.
 std::string replaced(std::string_view kind, const std::vector<std::pair<std::string_view, std::string>>& words) {
   std::string text(kind);
   for (const auto& [word, by] : words)

@@ -20,7 +20,7 @@ namespace tanktread::membrane {
 /// shape.
 class AreaConstraint {
  public:
-  /// Sets up one area condition per Gauss point. `mobility`: velocity per force m_A of each control point.
+  /// Sets up one condition of constant local area per Gauss point. `mobility`: m_A, the velocity of control point A per unit of force on it.
   AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& mobility);
 
   /// Returns true if there are no area conditions, because no material of the membrane has an area elasticity with a separate quadrature (3.13).

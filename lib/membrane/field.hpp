@@ -53,8 +53,8 @@ class Field {
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq. The weighted sums of coefficients that the motion conserves then
-  /// have the same values for dq as for r, to round-off.
+  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq. Some fields have a weighted sum of coefficients that the motion
+  /// conserves, see conserved(). After the correction, this sum is the same for dq and r, to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns dq/dt, at the state set last, if the control points slide along the surface with this velocity while the material is at rest.

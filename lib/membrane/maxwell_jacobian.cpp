@@ -54,7 +54,8 @@ struct MaxwellElement::Point {
   }
 };
 
-/// Calls use(group, batch, Gauss point, lane, row of q, point) for every Gauss point of every element.
+/// Calls use(group, batch, q, lane, row, point) for every Gauss point q of every element. The element is in register lane `lane` of the batch. `row`:
+/// index of the Gauss point among all elements. `point`: its tangents and strains, with their changes due to dx and dq.
 template <class Use>
 void MaxwellElement::each_change(const Net& dx, const Eigen::VectorXd& dq, const Use& use) const {
   for (const Group& group : groups_)

@@ -97,8 +97,8 @@ class Tangent {
   /// Linearises the load at x on the given elements.
   void update(const Net& x, std::span<const int> elements);
 
-  /// Computes Hu = H u, shape (N, 3), set to zero first, from the elements of the last update. A row is complete if the whole support of its function
-  /// is in these elements.
+  /// Sets `hu` to H u, shape (N, 3). Only the elements of the last update contribute. A row is complete if the whole support of its function is in
+  /// these elements.
   void apply(const Net& u, Net& hu) const;
 
  private:

@@ -208,7 +208,7 @@ void Branch::adapt() {
   }
 }
 
-/// Returns a point only when the next point is known, because the next point may show that a fold lies before this point.
+/// Returns a point only after the following point has been computed, because that point may reveal a fold before the returned point.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;

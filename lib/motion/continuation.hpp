@@ -123,7 +123,7 @@ class Branch {
   std::shared_ptr<SteadyEquations> first_;
   Net x_;
   std::vector<Solved> last_;  // latest points of the branch, at most three, latest last
-  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength, each with true if it is a fold
+  std::vector<std::pair<Solved, bool>> ahead_;  // points still to be returned by next(), in order of arclength; the flag is true for a fold
   std::vector<Fold> folds_;       // the two latest folds, found at two values of the second parameter
   double last_share_ = 1;         // last step of the second parameter, divided by the interval between two of its given values
   std::size_t values_ = 0;        // number of given values of the second parameter that have been reached

@@ -10,7 +10,8 @@ namespace tanktread::motion {
 namespace {
 constexpr double shrink = 0.75, grow = 1.33;
 constexpr int most = 8, few = 4;      // sub-iterations
-constexpr int most_accelerated = 40;  // largest number of iterations of a step by NOX; beyond it, halving the step is cheaper than further iterations
+constexpr int most_accelerated = 40;  // largest number of NOX iterations per step; if they do not converge, halving the step is cheaper than more
+                                      // iterations
 }  // namespace
 
 CrankNicolson::CrankNicolson(const TimeOptions& options, const std::shared_ptr<Teuchos::ParameterList>& nox)

@@ -13,7 +13,8 @@ namespace tanktread::motion {
 ///   x_k - x* = -f_k + (dX + dF) c,   c the least-squares solution of dF c = f_k,   dX, dF: columns x_k - x_j, f_k - f_j          (4.32)
 ///
 /// The correction f_k is smaller than the error by the factor 1 - rho, with rho the contraction rate of the slowest mode; near a fold this factor is
-/// about 1/100. The estimate is exact if g is affine and differs from the identity in m directions only. Anderson acceleration uses it as its step.
+/// about 1/100. The estimate is exact if g is affine and the matrix dg/dx - 1 has at most the rank m. Anderson acceleration uses the estimate as its
+/// step.
 class FixedPointError {
  public:
   /// `most`: largest number m of earlier iterates.

@@ -116,8 +116,8 @@ double stiffness(coupling::Dynamics& dynamics, const Net& x, const Net& v, Net& 
 ///   after more than 8 sub-iterations, the step is repeated with 0.75 dt; after fewer than 4, the next step is 1.33 dt.
 ///
 /// Here m_C is the number of control points. The first sub-iteration, from x^1 = x_n, is the Euler step, which costs no velocity evaluation. If the
-/// number of sub-iterations includes it, as in the text of the paper, all steps stay near the size of the first step. If not, the mean step agrees
-/// with Table 3 of the paper. The sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
+/// Euler step counts as a sub-iteration, as the paper describes, all steps stay near the size of the first step. If it does not count, the mean step
+/// agrees with Table 3 of the paper. The sub-iteration contracts only for dt rho < 2, with rho the stiffness (4.7).
 ///
 /// `Time/nonlinear solver` accelerates this fixed-point iteration (Anderson) or replaces it by matrix-free Newton-Krylov iteration, both by NOX.
 /// `Time/step control: error` chooses steps by the difference to the explicit formula of the same order (Gresho, Lee & Sani 1980):

@@ -76,7 +76,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Makes implicit time steps until a step of the full length equations.step() changes x by little. The first steps are shorter.
+/// Makes implicit time steps until a step of the full length equations.step() changes x by less than `little`. Earlier steps are shorter.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;

@@ -74,8 +74,8 @@ constexpr int most_parts = 100'000;
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule) {
   const Bezier element{bezier, degree};
   const int largest = 1 + order_for(demand.tolerance, ellipse(0, 1));
-  // Largest bulge of a part (distance from its planar approximation) divided by the distance of the part from the target. The values were found by
-  // tests/verify/layer_shapes.cpp.
+  // Largest allowed bulge of a part (distance from its planar approximation), divided by the distance of the part from the target: first for the
+  // kernel 1/r^2, then for 1/r. The values were found by tests/verify/layer_shapes.cpp.
   const double flat_enough = demand.steep > 0 ? 0.125 : 0.25;
   const double rho_smooth = std::pow(demand.tolerance, -0.5 / demand.smooth_order);
   std::vector<Part> parts{{0, 0, 1, 1}};

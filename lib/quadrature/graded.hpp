@@ -17,8 +17,8 @@ struct Demand {
   double allowed = 0, steep = 0, tolerance = 1e-5;
   int smooth_order = 4;
 
-  /// Returns the largest permitted value of the error estimate rho^(-2 n) of n Gauss points, for a part of the element with this area at this
-  /// distance from the target. For the kernel 1/r^2 (`steep` > 0), the error of n Gauss points is taken as 10 rho^(-2 n).
+  /// Returns the largest permitted rho^(-2 n) of n Gauss points, for a part of the element with this area at this distance from the target. The error
+  /// of the points is taken as rho^(-2 n) for the kernel 1/r, and as 10 rho^(-2 n) for the kernel 1/r^2 (`steep` > 0).
   double error(double area, double distance) const {
     return allowed * distance / area * (steep > 0 ? 0.1 * std::min(1., distance / steep) : 1.);
   }

@@ -108,8 +108,8 @@ PolarOrders polar_orders(double s, double t, Shear shear, int radial, double tol
     const FarSide side(shear, a, b);
     orders.angular[k] = std::max(orders.angular[k], std::min(max_order, side.order(tolerance, side.rho(corner[k], corner[(k + 1) % 4]))));
   });
-  // Along the ray to a corner, the position relative to the target is approximated by x(r) = r affine + r^2 (corner - affine). The integrand is of
-  // the order of 1/|x|. It has poles at the complex r /= 0 with x.x = 0.
+  // Along the ray to a corner, 0 <= r <= 1, the position relative to the target is approximated by x(r) = r affine + r^2 (corner - affine). The
+  // integrand, of the order of 1/|x|, is singular at the complex r != 0 with x.x = 0.
   for (int k = 0; k < 4; ++k)
     orders.radial = std::max(orders.radial, std::min(max_order, 1 + order_for(tolerance, rho_along_ray(affine[k], corner[k] - affine[k]))));
   orders.radial = rounded_up(orders.radial);

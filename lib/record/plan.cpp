@@ -280,7 +280,8 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
 }
 
 /// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `responds`: true if the tractions of
-/// rigid bodies are found by GMRES, because the scene has a tube, a domain, or a deforming particle with a velocity system.
+/// rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming particle whose velocity is found from a linear
+/// system.
 Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};

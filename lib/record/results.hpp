@@ -105,8 +105,8 @@ class Results {
   };
   Sampled sample(const SurfacePicture& picture, double time);
 
-  /// Saves a checkpoint of the current step, and a snapshot at the end of the step or at a time within it. `checkpoint`: data for a resumed run other
-  /// than `state` and `totals`, which are added to it.
+  /// Saves a checkpoint of the current step, and the snapshot `picture`, which belongs to the end of the step or to a time within it. `checkpoint`:
+  /// data for a resumed run. `state` and `totals` are added to these data.
   void save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture);
 
   /// Writes the surface as Bezier-extraction text, `surface.iga`.

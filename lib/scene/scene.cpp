@@ -90,7 +90,7 @@ double wall_points(const Scene& scene) {
 /// Returns the bytes of all assembled operators of the particle per pair of control points. A layer operator has 3 x 3 doubles per pair, and a frozen
 /// operator six numbers of 16 bits. An operator with the option `auto` is not counted, because it is not assembled if it is too large.
 double bytes_a_pair(const Scene& scene) {
-  if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // factors, in a tube also the matrix
+  if (scene.particle.rigid()) return doubles * coupling::Ranks().size() * (scene.tube.present ? 2 : 1);  // LU factors; in a tube, also the matrix
   const bool viscous = scene.particle.viscosity_ratio != 1;
   const int frozen = scene.time.assembles() ? (scene.solvers.frozen_operator == "assembled") + viscous : 0;
   return doubles * ((viscous + scene.viscous_membrane()) * (scene.solvers.double_layer == "assembled") + (scene.interface_motion() == "relaxed")) +

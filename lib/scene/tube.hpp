@@ -10,8 +10,8 @@
 
 namespace tanktread {
 
-/// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, it has the mean velocity 1 and serves to compute the pressure drop
-/// (2.7). Returns null if there is no tube.
+/// Returns the flow of the empty tube or channel. If Flow/type is not `duct`, the returned flow has the mean velocity 1 and only serves to compute
+/// the pressure drop (2.7). Returns null if there is no tube.
 std::shared_ptr<const stokes::DuctFlow> duct(const Scene& scene);
 
 /// Adds the choices that contradict a tube or channel, and the choices that require one.
@@ -24,7 +24,7 @@ void check_fit(const Scene& scene, const Body& body);
 /// particles or its period is too long.
 std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& body);
 
-/// Returns the tube around `body`, the body of all particles of the scene; null if there is no tube.
+/// Returns the tube around `body`, which stands for all particles of the scene; null if there is no tube.
 std::unique_ptr<coupling::Tube> tube(const Scene& scene, const Body& body, Phases& phases);
 
 /// Data of the tube for one row of the results. For a periodic train, pressure drops refer to one period.

@@ -93,7 +93,7 @@ std::array<double, 4> b_spline_on(const std::array<double, 5>& k, double a, doub
   while (span < 6 && K[span + 1] <= a) ++span;
   // De Boor's algorithm for the blossom (polar form) of the cubic. Each of its three steps uses a or b as its argument. The result of a step
   // depends only on how many of the arguments so far were b.
-  double d[4][4][4] = {};  // d[r][n]: coefficients after r steps of which n used the argument b and r - n the argument a
+  double d[4][4][4] = {};  // d[r][n]: four coefficients after r steps, of which n used the argument b and r - n the argument a
   d[0][0][6 - span] = 1;
   for (int r = 1; r <= 3; ++r)
     for (int j = r; j < 4; ++j) {

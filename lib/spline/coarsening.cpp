@@ -177,8 +177,8 @@ TMesh take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, co
 TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules) {
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
-  // Largest width and height that an element may grow to, as powers of two, in lattice cells. A mesh line is not removed if its coordinate is a
-  // multiple of the limit.
+  // Largest width and height to which an element may grow, in lattice cells. Both are powers of two. A mesh line is not removed if its coordinate is
+  // a multiple of the limit.
   std::vector<std::array<int, 2>> limit(tiling.tiles.size(), {1, 1});
   for (const Merge& m : merges) {
     const Rectangle& r = tiling.tiles[m.element];

@@ -16,9 +16,9 @@ namespace tanktread::spline {
 ///  - missing: edges of the lattice that an earlier extended mesh (T-mesh plus extensions) contains and the current one does not contain. If no edge
 ///    is missing, the extended meshes are nested.
 ///  - overlaps: lattice vertices at which the face extensions of two T-junctions overlap. The two T-junctions are on one line and point at each
-///    other. The vertex is on an edge perpendicular to this line, but it is not a vertex of the T-mesh. Together the two extensions connect the two
-///    T-junctions by an unbroken line. The space of smooth splines on the extended mesh then has one dimension more than there are anchors (vertices
-///    with a control point).
+///    other, and together their extensions connect them by an unbroken line. The vertex is on an edge perpendicular to this line, but it is not a
+///    vertex of the T-mesh. The space of smooth splines on the extended mesh then has one dimension more than there are anchors (vertices with a
+///    control point).
 /// If all three counts are 0, the spline spaces are nested.
 ///
 /// Adding or removing a path of edges changes only the T-junctions whose extensions meet the path. So both operations are cheap and exact inverses of
@@ -95,8 +95,8 @@ std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, i
 /// are uniform with half the spacing h.
 std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point);
 
-/// Halves the spacing h of every extraordinary point whose zone (see broken_zones) one of the paths breaks, by adding lines. Repeats this for the
-/// added lines until no zone is broken. Returns how many times a spacing was halved.
+/// If one of the paths of edges breaks the zone of an extraordinary point (see broken_zones), adds mesh lines that halve the spacing h of this point.
+/// Repeats this for the added lines until no zone is broken. Returns how many times a spacing was halved.
 int restore_zones(ExtendedMesh& extended, std::vector<std::vector<Ray>> paths, int rings);
 
 }  // namespace tanktread::spline

@@ -129,7 +129,7 @@ Conditions conditions(const Eigen::MatrixXd& bicubic, const Eigen::MatrixXd& biq
   return out;
 }
 
-/// Returns the coefficients of the unknowns in the change of Bezier point (v, u) of face j (5 x 5 points).
+/// Returns the row of coefficients whose product with the unknowns is the change of the Bezier point (v, u) of face j, 0 <= u, v <= 4.
 Eigen::RowVectorXd change(int v, int u, int j) {
   Eigen::RowVectorXd d = Eigen::RowVectorXd::Zero(unknowns);
   if (v == 0 && (u == 1 || u == 2)) d[unknown(c1, j)] = u == 1 ? 0.75 : 0.5;

@@ -180,7 +180,7 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
            ", so one of them is inverted.";
 
   // Line integrals (vectors) of cos(k_i . x) dx and sin(k_i . x) dx, with fixed wave vectors k_i, along all sides without a matching side. They are 0
-  // if these sides cancel as curves.
+  // if these sides cancel as curves, which means that both directions cover each curve equally often.
   Eigen::Matrix<double, 3, 6> sum = Eigen::Matrix<double, 3, 6>::Zero();
   double length = 0;
   const double size = extent(net);

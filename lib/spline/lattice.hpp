@@ -21,7 +21,7 @@ struct Ray {
 /// face coordinates need no special treatment.
 struct Lattice {
   int faces = 0;
-  int units = 0;               ///< number of cells along x of a macro face; on the cube also along y
+  int units = 0;               ///< number of cells of a macro face along its coordinate x; on the cube also along y
   int rows = 0;                ///< number of cells along y, including `pad` rows at each end
   int pad = 0;                 ///< number of rows of zero height (repeated end knots) at each pole; 0 on the cube
   int base = 0;                ///< number of cells along a side of one element of the initial mesh (a power of two)

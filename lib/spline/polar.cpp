@@ -109,8 +109,8 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns, for PoleRule::c1, the anchor at whose generalised Greville point function k of a pole is collocated, or -1 if it is collocated at the
-  /// pole. `ahead`: the pole at the end of the meridian, otherwise the pole at its start.
+  /// Returns where function k of a pole is collocated with PoleRule::c1: the anchor that has this collocation point as its generalised Greville
+  /// point, or -1 for the pole itself. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:

@@ -55,8 +55,8 @@ double harm(ExtendedMesh& extended, const std::vector<Ray>& bay, int rings) {
 }
 
 /// Compares the first parts (bays) of the face extensions of the T-junctions `candidates`, and returns the part whose insertion leaves the mesh with
-/// the fewest violations, as counted by harm(). Among parts that leave equally few violations, returns the shortest, then the part with the lowest
-/// vertex.
+/// the fewest violations, as counted by harm(). Among parts that leave equally few violations, returns the shortest. Among equally short parts,
+/// returns the one that starts at the vertex of lowest index.
 std::vector<Ray> best_bay(ExtendedMesh& extended, std::span<const TJunction> candidates, int rings) {
   std::vector<Ray> best;
   double least = 0;
@@ -90,8 +90,9 @@ struct Cut {
   auto operator<=>(const Cut&) const = default;
 };
 
-/// Returns the representative of a cut: the first of the cut and its images under the symmetries, in the order of elements, then directions.
-/// Equivalent cuts have one representative, so that a bisection refused because the lattice is too coarse is counted once for all of them.
+/// Returns the representative of a cut (bisection of an element in one direction): the first of the cut and its images under the symmetries, in the
+/// order of elements, then directions. Equivalent cuts have one representative, so that a bisection refused because the lattice is too coarse is
+/// counted once for all of them.
 Cut first_image(const Cut& cut, const Lattice& lattice, const Tiling& tiling, const std::vector<LatticeMap>& images) {
   Cut first = cut;
   for (const LatticeMap& map : images) {

@@ -89,8 +89,8 @@ struct Merge {
 /// `rules.images`, an element grows only as far as all of its images may grow, and a line is removed only together with all of its images.
 TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairRules& rules = {});
 
-/// Coarsens a mesh by removing edges of a given set of unit edges (bits as in TMesh::edges). An edge is removed if all edges between the same two
-/// perpendicular edges may be removed.
+/// Coarsens a mesh by removing unit edges of the set `removable` (bits as in TMesh::edges). All edges of a line between two successive perpendicular
+/// edges are removed together, and only if all of them are in the set.
 TMesh take_out(const TMesh& mesh, const std::vector<std::uint8_t>& removable, const RepairRules& rules = {});
 
 }  // namespace tanktread::spline

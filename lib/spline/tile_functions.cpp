@@ -36,8 +36,8 @@ int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   return cells[turn & 3];
 }
 
-/// Returns the 16 products of coefficients along two directions: `ahead` in the direction `turn`, and `aside` in the direction to the left of it (see
-/// Walker). They are ordered by the local coordinates s, t of the element.
+/// Returns the 16 products ahead[a] aside[b] of Bezier coefficients, in the order of the local coordinates s, t of the element. `ahead`: coefficients
+/// along the direction `turn`. `aside`: coefficients along the direction to the left of it, as in Walker.
 std::array<double, 16> in_frame(const std::array<double, 4>& ahead, const std::array<double, 4>& aside, int turn) {
   std::array<double, 16> row;
   for (int b = 0; b < 4; ++b)
@@ -60,7 +60,8 @@ struct Builder {
     return number < 0 ? Rectangle{l.face_of(cell), l.x_of(cell), l.y_of(cell), 1, 1} : out.tiling.tiles[number];
   }
 
-  /// Adds the Bezier coefficients of function A on the regular mesh elements in the quadrant between slots q and q + 1 (directions) of its anchor.
+  /// Adds the Bezier coefficients of function A on the regular mesh elements in one quadrant around its anchor: between the directions (slots) q and
+  /// q + 1.
   void quadrant(int A, int q) {
     const int v = out.anchor[A], next = (q + 1) % l.valence(v);
     if (l.cell[v][q] < 0) return;

@@ -23,7 +23,7 @@ quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
 
 Layer::Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor)
     : kernel_(kernel), surface_(space, sites, sharper(options, kernel), kernel == Kernel::double_layer), factor_(std::move(factor)) {
-  // The tolerance of the clusters is halved for the double layer. The measured error of the double layer is then half of the halved tolerance.
+  // The clusters of the double layer get half the tolerance. The measured error of the double layer is then a quarter of the tolerance.
   const double of_tree = single() ? options.tolerance : options.tolerance / 2;
   if (sums_by_tree(space, options)) tree_.emplace(of_tree, precision());
   fundamental_sites_ = indices(sites.size());
@@ -313,7 +313,8 @@ Layer::Near Layer::near(const Net& at, std::span<const int> targets) {
   return kept;
 }
 
-/// Computes the Bernstein moments of panel e by the rule `table`, minus the moments by the far nodes of the panel.
+/// Computes the integrals of the kernel times each Bernstein polynomial over panel e by the rule `table`, minus the contribution of the far nodes of
+/// the panel, which the far sum contains.
 void Layer::moments_beyond_far_sum(int e, const PointTable& table, SelfPair* pair, const Vec3& at, double* moments) {
   const Panel& panel = surface_.panels[e];
   const NodeTable& t = *panel.table;

@@ -50,8 +50,8 @@ struct Repetition {
                                                                               ///< surfaces
 };
 
-/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density.
-/// The viscosity is not included.
+/// Single or double layer potential of spline surfaces p, open or closed, at targets x0 on or off them. f_B are the control values of the density,
+/// and k_p is a factor per surface, by default 1. The viscosity is not included.
 ///
 ///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
@@ -62,10 +62,10 @@ struct Repetition {
 ///
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
 /// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. Its tolerance is
-/// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only
-/// the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
+/// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only the
+/// Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
 /// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012, where the flow is a different one.
+/// Mech. 696, 2012, who use another flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -263,8 +263,8 @@ class Layer {
   std::optional<ImageSum> images_;                                 // images in a plane wall
   std::vector<Mat3> image_stress_;                                 // for each target, the double layer of the images in the wall for the constant
                                                                    // densities e_1, e_2 and e_3, as columns
-  std::vector<int> fundamental_sites_, everybody_;                 // fundamental_sites_: targets in the tree. everybody_: rows whose far sums are
-                                                                   // divided among callers by share()
+  std::vector<int> fundamental_sites_, everybody_;                 // fundamental_sites_: targets in the tree. everybody_: rows whose far sums share()
+                                                                   // divides into parts
   std::vector<Vec3> tree_at_;                                      // targets of the tree
   std::vector<int> tree_rows_;                                     // rows that the tree computes; empty if the tree must be built anew
   std::vector<double> stress_;                                     // sum of T_ijk n_k over the far nodes at the targets, six components each

@@ -93,7 +93,8 @@ void Layer::add_rest(const Targets& targets, Net& u) {
 }
 
 /// Computes the double layer of constant unit densities due to the images that are not in the far sum, at the targets `at`, one column per component
-/// of the density. Some images of a surface are in the far sum and the others are not, so that for a constant density neither sum vanishes.
+/// of the density. Each surface has images in the far sum and images outside of it. Therefore neither of the two sums vanishes for a constant
+/// density.
 void Layer::place_rest(const std::vector<Vec3>& at) {
   lattice_.rest_at = at;
   lattice_.rest_stress.assign(at.size(), Mat3::Zero());

@@ -123,8 +123,9 @@ class Layer::RowSums {
  private:
   Vec3 place_of(int target) const { return at_ ? Vec3(at_->row(target)) : layer_.surface_.site(target); }
 
-  /// Adds the corrections by near-singular and singular quadrature for one target, on the given images of the panels that are close to it. On a
-  /// lattice they correct the far sum, which includes the nodes of these images. l: index of the target in its block of sixteen.
+  /// Adds the corrections by near-singular and singular quadrature for one target. `images`: displacements of the panels; a displaced panel is
+  /// corrected if it is close to the target. On a lattice the corrected far sum includes the nodes of displaced panels. l: index of the target in its
+  /// block of sixteen.
   void add_close_panels(int target, const std::vector<Vec3>& images, int l) {
     LayerSurface& surface = layer_.surface_;
     for (const Vec3& image : images) {

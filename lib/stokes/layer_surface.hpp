@@ -40,7 +40,7 @@ class LayerSurface {
   /// Sets the shape. Returns false, at no cost, if the shape is unchanged.
   bool place(const Net& x);
 
-  /// Returns the position of site i, and the value at site i of the field with the Bezier points `of`.
+  /// site() returns the position of site i. value() returns the value at site i of the field with the Bezier points `of`.
   Vec3 site(int i) const { return value(i, bezier); }
   Vec3 value(int i, const std::vector<double>& of) const { return self_field.value(i, panels, of); }
 

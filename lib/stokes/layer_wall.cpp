@@ -85,7 +85,8 @@ void Layer::add_near_images(const Targets& targets, Net& u) {
   }
 }
 
-/// Returns the contribution of the image of panel e by the near-singular rule `table`, minus the contribution of this image to the far sum.
+/// Returns the contribution of the mirror image of panel e in the wall, computed by the near-singular rule `table`, minus the contribution of this
+/// image that the far sum contains.
 Vec3 Layer::beyond_image_sum(int e, const PointTable& table, const Vec3& mirrored, const Vec3& at, const Vec3& f0) {
   const PlaneWall& wall = images_->wall();
   const Panel& panel = surface_.panels[e];

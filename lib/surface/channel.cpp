@@ -66,7 +66,8 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// Returns, for the profile `step`, the length of the wall contour minus the length of the centre line, on one side of the middle of the profile.
+/// Returns the length of the wall contour minus the length of the centre line, on one side of the middle of the profile, for the profile `step`; 0
+/// for other profiles.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;

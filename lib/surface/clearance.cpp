@@ -177,7 +177,7 @@ class OutlineSearch {
   const Patches& surface_;
   const Outline& outline_;
   std::vector<ElementPart> pieces_;  // a heap
-  Eigen::MatrixXd products_;   // products() for the degree used last
+  Eigen::MatrixXd products_;   // factors products(p) for the degree p used last
   Clearance best_;
 };
 

@@ -116,8 +116,9 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
   return Crossing{at, std::hypot(y[0], y[2])};
 }
 
-/// Finds points of the section curve near the intersections of the plane x2 = centre_2 with the chords of a sampling grid. The chords themselves are
-/// too far from the surface: the error of their distance may exceed the difference between the extremes of a nearly circular curve.
+/// Finds points of the section curve near the intersections of the plane x2 = centre_2 with the chords of a sampling grid. The intersections
+/// themselves are too far from the surface. On a nearly circular curve, the error of their distances from the centre may exceed the difference
+/// between the largest and the smallest distance.
 void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
   result.clear();
   double above[cells + 1][cells + 1];
@@ -184,7 +185,7 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
 struct Candidate {
   int element;
   std::vector<Crossing> crossings;
-  double spread;  ///< largest minus smallest sampled distance on the element
+  double spread;  ///< largest minus smallest distance from the centre at the sampled points of the element
 };
 
 /// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the

@@ -99,7 +99,7 @@ struct Of {
   static void volume_gradient(const Lanes& points, Lanes& gradient) { normal_integrals<n, false>(points, nullptr, gradient); }
   static void moment_gradient(const Lanes& points, const double* g, Lanes& gradient) { normal_integrals<n_transport, true>(points, g, gradient); }
 
-  /// Computes int B_b n dG, or int B_b (g.x) n dG if with_place is true.
+  /// Computes int B_b n dG, or int B_b (g.x) n dG with the vector g if with_place is true.
   template <int n, bool with_place>
   static void normal_integrals(const Lanes& points, const double* g, Lanes& gradient) {
     static const Table<p, n> table;

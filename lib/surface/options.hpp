@@ -101,8 +101,8 @@ struct ParticleShape {
   /// Returns the particle radius R_C, the radius of the sphere of equal volume.
   double equivalent_radius() const;
 
-  /// Returns the radius of a sphere around the centre that contains the initial shape if it is a linear map of the resting shape, otherwise the
-  /// resting shape.
+  /// Returns the radius of a sphere around the centre that contains the resting shape. If the initial shape is a linear map of the resting shape, the
+  /// sphere contains the initial shape instead.
   double circumscribed_radius() const;
 };
 

@@ -90,7 +90,7 @@ class Outline {
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
-  /// Returns the point of the outline nearest to p, for p within the distance r of x. `its` is the point of the outline nearest to x; it limits the
+  /// Returns the point of the outline nearest to p, which must be within the distance r of x. The point `its` of the outline nearest to x limits the
   /// search. The distance in the result has no sign.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 

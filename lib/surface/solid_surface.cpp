@@ -12,7 +12,7 @@ namespace tanktread::surface {
 
 namespace {
 
-/// Period of unit length with equal elements: the splines, and the control values of the coordinate along it.
+/// Splines on equal elements over a period of unit length, and the control values of the coordinate along the period.
 struct Unit {
   RepeatingLine line;
   std::vector<double> coordinate;

@@ -85,7 +85,8 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
     open.add_site(u < ends[0] ? u + period : u >= ends[1] ? u - period : u, all, 0, false);
   }
   const int last = static_cast<int>(closed.pieces.size()) - 1;
-  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the last periodic element that lies before ends[1]
+  const double seam = (ends[1] - knots.back()) / (cycle.back() - knots.back());  // fraction of the periodic element at the seam that lies before
+                                                                                 // ends[1]
   line.open_from_periodic = Eigen::MatrixXd::Zero(open.n, closed.n);
   for (int piece = 0; piece <= last + 1; ++piece) {
     const bool first_part = piece == last + 1;  // of the last element

@@ -37,7 +37,7 @@ void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards
 struct RepeatingLine {
   Line open;
   Eigen::MatrixXd open_from_periodic;
-  std::vector<double> middles;  ///< middle of each periodic element, as a local coordinate on the piece with the same index
+  std::vector<double> middles;  ///< middle of each periodic element, as a local coordinate on the piece of `open` with the same index
 };
 
 /// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all between the ends. The two ends are

@@ -96,7 +96,8 @@ struct FundamentalElements {
 /// Returns one element per orbit, with its weight. `points(e)` returns the control points of element e.
 FundamentalElements fundamental_elements(const Symmetry& symmetry, int n_elements, const std::function<std::span<const int>(int)>& points);
 
-/// Computes the rows at the fundamental points of a symmetric field from the weighted contributions of fundamental elements to all rows.
+/// Completes the sums of a symmetric field in the rows of the fundamental points. On input, `sums` has the weighted contributions of the fundamental
+/// elements to all rows.
 void fold(const Symmetry& symmetry, Net& sums);
 
 /// Fields of one parity. The parity has one factor per axis, 1 or -1: the reflection along this axis multiplies the fields by this factor. Half turns

@@ -21,7 +21,8 @@ struct Corner {
   double height;
 };
 
-/// Sums over the parts of the section curve added so far: circulation, length, weight of the material points (6.6), and weighted angular velocity.
+/// Integrals along the section curve over the parts added so far by cut(): circulation, length, weight of the material points (6.6), and angular
+/// velocity times this weight.
 struct Circuit {
   Vec3 centre, of_centre;
   bool elastic;

@@ -142,8 +142,8 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
 }
 
 /// Returns v_inf - (1/mu) R^-1 A f of (4.2), with R the collocation matrix and A the single layer. In a tube with eliminated wall unknowns, adds the
-/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given. Exception:
-/// if a linear system for the velocity follows, stores nothing, because its solution changes the response.
+/// response of the wall to the load f and, if given, to the velocity `moves` of the particle. Stores this response in `answer`, if given, unless a
+/// linear system for the velocity follows, whose solution changes the response.
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (by_sites()) {
@@ -158,7 +158,8 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
   }
-  Net v = flow_.velocities(x);  // control values of an affine flow, which are exact because the basis functions sum to one
+  Net v = flow_.velocities(x);  // in an affine flow, the velocities at the control points are the exact control values, because basis functions sum
+                                // to one
   const auto clock = phases_.time("projection");
   v -= targets_.control_values(std::move(u)) / parameters_.viscosity;
   return v;
@@ -197,8 +198,8 @@ Net Capsule::defect(const Net& x, const Net& u) {
   return defect_here(in_cell, slower);
 }
 
-/// Returns the defect P (w - B P u) - (1 - P) u of the velocity u (3.14). P is the volume projection (2.8), and B v = w is the linear system for the
-/// velocity v at x (see solve_velocity). The viscous load due to u is added to the elastic load, so that only one sum over the surface is needed.
+/// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
+/// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that a single sum over the surface is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());

@@ -72,8 +72,8 @@ class Capsule : public Dynamics {
   std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
-  /// unknown. A linear system is solved if a used quantity cannot be computed from the velocity, and if the shape evaluated last is farther than
-  /// `distance` from x (in `norm`). If it is nearer, its rigid motions and fluid velocities are used instead.
+  /// unknown. If the shape evaluated last is within `distance` of x (in `norm`), its rigid motions and fluid velocities are used. Otherwise a linear
+  /// system is solved when a quantity is needed that cannot be computed from `velocity`.
   std::shared_ptr<Evaluation> evaluation(const Net& x, const Net& velocity, double distance);
 
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
@@ -158,8 +158,8 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Net of the particles for which the tube was set up last. `origin`: x1 of the origin of the frame of a straight periodic wall at the present
-  /// time. `origin_of_net`: value of `origin` at the time when `net` was set.
+  /// Net of the particles for which the tube was set up last. `origin`: current x1 of the origin of the frame of a straight periodic wall, which
+  /// moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
   struct TubePlace {
     Net net;
     std::optional<double> origin, origin_of_net;

@@ -31,8 +31,8 @@ struct Contacts {
   void add_columns(Columns& to) const;
 };
 
-/// Adds the virtual work +-force N_A normal of a contact force, per unit displacement of each control point A, to the rows of both particles in
-/// `work`.
+/// Adds the virtual work of a contact force per unit displacement of each control point A to `work`: -force N_A normal in the rows of the first
+/// particle, and force N_A normal in the rows of the second.
 void add_work(std::span<const Particle> particles, const Contact& contact, double force, Net& work);
 
 /// Returns the virtual work of all contacts with their forces, shape (n_points, 3); an empty net if there are no contacts.

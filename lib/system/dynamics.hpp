@@ -49,8 +49,8 @@ class Dynamics {
   /// Returns true if velocity() requires a linear solve but defect() does not.
   virtual bool defect_spares_system() const { return false; }
 
-  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity at the current shape and u a given velocity. The argument is the
-  /// result B (v - u) of defect(), which explains B and can often be computed without v.
+  /// Returns the result of `solve` for r = shift (v - u), where v is the velocity at the current shape and u a given velocity. `defect`: B (v - u),
+  /// as returned by defect(), which explains B. Often it can be computed without v.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }

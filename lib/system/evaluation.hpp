@@ -28,7 +28,8 @@ class Evaluation {
   const Net& x() const { return x_; }                    ///< shape, (N, 3)
   const Net& velocity();                                 ///< velocity of the control points, length/time
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
-  const Net& work();                                     ///< dE/dx of all loads minus the virtual work of forces; 0 for rigid bodies
+  const Net& work();                                     ///< virtual work dE/dx of all loads, minus the work of forces (Capsule::set_forces); 0 for
+                                                         ///< rigid bodies
   const std::vector<Net>& load_sums();                   ///< complete sums of the loads
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
@@ -38,8 +39,9 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// `flow`: flow of the solids. `carried`: integral over the cell of the velocity that solids and particles add to the ambient flow (2.49), 0 next
-  /// to a single plate. `caused` and `caused_carried`: the same quantities minus their values without particles.
+  /// `flow`: force density and uniform velocity of the solids (2.46). `carried`: integral over the cell of the velocity that solids and particles add
+  /// to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and `carried` that are due to the
+  /// particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();

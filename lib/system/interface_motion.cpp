@@ -87,7 +87,8 @@ Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
 /// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
-/// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. |b| is used as the area weight of a site.
+/// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
+/// volume gradient b = dV/dx of its control point.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
   constexpr double hold = 1e-3;  // regularisation of `moments`, divided by `inertia`. If the shape deviates from a sphere by less than 3 %, noise
                                  // would dominate the result. The regularised result tends to 0, and the mesh rotates with the fluid

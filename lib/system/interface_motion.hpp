@@ -44,9 +44,9 @@ class InterfaceMotion {
   /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
   void linearise(const Net& x, const Net& b);
 
-  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta, which changes the fluid velocity
-  /// v by dv. Neglects the changes of the volume gradient b and of the linear map from v to the rigid motion W. Includes the change of the normals
-  /// only if the last call of `velocity` before `linearise` was at the same shape x. Collective.
+  /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`: the resulting change of
+  /// the fluid velocity v. Neglects the changes of the volume gradient b and of the linear map from v to the rigid motion W. Includes the change of
+  /// the normals only if the last call of `velocity` before `linearise` was at the same shape x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
   /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).

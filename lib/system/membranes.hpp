@@ -66,7 +66,8 @@ class Membranes {
   membrane::Membrane membrane_;
   Loads loads_;
   membrane::Tangent tangent_;
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // C at the shapes of place_viscous() and linearise(); set if viscous
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // ViscousLoad C at the shapes of place_viscous() and linearise(); set if
+                                                                       // viscous
 };
 
 }  // namespace tanktread::coupling

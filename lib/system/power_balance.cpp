@@ -11,8 +11,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns the rule of two Gauss points per direction. Between collocation sites the error of the velocity varies like the square of a parabola,
-/// whose mean the midpoint rule would overestimate by a factor of about two.
+/// Returns the rule of two Gauss points per direction. Between collocation sites the error of the velocity varies like t^2 (1 - t)^2, with t from 0
+/// to 1 between two sites. The midpoint rule would overestimate the mean of this function by a factor of about two.
 const quadrature::TensorRule& rule() { return quadrature::tensor_gauss(2); }
 
 /// Returns the 2 x 2 Gauss points of all elements, in the order of the elements.
@@ -83,9 +83,9 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
 }
 
 /// Returns the power input by the flow due to the particles. In a duct flow, it is the flow rate times the additional pressure drop (2.7). Between
-/// two plates or among posts, it is sum_s V_s.F_s + g.int u dV. V_s is the velocity of solid s, F_s the force on the fluid that the particles add to
-/// solid s, g the pressure gradient, and u the velocity that the particles cause. All other flows are affine or parabolic, and their power is (6.11).
-/// If there is a tube or a plane wall, it moves with this flow.
+/// two plates or among posts, it is sum_s V_s.F_s + g.int u dV. V_s is the velocity of solid s, F_s the change of its force on the fluid due to the
+/// particles, g the pressure gradient, and u the velocity that the particles cause. All other flows are affine or parabolic, and their power is
+/// (6.11). If there is a tube or a plane wall, the wall moves with this flow.
 double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) {
   const stokes::AmbientFlow& flow = capsule_.flow();
   if (flow.duct()) {

@@ -90,8 +90,8 @@ void ShapeCoordinates::follow(Dynamics& dynamics, const Net& x) {
   following_ = Eigen::Map<const Eigen::MatrixXd>(first.data(), n, shape_size());
 }
 
-/// Makes the coordinates represent translations of a drop exactly: adds the tangential part of the displacement to each translation that the symmetry
-/// of the fields admits.
+/// Makes the coordinates represent translations of a drop exactly, including their displacement along the surface. Applies only to translations that
+/// have the symmetry of the fields.
 void ShapeCoordinates::carry_whole(const spline::Block& block) {
   for (int c = 0; c < 3; ++c) {
     Net field = Net::Zero(sites_.rows(), 3);

@@ -72,7 +72,8 @@ class ShapeCoordinates {
   static bool projected(const Coordinate& one) { return one.direction.isZero(0); }
   struct Translation {
     Eigen::VectorXd coordinates;  // orthonormal
-    Net field, rest;              // field: control values of the translation. rest: field - across(coordinates), the displacement that across() omits
+    Net field, rest;              // field: control values of the translation. rest: field - across(coordinates), the part of the translation that
+                                  // across() omits
   };
   Eigen::Index shape_size() const { return static_cast<Eigen::Index>(all_.size() + rigid_.size()); }
   Net of_shape(const Eigen::VectorXd& y) const;
@@ -95,7 +96,7 @@ class ShapeCoordinates {
   Eigen::SparseMatrix<double> sites_;  // collocation matrix R
   membrane::SymmetricSolver collocation_;
   const VelocityProjection* projection_;
-  Net normals_;  // normals of drops at the sites where velocities are projected onto the splines
+  Net normals_;  // unit normals of drops at the sites of `projection_`
   CoupledMotion* motion_ = nullptr;     // set if the state has fields
   Net state_;                           // state y; the field coordinates of add_fields() are changes relative to y
   Eigen::SparseMatrix<double> fields_;  // orthonormal basis of the changes of a state's field coefficients that symmetry and parity allow, one column

@@ -44,7 +44,7 @@ class VelocityProjection {
   stokes::Sites sites_;
   std::vector<int> own_;
   Eigen::SparseMatrix<double> values_, along_s_, along_t_, weighted_;  // values_, along_s_, along_t_: N_A and its derivatives with respect to s and
-                                                                       // t, shape (sites, N). weighted_: w_q N_A, shape (N, sites)
+                                                                       // t, shape (sites, N). weighted_: w_q N_A with w_q of (4.21), shape (N, sites)
   membrane::SymmetricSolver mass_;
   Eigen::SparseMatrix<double> fundamental_, images_;  // fundamental_: adds the sums at image points to the sums at their fundamental points. images_:
                                                       // maps the fundamental values of a symmetric scalar to all control points

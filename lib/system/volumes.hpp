@@ -13,7 +13,8 @@ namespace tanktread::coupling {
 /// The volumes V of all particles and the volumes V0 to be kept. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
 class Volumes {
  public:
-  /// V0 is the volume of each particle in `initial`, unless the particle sets `kept_volume`. References, except `initial`, must outlive this object.
+  /// Keeps the volume V0 = Particle::kept_volume of each particle if it is set, and otherwise the volume of the particle in the net `initial`.
+  /// References, except `initial`, must outlive this object.
   Volumes(const spline::Space& space, const Net& initial, const std::vector<Particle>& particles, const Layout& layout, Phases& phases);
 
   const surface::Geometry& geometry() const { return geometry_; }

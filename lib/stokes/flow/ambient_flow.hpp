@@ -70,7 +70,7 @@ class AmbientFlow {
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// Returns a Q, the amplitude times the rotation at the time set last. Velocities of walls and pressure gradients are multiplied by it.
+  /// Returns a Q, the amplitude times the rotation at the time set last. Velocities of walls and pressure gradients are multiplied by this matrix.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
   /// Returns the duct flow; null if there is none.

@@ -74,8 +74,8 @@ void DuctEnd::add(const Cell& cell, int order, Nodes& nodes) const {
   }
 }
 
-/// Returns true if a point is closer to a cell than the size of the cell. Sets `around` to true if the cell is longer in the angular direction about
-/// the centroid than along the rays. `at`: height of the point above the plane of the end, then its position in this plane.
+/// Returns true if a point is closer to a cell than the size of the cell. Sets `around` to true if the cell is longer around the centroid of the
+/// section than along the rays from the centroid. `at`: height of the point above the plane of the end, then its two coordinates in this plane.
 bool DuctEnd::close(const Cell& cell, const Vec3& at, bool& around) const {
   const Vec2 a = ray(cell, cell.t[0], cell.r[0]), b = ray(cell, cell.t[1], cell.r[0]), c = ray(cell, cell.t[0], cell.r[1]),
              d = ray(cell, cell.t[1], cell.r[1]), middle = ray(cell, (cell.t[0] + cell.t[1]) / 2, (cell.r[0] + cell.r[1]) / 2);
@@ -160,8 +160,8 @@ Net DuctEnd::velocities(const Net& x) const {
 
 DuctEnd::Points DuctEnd::points() const {
   Nodes nodes;
-  for (const Cell& cell : cells_)  // places as many points on the outer quarter of each ray as on the inner three quarters, because the error of
-                                   // collocation extends about one wall element into the fluid
+  for (const Cell& cell : cells_)  // places as many points on the outer quarter of each ray as on the rest, because the collocation error on the wall
+                                   // affects the flow up to about one wall element away
     for (const auto& [inner, outer] : {std::pair(0., 0.75), std::pair(0.75, 1.)})
       add({cell.side, {cell.t[0], cell.t[1]}, {inner, outer}}, order_close, nodes);
   const auto n = static_cast<Eigen::Index>(nodes.area.size());

@@ -20,8 +20,8 @@ struct Plates {
 
 /// Options `Flow/*` of the deck: the ambient flow and the outer fluid. The plane of the flow is the x1 x3 plane.
 struct FlowOptions {
-  std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear,
-                                      ///< parabolic, duct, or a registered one
+  std::string type = "simple shear";  ///< quiescent, uniform, simple shear, four-roll, planar hyperbolic, uniaxial extension, linear, parabolic,
+                                      ///< duct, or the name of a registered flow
   double shear_rate = 1.0;            ///< rate of simple shear, four-roll, planar hyperbolic and uniaxial extension, units 1/time; otherwise 1
   double viscosity = 1.0;             ///< mu of the outer fluid
   std::optional<double> roll_parameter;  ///< parameter a of the four-roll flow (P-48)

@@ -16,7 +16,7 @@ struct PanelNodes {
   int n_nodes = 0, functions = 0;
   const double *x = nullptr, *y = nullptr, *z = nullptr;
   const double* weight = nullptr;  ///< weights of the single layer
-  const double* normal[3] = {};    ///< normals of the double layer, if `weight` is null
+  const double* normal[3] = {};    ///< normals at the nodes for the double layer, used if `weight` is null
   const Real* basis = nullptr;
   const int* rows = nullptr;
 };

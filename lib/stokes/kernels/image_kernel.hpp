@@ -13,8 +13,8 @@ namespace tanktread::stokes {
 ///   G^I f = -R G(r) f + z R grad p - e3 p,    p = 2 (f_3/r + h r.f/r^3)
 ///   T^I S = -R T(r) S + z R grad p - e3 p,    p = -12 (h r.S r/r^5 + tr S z/(3 r^3)),    S = (f n + n f)/2
 ///
-/// where grad p is with respect to x0', and z in p stands for r_3 - h. The layout is that of far_sum() and of kernels for TreeSum: forces, or S in
-/// the order 11, 22, 33, 12, 13, 23, for far_block targets.
+/// where grad p is the gradient with respect to x0' after z in p has been replaced by r_3 - h. The layout is that of far_sum() and of kernels for
+/// TreeSum: forces, or S in the order 11, 22, 33, 12, 13, 23, for far_block targets.
 void image_stokeslet_sum(const Charges& points, const double* target, double* value);
 void image_stresslet_sum(const Charges& points, const double* target, double* value);
 struct ImageStokesletKernel {

@@ -29,7 +29,7 @@ class ImageSum {
   /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns whether the targets, the indices or the nodes have changed since
+  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns whether these, or the nodes set by place(), have changed since
   /// the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 

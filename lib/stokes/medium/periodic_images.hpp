@@ -18,7 +18,7 @@ class PeriodicCell {
 
   int n() const { return n_; }
   const Mat3& vectors() const { return vectors_; }  ///< lattice vectors as columns
-  double volume() const { return volume_; }         ///< volume of the cell; area if n = 2, length if n = 1
+  double volume() const { return volume_; }         ///< volume of the cell; its area if there are n = 2 lattice vectors, its length if n = 1
   double reference() const { return reference_; }
 
   /// Returns the lattice coordinates of a position. In directions that do not repeat they are lengths.
@@ -89,7 +89,7 @@ class PeriodicKernel {
 
  private:
   std::vector<double> waves(const std::array<std::vector<double>, 3>& s) const;
-  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G (2.25), or the corresponding term of T, of the near images to `values`
+  void add_smooth_images(const Vec3& r, double* values) const;  // adds A - G of (2.25) for each near image, or the corresponding term of T
   void add_mode_across(const Vec3& r, double* values) const;
   void add_row(const Vec3& r, double* values) const;
   void add_constant(double* values) const;

@@ -13,10 +13,10 @@
 
 namespace tanktread::stokes {
 
-/// Splits the kernel of a lattice into the near images, which the far sum contains, and a smooth sum over all other images (PeriodicKernel). Each
-/// source and each target is first moved into the cell. The smooth sum is interpolated at both sources and targets in lattice coordinates, as between
-/// clusters (TreeSum). With p nodes in one direction its error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in (2.9). Here y is the distance
-/// to the nearest of the other images divided by half the length of the cell in this direction.
+/// Splits the kernel of a lattice into near images, which the caller treats like other sources, and a smooth sum over all other images
+/// (PeriodicKernel). Each source and each target is first moved into the cell. The smooth sum is interpolated at both sources and targets in lattice
+/// coordinates, as between clusters (TreeSum). With p nodes in one direction its error is of the order rho^(-p), rho = y + sqrt(1 + y^2), as in
+/// (2.9). Here y is the distance to the nearest image that is not near, divided by half the length of the cell in this direction.
 class PeriodicSum {
  public:
   /// `tolerance`: error of the sum relative to the kernel at a distance of half a cell. `extent`: lowest and highest lattice coordinates of all
@@ -51,9 +51,9 @@ class PeriodicSum {
 
   PeriodicKernel::Kind kind_;
   PeriodicCell cell_;
-  Vec3 away_, low_, length_;    // away_: displacement of the cell from the origin. low_, length_: lowest corner and side lengths of the box in
-                                // lattice coordinates
-  std::array<Vec3, 2> across_;  // lowest and highest lattice coordinates for which table_ was computed, in directions that are not periodic
+  Vec3 away_, low_, length_;    // away_: displacement of the cell from the origin. low_, length_: lowest corner and side lengths of the interpolation
+                                // box, in lattice coordinates
+  std::array<Vec3, 2> across_;  // lowest and highest coordinates of the interpolation box, in directions that are not periodic
   ChebyshevBox box_;            // box from -1/2 to 1/2
   std::vector<Vec3> images_;
   std::array<std::vector<int>, 3> difference_;  // for each direction, entry n a + b (n: number of nodes): index of the difference of nodes a and b in

@@ -178,8 +178,8 @@ void TreeSum::mark(std::span<const int> wanted) {
   }
 }
 
-/// Finds the pairs of clusters, recursively, through which the sources in `source`, displaced by lattice vector images_[image], act on the targets in
-/// `target`.
+/// Divides `target` and `source` recursively into pairs of clusters, and stores the pairs that are far apart or cannot be divided further. The
+/// sources are displaced by the lattice vector images_[image].
 void TreeSum::meet(const Cluster& target, const Cluster& source, int image) {
   if (!wanted_[&target - targets_.data()]) return;
   const Vec3& beyond = images_[static_cast<std::size_t>(image)];

@@ -22,9 +22,9 @@ class TreeSum {
   /// `tolerance`: error of the sum for the Stokeslet, relative to sum_k |f_k| / |x_k - x0_i|.
   explicit TreeSum(double tolerance, Precision precision = Precision::full);
 
-  /// Sets the positions x of the nodes and of all n targets. Clusters do not split a group of nodes starts[g] .. starts[g + 1] - 1. The sums
-  /// have n rows for the targets, then n rows for the images of the targets in each of the `reflections`: row i + n k belongs to the image of target
-  /// i in reflections[k - 1]. The clusters of image targets are the images of the clusters of targets.
+  /// Sets the positions x of the nodes, and all n targets. The nodes starts[g] .. starts[g + 1] - 1 stay together in one cluster. The sums have n
+  /// rows for the targets, followed by n rows for each entry of `reflections`: row i + n k belongs to target i reflected by reflections[k - 1]. The
+  /// clusters of reflected targets are the reflections of the clusters of targets.
   void place(const std::vector<double> (&x)[3], std::span<const int> starts, std::span<const Vec3> targets,
              std::span<const surface::Reflection> reflections = {});
 
@@ -43,8 +43,8 @@ class TreeSum {
     sum(carried, values);
   }
 
-  /// Restricts later sums to one part of the interactions. The sums of parts 0 .. parts - 1 for equal positions, source strengths and rows add up to
-  /// the complete sum. Parts have equal work, and each contains few clusters of nodes. Must be called before want().
+  /// Restricts later sums to one part of the pairs of clusters. For equal positions, source strengths and rows, the sums of parts 0 .. parts - 1 add
+  /// up to the complete sum. Parts have equal work, and each uses few source clusters. Must be called before want().
   void share(int part, int parts) { part_ = part, parts_ = parts; }
 
   long long interactions() const { return interactions_; }  ///< number of kernel evaluations of the last sum
@@ -75,7 +75,8 @@ class TreeSum {
   std::vector<Vec3> images_{Vec3::Zero()};      // displacements of the sources
   int n_trees_ = 1;                             // number of target trees: one for the targets, and one for each reflection of the targets
   std::vector<Cluster> targets_;                // clusters of all target trees, one tree after the other
-  std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters
+  std::vector<double> q_[6], node_q_[6];        // strengths of the sources and of the Chebyshev nodes of source clusters, one array for each of up to
+                                                // six components
   std::vector<double> target_at_, node_at_;     // positions of targets and of Chebyshev nodes of target clusters, in blocks of far_block points
   std::vector<double> target_u_, node_u_;       // values at targets and at the Chebyshev nodes of target clusters
   std::vector<char> row_, wanted_, has_nodes_;  // flags. row_: true if the sum of the row is requested. wanted_: true if the target cluster contains

@@ -28,7 +28,7 @@ void Vicinity::place(int n, const double* x, const double* y, const double* z, c
 }
 
 /// Appends to the tree a box for the balls number_[first] .. number_[last - 1], and its descendants. Reorders these entries of number_. During this
-/// call, centre_ and square_ are in the order in which the caller of place() passed the balls.
+/// call, centre_ and square_ are still in the order of the arguments of place().
 void Vicinity::split(int first, int last) {
   Box box{{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0, first, last, 0, last - first <= leaf};
   for (int k = first; k < last; ++k) {

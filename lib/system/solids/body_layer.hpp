@@ -44,11 +44,11 @@ class BodyLayer {
  private:
   void make_regular(const Net& x);
 
-  std::vector<Particle> bodies_;   // the rigid bodies; their blocks are index ranges in nets of the rigid bodies only
-  std::vector<spline::Block> in_;  // block of each body among all particles
+  std::vector<Particle> bodies_;   // the rigid bodies; their blocks count the control points of rigid bodies only
+  std::vector<spline::Block> in_;  // rows of each body in nets of all particles
   spline::Space space_;            // common space of the bodies
-  std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points in `own` of other
-                                             // particles
+  std::vector<int> points_, rows_, others_;  // points_: control points of the bodies; rows_: their components; others_: points of `own` (see the
+                                             // constructor) that belong to other particles
   double viscosity_;
   Ranks& ranks_;
   stokes::Layer layer_;                  // single layer at the sites of the bodies

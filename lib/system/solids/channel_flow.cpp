@@ -100,8 +100,8 @@ quadrature::Options ChannelFlow::sharper() const {
   return options;
 }
 
-/// Returns the velocity due to the wall traction and the pressure drop, plus `driving` times the velocity ends(x). If there are many points, ranks
-/// share them.
+/// Returns the velocity at the points x due to the wall traction and the pressure drop, plus `driving` times the velocity ends(x) that drives the
+/// flow. If there are many points, ranks share them.
 Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_drop, double driving) const {
   const std::shared_ptr<Wall> wall = this->wall();
   if (!layer_) {

@@ -12,8 +12,8 @@ int row_at(const Eigen::Ref<const Net>& ring, const Vec3& at, double close) {
   return (ring.rowwise() - at.transpose()).rowwise().norm().minCoeff(&row) < close ? static_cast<int>(row) : -1;
 }
 
-/// Returns whether map.q maps point k of each ring to point map.image[k] of the same ring, up to the distance `close`. A ring is m consecutive
-/// rows of `points`, where m is the size of map.image.
+/// Returns whether the matrix map.q maps point k of each ring to point map.image[k] of the same ring, up to the distance `close`. A ring is m
+/// consecutive rows of `points`, where m is the size of map.image.
 bool maps(const Congruence& map, const Net& points, double close) {
   const auto m = static_cast<Eigen::Index>(map.image.size());
   for (Eigen::Index i = 0; i < points.rows(); ++i)

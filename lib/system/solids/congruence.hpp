@@ -25,8 +25,8 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 /// Orbit representative of a point of a cross-section (ring): the point of the ring from which a map leads to the given point. Matrix rows are
 /// assembled only for representatives.
 struct Original {
-  int point;               ///< index in the ring; the smallest that a map moves to the given point
-  const Congruence* from;  ///< the map that moves `point` to the given point; points into the list given to originals()
+  int point;               ///< index in the ring of this other point: the smallest index of all points that maps move to the given point
+  const Congruence* from;  ///< this map; it points into the list given to originals()
 };
 
 /// Returns the original of each of the n_around points of a ring.

@@ -23,8 +23,8 @@ OneBodyInverses::OneBodyInverses(std::span<const Particle> particles, const Rigi
 }
 
 /// Returns the inverse of the operator w -> R <w> - H w of (2.23) for one body. R is the collocation matrix, <w> the rigid motion nearest to w, and H
-/// the double layer. If the motion of the body is prescribed, R <w> is replaced by (1/mu) A f with the load f = (mu/R_C) <w>, the single layer A and
-/// the particle radius R_C.
+/// the double layer. If the motion of the body is prescribed, (1/mu) A f replaces R <w>. Here A is the single layer, f = (mu/R_C) <w>, and R_C the
+/// particle radius.
 std::shared_ptr<const OneBodyInverses::Factors> OneBodyInverses::inverted(const Particle& particle, const RigidParticles& bodies, std::size_t p,
                                                                           const Net& own, const quadrature::Options& quadrature) {
   auto factors = std::make_shared<Factors>();

@@ -8,8 +8,8 @@
 
 namespace tanktread::coupling {
 
-/// Operator between plates that have the same grid of n1 x n2 equal elements over one period. It does not change if all indices are shifted, so that
-/// for each pair of wave numbers it is a matrix of three rows and columns per plate (block circulant):
+/// Operator between plates that have the same grid of n1 x n2 equal elements over one period. Its blocks g depend only on the difference of the grid
+/// indices c and s of two points (block circulant). So for each pair k of wave numbers it is a matrix M(k) with three rows and columns per plate:
 ///
 ///   u_s = sum_c g(c - s) f_c,   M(k) = sum_d g(d) exp(i k.d),   u^(k) = M(k) f^(k)                                         (2.50)
 ///
@@ -21,8 +21,8 @@ class PlateFactors {
   /// on uniform densities, so that its inverse exists.
   PlateFactors(const Eigen::MatrixXd& rows, const std::array<int, 2>& grid, const std::array<int, 2>& point, const Eigen::MatrixXd& regular);
 
-  /// Returns the part of f with wave numbers k != 0 for the velocities u. Sets row p of `uniform` to the mean velocity of plate p, for which the
-  /// caller must add the part of f with k = 0.
+  /// Returns the part of f with wave numbers k != 0 for the velocities u. Sets row p of `uniform` to the mean velocity of plate p. From these
+  /// velocities the caller must compute the part of f with k = 0, and add it.
   Net solve(const Net& u, Net& uniform) const;
 
   /// Returns M(0) + `regular`.

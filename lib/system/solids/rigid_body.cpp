@@ -20,7 +20,7 @@ UnitQuadratic unit_quadratic(int k) {
   return {k / 6, first[k % 6], second[k % 6]};
 }
 
-/// Returns the coefficients of a trace-free symmetric matrix with respect to the unit strains.
+/// Returns the coefficients c of a trace-free symmetric matrix e = sum_k c_k unit_strain(k).
 Eigen::Matrix<double, 5, 1> strain_components(const Mat3& e) {
   Eigen::Matrix<double, 5, 1> c;
   c << e(0, 0), e(0, 0) + e(1, 1), e(0, 1), e(0, 2), e(1, 2);

@@ -26,8 +26,8 @@ struct RigidModes {
   RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic);
 
   std::vector<Net> density;                     ///< force densities on the fluid: translations, rotations, strains, quadratic fields
-  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid, one column per solution
-  std::vector<Mat3> stresslet;                  ///< stresslet of each solution
+  Eigen::Matrix<double, 6, Eigen::Dynamic> response;  ///< force and torque on the fluid, one column per entry of `density`
+  std::vector<Mat3> stresslet;                  ///< stresslet of each entry of `density`
 };
 
 /// Returns the state of a rigid body in its initial orientation. A state is a net of three rows: the centre, and the vector part and the scalar part
@@ -39,7 +39,7 @@ Mat3 rotation_of(const Net& place);
 /// Centre and orientation of a single rigid body as a system dx/dt = v(x).
 class LoneRigidBody : public Dynamics {
  public:
-  /// `surface`: control net of the body in its initial position. `radius`: R_C. `driven`: force, and torque about the centre.
+  /// `surface`: control net of the body in its initial position. `radius`: R_C. `driven`: force on the body, and torque about the centre.
   LoneRigidBody(const Net& surface, const Vec3& centre, double radius, const stokes::AmbientFlow& flow, const Rigid& driven)
       : surface_(surface), centre_(centre), radius_(radius), flow_(flow), driven_(driven) {}
 
@@ -109,8 +109,8 @@ class FreeBody : public LoneRigidBody {
 ///
 ///   (1/mu) A f - u(f) - (U + Omega x r) = -v_inf   on the body,    int f dG = F,   int r x f dG = T,
 ///
-/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse without u, and the
-/// previous solution is the initial guess. Calls are collective. Repeated calls at one position take one solve. The motion is not
+/// where u is the response of wall and pressure drop; A does not depend on the position. The preconditioner is the inverse of the system without the
+/// term u(f). The initial guess is the previous solution. Calls are collective. Repeated calls at one position take one solve. The motion is not
 /// finite if the body intersects the wall.
 class FreeBodyInTube : public LoneRigidBody {
  public:
@@ -141,7 +141,7 @@ class FreeBodyInTube : public LoneRigidBody {
 
   RigidTractions& body_;
   double viscosity_;
-  std::optional<RigidModes> modes_;  // solutions without the response of the tube
+  std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the response of the tube
   mutable Net place_;                 // position of the latest solve
   mutable Solution solution_;         // solution at this position
   mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts

@@ -23,7 +23,7 @@ namespace tanktread::coupling {
 /// error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and its
 /// stresslet in a straining flow has a similar error.
 struct OwnLacking {
-  std::array<Net, 6> loads;  ///< collocation-error corrections of the single layer A f for six loads f: e_k and e_k x r, k = 0, 1, 2 (r: position
+  std::array<Net, 6> loads;  ///< corrections of the single-layer velocity A f for the six loads f = e_k and f = e_k x r, k = 0, 1, 2 (r: position
                              ///< from the centre of volume)
   Eigen::MatrixXd density;   ///< matrix, shape (3 N, 3 N): maps the density w to the collocation-error correction of its double layer; empty if N >
                              ///< `most_points`
@@ -62,7 +62,7 @@ class RigidParticles {
   void push(const Net& work);
 
   // The next six functions apply only to bodies whose unknown is the double-layer density w (2.23), not to bodies whose unknown is the traction.
-  void add_load(Net& load) const;            ///< adds the load df (2.23) of bodies with given force and torque
+  void add_load(Net& load) const;            ///< adds the load df (2.23) in the rows of bodies whose force and torque are given
   void add_lacking(Net& v) const;            ///< adds the collocation-error correction (OwnLacking) of the velocity -(1/mu) R^-1 A df that the load
                                              ///< df of a body induces on the body
   void subtract_prescribed(Net& v) const;          ///< subtracts the velocity V (2.23) of bodies with prescribed motion

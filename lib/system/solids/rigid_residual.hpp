@@ -1,5 +1,5 @@
 #pragma once
-// Velocity residual on rigid bodies between the collocation sites, and what else bounds the fluid.
+// Residual of the velocity on rigid bodies between the collocation sites, and the walls and solids that bound the fluid.
 
 #include <optional>
 #include <span>
@@ -35,8 +35,8 @@ class RigidResidual {
 
   void repeat(const stokes::PeriodicCell& cell);
 
-  /// Returns int N_A (v - u) dG over the bodies, the collocation error weighted by the spline functions N_A, where u is the velocity of the fluid at
-  /// the Gauss points. `flow`: v_inf at these points. `load`, `v`: load and velocity of all particles, which have the net x.
+  /// Returns the weighted collocation error int N_A (v - u) dG over the bodies, with the spline functions N_A and the fluid velocity u at the Gauss
+  /// points. `flow`: v_inf at the Gauss points. `load`, `v`: load and velocity of all particles, whose net is x.
   Net integrated(const Net& x, const Net& load, const Net& v, Net flow, const FluidWalls& walls);
 
   const BetweenSites& points() const { return between_; }

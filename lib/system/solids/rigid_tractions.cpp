@@ -44,7 +44,7 @@ Particle single(const spline::Space& space, double radius) {
   return body;
 }
 
-/// Returns the options for the system of a single body, whose keys are those of `Solvers/traction`.
+/// Returns the options for the system of a single body: the options of `Solvers/traction` replace the options of `Solvers/velocity`.
 SolverOptions for_single(SolverOptions solvers) {
   solvers.velocity = solvers.traction;
   return solvers;

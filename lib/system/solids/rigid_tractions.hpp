@@ -86,8 +86,8 @@ class RigidTractions {
   void solve(const Net& x, std::span<const Vec3> centres, std::span<const Rigid> driven, const stokes::AmbientFlow& flow,
              std::optional<Surroundings> around = {});
 
-  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the latest net, without motions of the bodies
-  /// and without corrections. All particles must be bodies. Collective.
+  /// Returns the force densities, shape (N, 3), that cause these velocities at the collocation sites of the latest net. Neither motions of the bodies
+  /// nor corrections of the collocation error are included. All particles must be bodies. Collective.
   Net density(const Net& velocities);
 
   /// Returns the correction of the pressure drop (2.7) for the collocation error. `f`: force density on freely moving bodies at the net x. `v`:

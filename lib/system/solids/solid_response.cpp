@@ -123,7 +123,8 @@ Vec3 SolidResponse::carried(const Solids::Flow& flow, const Net& f, const Net& v
   return along(wall, sum);
 }
 
-/// Returns, for each collocation point of the solids, the field v at the nearest collocation point of the particles. Valid in the rank-owned rows.
+/// Returns, for each collocation point of the solids, the value of the field v at the nearest collocation point of the particles. Only the rank-owned
+/// rows of the result are valid.
 Net SolidResponse::nearest_values(const Net& v) const {
   const Net at_sites = collocation_ * v;
   return at_sites(nearest_, Eigen::all);

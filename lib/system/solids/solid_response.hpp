@@ -99,7 +99,7 @@ class SolidResponse {
   std::optional<stokes::Layer::Near> double_on_solids_, solids_on_particles_;
   Eigen::VectorXd areas_;  // integral of each basis function N_A over the area to which loads refer (current or unstressed)
   std::optional<Solids::Flow> empty_;
-  Mat3 change_;  // AmbientFlow::change for which empty_ was computed
+  Mat3 change_;  // value of AmbientFlow::change() for which empty_, the flow without particles, was computed
 };
 
 }  // namespace tanktread::coupling

@@ -187,8 +187,8 @@ class Tube {
   Net flow_weights_, force_weights_;  // weights of the wall traction in the flow rate through the inlet and in the axial force. weigh_flow() sets
                                       // these and all following members
   Net flow_of_wall_;  // weights w for a velocity u on the wall: w.u is the flow rate through the inlet due to the wall traction that cancels u
-  double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate of mu c (2.5) through the inlet. flow_of_pressure_: flow rate per unit
-                                                // pressure drop, due to c and the wall traction that c causes
+  double own_flow_ = 0, flow_of_pressure_ = 0;  // own_flow_: flow rate through the inlet of the velocity field mu c, with c of (2.5).
+                                                // flow_of_pressure_: flow rate per unit pressure drop, due to c and the wall traction that c causes
 };
 
 }  // namespace tanktread::coupling

@@ -129,7 +129,8 @@ const Net& Tube::Particle::flow_of_strength(const Wall& wall) {
 
 /// Computes the weights with which the control values of the load f and of the velocity v enter the pressure drop (2.7). In a straight tube v_inf and
 /// f_inf (2.7) are evaluated at the quadrature nodes, so that the flow rate of the disturbance is 0 for every load. In a channel v_inf is
-/// interpolated from the collocation points, because its values at the nodes would require integrals over the wall; weights for v are not computed.
+/// interpolated from the collocation points, because its values at the nodes would require integrals over the wall. In a channel only the weights of
+/// f are computed.
 void Tube::Particle::weigh_pressure(const stokes::DuctFlow& flow, bool straight) {
   ambient = ambient_of(flow);
   const auto n = static_cast<std::size_t>(single.n_nodes());

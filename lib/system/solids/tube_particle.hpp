@@ -49,8 +49,8 @@ struct Tube::Particle {
   /// the velocity v. Empty nets are skipped.
   void add_images(const Net& f, const Net& v, const Net& at, std::span<const int> rows, Net& u);
 
-  /// Velocities that the load f and the velocity v of the particle cause in a periodic duct, for rank-owned rows. At the targets on the wall, both
-  /// the particle and its images contribute. At the collocation points of the particle, only the images contribute. Empty nets are skipped.
+  /// Velocities that the load f and the velocity v of the particle cause in a periodic duct, for rank-owned rows. `at_wall`: at the targets on the
+  /// wall, due to the particle and its images. `at_sites`: at the particle's collocation points, due to its images only. Empty nets are skipped.
   struct Cause {
     Net at_wall, at_sites;
   };

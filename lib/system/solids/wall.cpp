@@ -77,9 +77,9 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by its value at midpoints, for harmonics of the
-                                        // error that decrease as k^-5 with the wave number k (k^-4 from spline interpolation, k^-1 from the single
-                                        // layer)
+constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by the error at the midpoints of elements, if
+                                        // the harmonics of the error decrease with the wave number k like k^-5 (k^-4 from spline interpolation, k^-1
+                                        // from the single layer)
 
 /// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
@@ -337,8 +337,8 @@ Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
   return net;
 }
 
-/// Returns int N_A field dG over the wall for every control point A. Gauss points are clustered at both ends of each element along the wall by s = 3
-/// q^2 - 2 q^3, because the inlet integral (2.13) is steep at the rim of the inlet.
+/// Returns int N_A field dG over the wall for every control point A. Along the wall, the map s = 3 q^2 - 2 q^3 moves the Gauss points q towards both
+/// ends of each element, because the inlet integral (2.13) is steep at the rim of the inlet.
 Net Wall::weights(const std::function<Vec3(const surface::Point&)>& field) const {
   constexpr int along = 16, around = 6;
   const quadrature::GaussRule &in_s = quadrature::gauss(along), &in_t = quadrature::gauss(around);

@@ -69,7 +69,8 @@ struct WallSolver {
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
  public:
-  /// Assembles and factors the operator. Collective. `phases`: if given, records the time of exchanges, also in `apply`; must outlive this object.
+  /// Assembles and factors the operator. Collective. `phases`: if given, records the time of communication between ranks, also in `apply`; must
+  /// outlive this object.
   Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature, Phases* phases = nullptr,
        const surface::Symmetry& symmetry = surface::Symmetry(), const WallSolver& solver = {});
 
@@ -170,7 +171,7 @@ class Wall {
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
   Net sites_, targets_, inlet_column_, pumped_;
-  Net pressure_, flux_;  // periodic wall only. pressure_: traction w n of a constant pressure w at the sites. flux_: int N_A n dG
+  Net pressure_, flux_;  // periodic wall only. pressure_: w n at the sites, the traction of a constant pressure w. flux_: int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration
   std::optional<WallPatches> patches_of_rows_;

@@ -11,8 +11,9 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner from the products y = A z of earlier solves, latest first, with orthonormal y. The columns of Y and Z are the stored y and z. Maps
-/// the projection of a vector onto the span of Y by Z Y^T, and the remaining component by another preconditioner (2.24).
+/// Preconditioner from the products y = A z of earlier solves, latest first. The stored z are the columns of Z, and the stored y, which are
+/// orthonormal, the columns of Y. Applies Z Y^T to the part of a vector in the span of Y, and another preconditioner to the rest of the vector
+/// (2.24).
 class RecycledProducts {
  public:
   /// Records a product y = A z of the current solve. It is used from the next solve on.

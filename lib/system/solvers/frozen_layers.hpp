@@ -15,8 +15,8 @@ namespace tanktread::coupling {
 /// on a lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
 class FrozenLayers {
  public:
-  /// `layers`: the layers at `targets`. If `targets` are the collocation sites, these layers are assembled. Otherwise this object creates layers at
-  /// the collocation sites and assembles them. `mass`: mass matrix of all particles. References must outlive this object.
+  /// `layers`: the layers at `targets`. They are the assembled layers if `targets` are the collocation sites. Otherwise this object creates other
+  /// layers, at the collocation sites, and assembles those. `mass`: mass matrix of all particles. References must outlive this object.
   FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
                const membrane::MassMatrix& mass, ParticleLayers& layers);
 

@@ -45,7 +45,7 @@ const std::map<std::string, std::string>& solver_types() {
   return types;
 }
 
-/// Disables Trilinos' timers. Without MPI each vector operation would make a system call for them, a third of the time of a small solve.
+/// Disables Trilinos' timers. Without MPI, the timers make a system call in each vector operation, which takes a third of the time of a small solve.
 struct Timers : Teuchos::TimeMonitor {
   static void stop() {
     static std::size_t stopped = 0;
