@@ -87,8 +87,8 @@ double scale_of(const output::RunRecord& record, const std::string& series) {
   return most;
 }
 
-/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. That of an oscillation, which may be out
-/// of phase between levels, does not.
+/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. That of an oscillation, which may be
+/// out of phase between levels, does not.
 bool is_noise(const std::vector<Outcome>& levels, const std::string& series) {
   std::vector<double> sizes;
   for (std::size_t k = levels.size() - 3; k < levels.size(); ++k) sizes.push_back(magnitude(curve(levels[k].record, series)));

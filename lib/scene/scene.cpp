@@ -269,8 +269,8 @@ void Scene::declare(deck::Section& root) {
       "Spectrum", spectrum,
       "growth rates of small perturbations of a steady shape, instead of a run in time. The shape is the result of Steady, or, without Steady, the "
       "initial shape, which should be steady");
-  periodic.driven = flow.history.has_value();
   if (spectrum.present) quadrature.choose_smooth_sums();
+  periodic.driven = flow.history.has_value();
   root.section("Symmetry", symmetry, "use of the symmetries of flow, particles and mesh");
   root.section("Solvers", solvers, "solvers of linear and nonlinear systems");
   declare_results(root, *this);
@@ -365,7 +365,6 @@ double Scene::modulus() const {
 }
 
 Vec3 Scene::body_force() const { return particle.density_difference.value_or(0.) * flow.gravity.value_or(Vec3::Zero()); }
-
 double Scene::bending_modulus() const { return membrane.bending(modulus(), radius()); }
 
 bool Scene::reciprocal_forces() const { return particle.forces ? *particle.forces == "reciprocal" : quadrature.rule == "adaptive"; }
