@@ -163,9 +163,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. Tries the following paths in this order, and returns `name` if none exists:
-/// - if a run is resumed, the copy `kept` in its directory, or in the folder `level_0` of an accuracy ladder (Accuracy);
-/// - the path relative to the working directory, then relative to each deck.
+/// Returns the path of a file or directory that a deck names. Tries the copy `kept` in the directory of a resumed run or in the folder `level_0` of a
+/// resumed ladder (Accuracy), the path relative to the working directory, and the path relative to each deck. If none exists, returns `name`.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;

@@ -151,7 +151,7 @@ def a_mesh_that_has_changed_has_a_velocity_of_its_own():
 
 def mistakes_are_named():
     deck(CAPSULE)
-    refused(["Output/power balance", "parabolic"], "deck.yaml", "--set", "Flow/type=parabolic", "--set", "Flow/half width=5")
+    refused(["Output/power balance", "strong"], "deck.yaml", "--set", "Membrane/load=strong")
 
 
 main()
