@@ -134,8 +134,8 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
-/// Returns the section of this name merged with the keys that it takes from the section named by its key `like`, or from `defaults`. `above`: names
-/// of the sections whose `like` led to this section, to detect a cycle.
+/// Returns the section of this name, completed by keys of another section: the section that its key `like` names, or without `like` the section
+/// `defaults` if there is one. `above`: names of the sections whose `like` led to this section, to detect a cycle.
 std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);

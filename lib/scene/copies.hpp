@@ -25,8 +25,8 @@ struct PackedSphere {
 /// Returns a uniform random number in [0, 1). The sequence is the same with every standard library.
 double uniform(std::mt19937_64& random);
 
-/// Returns the least distance of the centres of two spheres: the sum of their radii plus `gap` times the larger radius. The default of `gap` is the
-/// larger of the least gaps of the two spheres.
+/// Returns the least distance of the centres of two spheres: the sum of their radii plus `gap` times the larger radius. The function without `gap`
+/// uses the larger `least_gap` of the two spheres.
 double least_distance(const PackedSphere& a, const PackedSphere& b, double gap);
 inline double least_distance(const PackedSphere& a, const PackedSphere& b) { return least_distance(a, b, std::max(a.least_gap, b.least_gap)); }
 

@@ -60,10 +60,10 @@ Space space(const PolarMesh& mesh);
 /// at the poles. Control points are in the order of the lattice vertices.
 ///
 /// With `c1`, the functions next to a pole have positions d_j in the tangent plane. On the initial mesh, the d_j are on the unit circle (see the
-/// function above). On a finer mesh, they are computed in two steps, so that spaces of nested meshes are nested: Knot insertion transfers the d_j to
-/// the new functions. Then the d_j are multiplied by the height of the first element in the finer mesh, divided by its height in the initial mesh.
-/// The triangle around the new d_j and the pole is chosen again. `plain` spaces are nested, too. `bezier_transform` spaces are not nested. They have
-/// the control points of the `plain` spaces, between which fields can be transferred.
+/// function above). On a finer mesh, knot insertion transfers the d_j to the new functions. Then they are multiplied by the ratio of the heights of
+/// the elements at the pole in the finer and in the initial mesh, and a new triangle is chosen around them and the pole. This makes the spaces of
+/// nested meshes nested. `plain` spaces are nested, too. `bezier_transform` spaces are not nested; fields are transferred between the `plain` spaces,
+/// which have the same control points.
 Space space(const TMesh& mesh, PoleRule poles, int subdivisions = 0);
 
 // Conversion of a degenerate bicubic Bezier element, one side of which is a pole, to bicubic elements without a degenerate side (P-A.1, P-A.2).

@@ -178,7 +178,7 @@ bool Capsule::enter_tube(const Net& x) {
   return !layout_.any(outside);
 }
 
-/// Returns true if all collocation sites are in front of the plane walls, or if there are none.
+/// Returns whether all collocation sites are in front of the plane walls and outside the posts, if there are any walls or posts.
 bool Capsule::in_front_of_wall(const Net& x) {
   if (solids()) return solids()->inside(targets_.at_sites() * x);
   return !parameters_.wall || stokes::in_front({&*parameters_.wall, 1}, targets_.at_sites() * x);

@@ -21,7 +21,7 @@ Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stoke
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)
-  Eigen::SparseMatrix<double> weights;  ///< N_A(q) times the area that q represents, shape (N, points)
+  Eigen::SparseMatrix<double> weights;  ///< N_A at point q times the quadrature weight and area element of q, shape (N, points)
 };
 BetweenSites between_sites(const spline::Space& space, const Net& surface);
 BetweenSites between_sites(const spline::Space& space, const Net& surface, std::span<const spline::Block> blocks);  ///< points only on these surfaces

@@ -39,9 +39,9 @@ class Evaluation {
   const RigidParticles& rigid();                         ///< returns the rigid bodies with their motion at this shape
   const Tube::Response& response();                      ///< returns the tube's response to load and velocity; the tube is then set to this shape
 
-  /// `flow`: force density and uniform velocity of the solids (2.46). `carried`: integral over the cell of the velocity that solids and particles add
-  /// to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and `carried` that are due to the
-  /// particles.
+  /// `flow`: force density of the solids and uniform velocity U, which is added to the flow (2.46). `carried`: integral over the cell of the velocity
+  /// that solids and particles add to the ambient flow (2.49); 0 next to a single plate. `caused`, `caused_carried`: the parts of `flow` and
+  /// `carried` that are due to the particles.
   struct SolidFlow {
     Solids::Flow flow, caused;
     Vec3 carried = Vec3::Zero(), caused_carried = Vec3::Zero();

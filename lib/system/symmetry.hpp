@@ -32,9 +32,9 @@ bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const N
 
 using LoadList = std::vector<std::shared_ptr<membrane::Load>>;
 
-/// Returns the reflections that the flow (in all its directions over time), the loads, the normal of a plane wall, the lattice of a periodic cell,
-/// the space and all nets have in common. Returns only the identity if the options ask for it. Any other boundary of the fluid must be checked here
-/// too.
+/// Returns the symmetries (mirror planes, half turns, point symmetry) that the flow (in all its directions over time), the loads, the normal of a
+/// plane wall, the lattice of a periodic cell, the space and all nets have in common. Returns only the identity if the options ask for it. Other
+/// boundaries of the fluid, for example posts, are not checked; the caller must exclude them.
 surface::Symmetry symmetry(const SymmetryOptions& options, const spline::Space& space, std::span<const Net* const> nets,
                            const stokes::AmbientFlow& flow, const LoadList& loads = {}, const Vec3& wall_normal = Vec3::Zero(),
                            const std::optional<stokes::PeriodicCell>& cell = {});

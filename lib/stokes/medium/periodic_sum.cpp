@@ -39,8 +39,8 @@ std::pair<std::array<int, 3>, double> near_steps(const PeriodicCell& cell, const
 /// cells, its error was up to three times as large as the error of the Stokeslet.
 double sharper(double tolerance, PeriodicKernel::Kind kind) { return kind == PeriodicKernel::Kind::stresslet ? tolerance / 5 : tolerance; }
 
-/// Returns the number of Chebyshev nodes on [-1, 1] for interpolation to this tolerance of a function whose nearest pole is y half-lengths of the
-/// interval away from its middle.
+/// Returns the number of Chebyshev nodes on [-1, 1] for interpolation to this tolerance of a function whose nearest poles are at the imaginary
+/// numbers +-iy.
 int order_for(double tolerance, double y) { return static_cast<int>(std::ceil(-std::log(tolerance) / std::asinh(y))); }
 
 std::vector<double> chebyshev(int n) {

@@ -29,7 +29,7 @@ struct Original {
   const Congruence* from;  ///< this map; it points into the list given to originals()
 };
 
-/// Returns the original of each of the n_around points of a ring.
+/// Returns the orbit representative of each of the n_around points of a ring.
 std::vector<Original> originals(const std::vector<Congruence>& maps, int n_around);
 
 }  // namespace tanktread::coupling

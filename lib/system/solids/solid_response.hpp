@@ -66,11 +66,13 @@ class SolidResponse {
 
   /// Returns the integral over the cell of the velocity u due to the flow `flow` of the solids, the load f and the velocity v of the particles. With
   /// three periods the integral is the volume times U (2.46). In front of a single plate it is not defined, and zero is returned. Between two plates
-  /// at the distance D it has components along the plates only, and follows from the reciprocal theorem. S are the surfaces of the solids, C those of
-  /// the particles. With z the distance from one plate and phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow phi e_i/mu, which
-  /// has the stress sigma_i:
+  /// at the distance D it has components along the plates only, and follows from the reciprocal theorem:
   ///
   ///   int u_i dV = (1/mu) (int_S f_i phi dG - int_C df_i phi dG) + int_C (1 - lambda) v.sigma_i n dG                         (2.49)
+  ///
+  /// In this formula, f_i is the force density of the solids (`flow`) and df_i the load of the particles (the argument f). S are the surfaces of the
+  /// solids, C those of the particles. With z the distance from one plate and phi = z (D - z)/2, a unit pressure gradient along e_i drives the flow
+  /// phi e_i/mu, which has the stress sigma_i.
   Vec3 carried(const Solids::Flow& flow, const Net& f, const Net& v);
 
   /// Returns the force of the particles on the fluid for a load f.

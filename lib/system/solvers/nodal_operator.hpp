@@ -44,8 +44,8 @@ class NodalOperator {
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Lets ranks share the sums by clusters. This rank computes the share number `part` of `parts` equal shares of the work, for the rows `everybody`,
-  /// which include its own targets.
+  /// Lets ranks share the sums by clusters. This rank computes the share number `part` of `parts` equal shares of the work. `everybody`: the targets
+  /// of all ranks.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to
