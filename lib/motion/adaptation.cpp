@@ -31,17 +31,15 @@ void AdaptationOptions::declare(deck::Section& section) {
               "where R_C is the radius of the sphere with the particle's volume");
   section.key(
       "reference curvature variation", reference_curvature_variation, deck::positive(), "1/length^2",
-      "largest change chi_ref of the mean curvature per length along an element that needs no refinement, for Adaptation/indicator "
-      "`variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not given, curvature causes no "
-      "refinement");
+      "threshold chi_ref for Adaptation/indicator `variation`: where the mean curvature changes along an element by more than chi_ref per "
+      "length, elements are made shorter (see Adaptation/order). If not given, curvature causes no refinement");
   section.key("reference traction variation", reference_traction_variation, deck::positive(), "force/length^3",
-              "largest change T_ref of the traction (membrane load per current area) per length along an element that needs no refinement, "
-              "for Adaptation/indicator `variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not "
-              "given, the traction causes no refinement");
+              "threshold T_ref for Adaptation/indicator `variation`: where the traction (membrane load per current area) changes along an "
+              "element by more than T_ref per length, elements are made shorter (see Adaptation/order). If not given, the traction causes no "
+              "refinement");
   section.key("reference velocity variation", reference_velocity_variation, deck::positive(), "1/time",
-              "largest change V_ref of the velocity per length along an element that needs no refinement, for Adaptation/indicator "
-              "`variation`; where the change is larger, elements are made shorter (see Adaptation/order). If not given, the velocity "
-              "causes no refinement");
+              "threshold V_ref for Adaptation/indicator `variation`: where the velocity changes along an element by more than V_ref per "
+              "length, elements are made shorter (see Adaptation/order). If not given, the velocity causes no refinement");
   section.key("limit aspect ratio", limit_aspect_ratio, deck::at_least(1), "1",
               "ratio of length to width of an element above which it is halved along its length, for Adaptation/indicator `variation`; "
               "2.5 if not given");

@@ -83,11 +83,11 @@ void SolverOptions::declare(deck::Section& section) {
               "factors would take more than 4 GB");
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
-      "boundary integral equation for several rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
+      "boundary integral equation for rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
       "`first kind`: the tractions are the unknowns (2.40) of a dense matrix, which is factored for every configuration; far more "
-      "accurate if gaps are small. `auto`: `first kind` if there are at least two rigid bodies, all with Adaptation/enabled and together "
-      "with at most 1500 control points at the start, or if the only particle in a Tube or Channel is a rigid body with at most 1500 "
-      "control points and Solvers/tube is `schur`; otherwise `second kind`");
+      "accurate if gaps are small. `auto`: `first kind` in runs in time with at most 1500 control points of rigid bodies at the start, in "
+      "two cases: at least two rigid bodies, all with Adaptation/enabled; or one rigid body as the only particle in a Tube or Channel, with "
+      "Solvers/tube `schur`. Otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
