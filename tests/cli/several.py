@@ -236,23 +236,22 @@ Tanktread:
 
 
 def of_equal_gaps_one_is_reported_on_any_ranks():
-    """Four spheres in a row; in a cubic cell, each is as far from its images along x1 and x3."""
-    spheres = "\n".join(f"    s{k}: {{center: [0.3, {2.3 * k}, 0.2]}}" for k in range(4))
+    """Two spheres on a cubic lattice: each is as far from the other one as from its images along x1 and x3."""
+    spheres = "\n".join(f"    s{k}: {{center: [0.3, {2.3 * k}, 0.2]}}" for k in range(2))
     deck(f"""
 Tanktread:
   Flow: {{type: quiescent}}
-  Domain: {{side lengths: [2.3, 9.2, 2.3]}}
+  Domain: {{side lengths: [2.3, 4.6, 2.3]}}
   Particles:
     defaults: {{motion: free, force: [1.0, 0.0, 0.0], Surface: {{elements per side: 3}}}}
 {spheres}
   Time: {{scheme: bs3, fixed step: 0.01, final time: 0.01}}
 """)
-    for ranks in (1, 2, 3):
+    for ranks in (1, 3):
         run("deck.yaml", "--output", f"on_{ranks}", "--quiet", ranks=ranks)
     for name in ("first_of_gap", "second_of_gap", "gap_x1", "gap_x2", "gap_x3"):
-        for ranks in (2, 3):
-            off = numpy.abs(series("on_1", name) - series(f"on_{ranks}", name)).max()
-            check(off < 1e-9, f"{name} on {ranks} ranks: {off}")
+        off = numpy.abs(series("on_1", name) - series("on_3", name)).max()
+        check(off < 1e-9, f"{name} on three ranks: {off}")
     check(series("on_1", "first_of_gap")[0] == series("on_1", "second_of_gap")[0] == 1, "the first particle and its image")
 
 
