@@ -109,8 +109,7 @@ void Options::declare(deck::Section& section) {
       "(3.26), with the area A0 of the unstressed surface and the surface shear modulus G (for a drop the surface tension). The relative "
       "area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
-              "fraction m of the neo-Hookean term in the energy of the law `Mooney-Rivlin`, for which it is required. 1: the neo-Hookean law; "
-              "smaller values make the membrane stiffer at large stretch");
+              "fraction m of the neo-Hookean term in the energy of `Mooney-Rivlin`, which needs it; smaller values stiffen it at large stretch");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
               "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, "
               "axis and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in "

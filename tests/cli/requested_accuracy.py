@@ -114,7 +114,7 @@ def a_series_that_vanishes_has_no_relative_error():
     deck(DROP.replace("uniaxial extension", "simple shear"))
     run("deck.yaml", "--accuracy", "stresslet_12=1%", "--set", "Accuracy/levels=3", "--quiet", "--output", "plane")
     found = summary("plane")["accuracy"]["requests"][0]
-    check(found["met"] and 0 < found["allowed"] < 1e-8, found)
+    check(found["met"] and 0 < found["allowed"] < 1e-7, found)  # 1e-10 of the largest series of this unit, the energy, 251
 
 
 def what_is_not_met_is_said():
