@@ -119,8 +119,8 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
 /// Finds points of the section curve near the intersections of the plane x2 = centre_2 with the chords of a sampling grid. The intersections
 /// themselves are too far from the surface. On a nearly circular curve, the error of their distances from the centre may exceed the difference
 /// between the largest and the smallest distance.
-void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& result) {
-  result.clear();
+std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
+  std::vector<Crossing> result;
   double above[cells + 1][cells + 1];
   Grid y = sample(patch);
   for (int j = 0; j <= cells; ++j) {
@@ -141,6 +141,7 @@ void crossings(const Patch& patch, const Vec3& centre, std::vector<Crossing>& re
       if (j < cells) edge(j, i, j + 1, i);
     }
   }
+  return result;
 }
 
 /// Returns the stationary value of the distance from the centre on the section curve y2 = 0 (y = x - centre, r = |y|), by Newton's method for
@@ -181,29 +182,35 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
   return std::hypot(y[0], y[2]);
 }
 
-/// An element that may contain the extremum of the distance, with sampled points of the section curve, the best first.
+/// An element that may contain an extremum of the distance, with sampled points of the section curve in ascending order of their distances.
 struct Candidate {
   int element;
   std::vector<Crossing> crossings;
-  double spread;  ///< largest minus smallest distance from the centre at the sampled points of the element
+
+  double spread() const { return crossings.back().distance - crossings.front().distance; }
+
+  /// Returns the sampled point with the k-th largest value of sign * distance, k = 0 for the largest.
+  const Crossing& best(double sign, std::size_t k = 0) const { return crossings[sign < 0 ? k : crossings.size() - 1 - k]; }
 };
 
 /// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the
 /// search from a sampled maximum may converge to a minimum, or leave the element; then it starts from the next sampled point.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
-  for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.crossings.front().distance);
+  for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);
   for (const Candidate& c : candidates) {
-    const double best = c.crossings.front().distance;
-    // skips elements that cannot contain the maximum, because sampling errors are smaller than `spread`
-    if (sign * best + c.spread < sampled) continue;
+    const double best = c.best(sign).distance;
+    // skips elements that cannot contain the maximum, because sampling errors are smaller than the spread
+    if (sign * best + c.spread() < sampled) continue;
     const auto add = [&](double distance) {
       found.smallest = std::min(found.smallest, distance), found.largest = std::max(found.largest, distance);
       return sign * (distance - best) >= -1e-12 * best;
     };
     add(best);
-    for (const Crossing& from : c.crossings)
-      if (const std::optional<double> distance = stationary_distance(surface[c.element], centre, from.at); distance && add(*distance)) break;
+    for (std::size_t k = 0; k < c.crossings.size(); ++k) {
+      const std::optional<double> distance = stationary_distance(surface[c.element], centre, c.best(sign, k).at);
+      if (distance && add(*distance)) break;
+    }
   }
 }
 
@@ -245,23 +252,19 @@ Vec3 lowest(const Patches& surface, int c) {
 }
 
 Range section_distances(const Patches& surface, const Vec3& centre) {
-  std::vector<Candidate> longest, shortest;
-  std::vector<Crossing> found;
+  std::vector<Candidate> candidates;
   for (int e = 0; e < surface.size(); ++e) {
     const Patch& patch = surface[e];
     const auto [low, high] = hull(patch, 1);
     const double slack = 1e-12 * (std::abs(centre[1]) + high - low);
     if (low > centre[1] + slack || high < centre[1] - slack) continue;
-    crossings(patch, centre, found);
+    std::vector<Crossing> found = crossings(patch, centre);
     if (found.empty()) continue;
     std::ranges::sort(found, {}, &Crossing::distance);
-    const double spread = found.back().distance - found.front().distance;
-    shortest.push_back({e, found, spread});
-    longest.push_back({e, {found.rbegin(), found.rend()}, spread});
+    candidates.push_back({e, std::move(found)});
   }
   Range range;
-  add_distances(surface, centre, shortest, -1, range);
-  add_distances(surface, centre, longest, 1, range);
+  for (const double sign : {-1., 1.}) add_distances(surface, centre, candidates, sign, range);
   return range;
 }
 
