@@ -13,7 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "base/errors.hpp"
-#include "base/indices.hpp"
+#include "base/groups.hpp"
 #include "base/text_file.hpp"
 #include "deck/words.hpp"
 #include "spline/basis.hpp"
@@ -140,18 +140,14 @@ constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284
 /// Returns an element that is not connected with element 0, or -1 if there is none. Elements are connected by common control points or candidate
 /// points. `places`: candidate points, as numbered_places() returns them.
 int separate_element(const Space& space, const std::vector<int>& places) {
-  std::vector<int> towards = indices(space.n_points + places.size());  // parent of each point in its tree of connected points
-  const auto root = [&](int point) {
-    while (towards[point] != point) point = towards[point] = towards[towards[point]];
-    return point;
-  };
+  Groups connected(space.n_points + places.size());
   for (std::size_t k = 0; k < space.elements.size(); ++k) {
     const std::vector<int>& points = space.elements[k].points;
-    for (const int point : points) towards[root(point)] = root(points[0]);
-    for (std::size_t p = 9 * k; p < 9 * (k + 1); ++p) towards[root(space.n_points + places[p])] = root(points[0]);
+    for (const int point : points) connected.join(point, points[0]);
+    for (std::size_t p = 9 * k; p < 9 * (k + 1); ++p) connected.join(space.n_points + places[p], points[0]);
   }
   for (std::size_t k = 1; k < space.elements.size(); ++k)
-    if (root(space.elements[k].points[0]) != root(space.elements[0].points[0])) return int(k);
+    if (connected.of(space.elements[k].points[0]) != connected.of(space.elements[0].points[0])) return int(k);
   return -1;
 }
 

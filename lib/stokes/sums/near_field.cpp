@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "base/indices.hpp"
+#include "base/groups.hpp"
 #include "quadrature/gauss.hpp"
 
 namespace tanktread::stokes {
@@ -29,23 +29,19 @@ quadrature::Patch flat_picture(const double* bezier, int degree) {
 /// the number of surfaces.
 int connected(const Panels& panels, std::vector<int>& surface) {
   std::vector<int> first;  // for each control point, the first panel that depends on it; -1 if not found yet
-  std::vector<int> root = indices(panels.size());
-  const auto find = [&](int e) {
-    while (root[e] != e) e = root[e] = root[root[e]];
-    return e;
-  };
+  Groups joined(panels.size());
   for (int e = 0; e < panels.size(); ++e)
     for (int a = 0; a < panels[e].functions; ++a) {
       const auto point = static_cast<std::size_t>(panels.points(e)[a]);
       if (point >= first.size()) first.resize(point + 1, -1);
       if (first[point] < 0) first[point] = e;
-      root[find(e)] = find(first[point]);
+      joined.join(e, first[point]);
     }
-  std::vector<int> number(root.size(), -1);
+  std::vector<int> number(panels.size(), -1);
   int n = 0;
-  surface.resize(root.size());
+  surface.resize(panels.size());
   for (int e = 0; e < panels.size(); ++e) {
-    int& mine = number[find(e)];
+    int& mine = number[joined.of(e)];
     if (mine < 0) mine = n++;
     surface[e] = mine;
   }
