@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -54,7 +53,7 @@ int resist(const Scene& scene, const RunRequest& request) {
   const std::unique_ptr<coupling::Tube> around = tube(scene, body, phases);
   coupling::RigidTractions tractions = tractions_of(scene, body, ranks, around.get());
   clock.reset();
-  stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
+  stop_where_told(scene.output.too_late(ranks.seconds_since(start)));
   const RigidSolution solution = rigid_solution(scene, body, tractions, phases);
   stop_where_told();
   const double seconds = ranks.seconds_since(start);

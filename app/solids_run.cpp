@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -24,7 +23,7 @@ int flow_past_solids(const Scene& scene, const RunRequest& request) {
   const coupling::SolidScene around = *solids(scene, phases);
   coupling::Solids& all = *around.solids;
   clock.reset();
-  stop_where_told(ranks.seconds_since(start) > scene.output.wall_clock_limit.value_or(INFINITY));
+  stop_where_told(scene.output.too_late(ranks.seconds_since(start)));
   const stokes::AmbientFlow ambient(scene.flow);
   const coupling::Solids::Flow flow = coupling::without_particles(around, ambient);
   const Vec3 carried = coupling::carried(around, flow);

@@ -363,8 +363,7 @@ class SteadyRun {
   const Clock::time_point start_ = Clock::now();
   // Returns whether this rank has received a stop signal or has passed the wall-clock limit.
   const std::function<bool()> told_ = [this] {
-    const auto limit = scene_.output.wall_clock_limit;
-    return told_to_stop() || (limit && std::chrono::duration<double>(Clock::now() - start_).count() > *limit);
+    return told_to_stop() || scene_.output.too_late(std::chrono::duration<double>(Clock::now() - start_).count());
   };
   const motion::TimeOptions time_ = scene_.time_options();
   Phases phases_ = started();

@@ -17,6 +17,9 @@ struct Options {
   bool power_balance = false;              ///< true if each row holds the balance of power
   bool surface_text = false;               ///< true if the last surface is written as Bezier-extraction text, `surface.iga`
 
+  /// Returns whether a run that has taken this many seconds has passed `wall_clock_limit`.
+  bool too_late(double seconds) const { return wall_clock_limit && seconds > *wall_clock_limit; }
+
   void declare(deck::Section& section);
 };
 
