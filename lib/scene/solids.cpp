@@ -59,7 +59,7 @@ std::optional<coupling::SolidScene> solids(const Scene& scene, Phases& phases) {
                    coupling::Rod{center, Vec3::Unit(post.axis), post.radius}});
   }
   return coupling::SolidScene{
-      std::make_shared<Solids>(all, cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature, phases),
+      std::make_shared<Solids>(all, Solids::Parameters{cell, free_directions(scene, cell), scene.flow.viscosity, scene.quadrature}, phases),
       scene.wall.solid ? scene.wall.planes() : std::vector<stokes::PlaneWall>(), pressure_gradient, scene.quadrature};
 }
 

@@ -13,8 +13,10 @@ namespace tanktread::stokes {
 namespace {
 
 /// Returns options whose tolerance is smaller for the double layer. Quadrature rules are chosen for int G f dG. The kernel of the double layer is
-/// singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp).
+/// singular by one order more, so that its error with the same rule is up to five times as large (tests/verify/layers.cpp). `far_precision` refers to
+/// the tolerance of the deck.
 quadrature::Options sharper(quadrature::Options options, Layer::Kernel kernel) {
+  options.far_precision = options.far_in_single() ? "single" : "double";
   if (kernel == Layer::Kernel::double_layer) options.tolerance /= 8;
   return options;
 }

@@ -18,7 +18,7 @@ bool same(const Net& a, const Net& b) { return a.rows() == b.rows() && a == b; }
 
 /// Sets the time. Cached results are kept unless the flow or the cell changes.
 void Capsule::at(double time, double start) {
-  const bool other_flow = flow_.at(time, start), other_cell = parameters_.cell && deform_cell(time);
+  const bool other_flow = around_.flow.at(time, start), other_cell = parameters_.cell && deform_cell(time);
   if (other_flow || other_cell) latest_.reset();
 }
 
@@ -50,14 +50,14 @@ Net Capsule::response(Evaluation& at, const Net& work) {
 
 /// Sets the forces of contacts and loads on rigid bodies, in addition to their prescribed forces.
 void Capsule::push_bodies(const Net& x) {
-  if (rigid_.empty()) return;
+  if (bodies_.rigid.empty()) return;
   Net push = forces_[static_cast<std::size_t>(Forces::contacts)];
   if (std::ranges::any_of(particles(), [](const Particle& one) { return one.rigid && !one.loads.empty(); })) {
     Net work = Net::Zero(x.rows(), 3);
     membranes_.complete_work(x, work);
     push = push.size() > 0 ? Net(push - work) : Net(-work);
   }
-  rigid_.push(push);
+  bodies_.rigid.push(push);
 }
 
 /// Returns the load of the membranes at x. This is the shape of `e`; on a lattice, each of its particles has been moved into the cell. If `other` is
@@ -96,7 +96,7 @@ std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess) {
   const auto e = std::make_shared<Evaluation>(*this, x);
   e->velocity_ = symmetric(in_cell(*e, guess));
   e->solved_ = true;
-  if (!rigid_.empty()) e->rigid_ = rigid_;
+  if (!bodies_.rigid.empty()) e->rigid_ = bodies_.rigid;
   if (e->velocity_.allFinite()) latest_ = e;
   return e;
 }
@@ -110,28 +110,28 @@ std::shared_ptr<Evaluation> Capsule::evaluation(const Net& x, const Net& velocit
 /// Computes (4.2) step by step: the load (membrane_load and rigid bodies), its velocity and the ambient flow (explicit_velocity), the projection onto
 /// constant volumes (constrain), and the solution of the system for the velocity (solve_velocity), if there is one (has_velocity_system).
 Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
-  rigid_.place(x);
-  if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
+  bodies_.rigid.place(x);
+  if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   push_bodies(x);
-  const bool deforms = !tractions_ || !tractions_->alone(), constrained = deforms && parameters_.constrained();
+  const bool deforms = !bodies_.tractions || !bodies_.tractions->alone(), constrained = deforms && parameters_.constrained();
   const Net b = constrained ? volumes_.gradient(x) : Net();
   Net c = b;
   Net f = deforms ? membrane_load(e, x, constrained ? &c : nullptr) : Net::Zero(x.rows(), 3);
-  if (!tractions_) rigid_.add_load(f);
+  if (!bodies_.tractions) bodies_.rigid.add_load(f);
   e.load_ = f;
   Net v = explicit_velocity(x, f, {}, &e.response_);
-  if (!tractions_) rigid_.add_lacking(v), rigid_.subtract_prescribed(v);
+  if (!bodies_.tractions) bodies_.rigid.add_lacking(v), bodies_.rigid.subtract_prescribed(v);
   if (constrained) volumes_.constrain(v, b, c);
   membranes_.place_viscous(x);
-  if (tractions_) v = solve_tractions(e, x, b, c, symmetric(v));
+  if (bodies_.tractions) v = solve_tractions(e, x, b, c, symmetric(v));
   else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
   e.unknowns_ = v;
-  if (viscous() && !tractions_) e.load_ += membranes_.viscous_load(x, symmetric(v));
-  if (!rigid_.empty() && !tractions_) {
+  if (viscous() && !bodies_.tractions) e.load_ += membranes_.viscous_load(x, symmetric(v));
+  if (!bodies_.rigid.empty() && !bodies_.tractions) {
     e.unknowns_ = symmetric(v);
-    e.load_ += rigid_.completing_load(v);
-    rigid_.move(v);
+    e.load_ += bodies_.rigid.completing_load(v);
+    bodies_.rigid.move(v);
   }
   if (!interface_) return v;
   e.fluid_ = symmetric(v);
@@ -147,19 +147,18 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
 Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer) {
   Net u = layers_.apply_single(x, f);
   if (by_sites()) {
-    const bool known = tube_ && flow_.duct();
-    u = (known ? flow_.amplitude() * tube_->ambient() : flow_.velocities(targets_.values() * x)) - u / parameters_.viscosity;
+    const bool known = duct_.tube && around_.flow.duct();
+    u = (known ? around_.flow.amplitude() * duct_.tube->ambient() : around_.flow.velocities(targets_.values() * x)) - u / parameters_.viscosity;
     if (solids()) add_solids(x, f, moves, true, u);
-    if (tube_ && schur()) {
-      Tube::Response response = tube_->respond(f, moves);
+    if (duct_.tube && schur()) {
+      Tube::Response response = duct_.tube->respond(f, moves);
       u += response.velocity;
       if (answer && !has_velocity_system()) *answer = std::move(response);
     }
     const auto clock = phases_.time("projection");
     return targets_.control_values(std::move(u));
   }
-  Net v = flow_.velocities(x);  // in an affine flow, the velocities at the control points are the exact control values, because basis functions sum
-                                // to one
+  Net v = around_.flow.velocities(x);  // exact control values in an affine flow, because basis functions sum to one
   const auto clock = phases_.time("projection");
   v -= targets_.control_values(std::move(u)) / parameters_.viscosity;
   return v;
@@ -169,11 +168,11 @@ Net Capsule::explicit_velocity(const Net& x, const Net& f, const Net& moves, std
 bool Capsule::enter_tube(const Net& x) {
   place(x);
   const Net at_sites = targets_.at_sites() * x;
-  if (tube_->fixed()) return !layout_.any(!tube_->inside(at_sites, layout_.points()));
-  const surface::Outline& outline = tube_->wall().outline;
+  if (duct_.tube->fixed()) return !layout_.any(!duct_.tube->inside(at_sites, layout_.points()));
+  const surface::Outline& outline = duct_.tube->wall().outline;
   const bool outside = std::ranges::any_of(layout_.points(), [&](int i) {
     const surface::Vec2 place(at_sites(i, 1), at_sites(i, 2));
-    return (place - outline.centroid()).norm() >= inner_radius_ && !outline.inside(place);
+    return (place - outline.centroid()).norm() >= duct_.inner_radius && !outline.inside(place);
   });
   return !layout_.any(outside);
 }
@@ -190,7 +189,7 @@ bool Capsule::defect_spares_system() const { return jacobian_.flows_by_system() 
 Net Capsule::defect(const Net& x, const Net& u) {
   if (!defect_spares_system()) return velocity(x) - u;
   ++work_.evaluations;
-  if (!lattice_.cell || !x.allFinite()) return defect_here(x, u);
+  if (!around_.cell || !x.allFinite()) return defect_here(x, u);
   Net in_cell = x, slower = u;
   const std::vector<Vec3> shifts = put_into_cell(in_cell);
   for (std::size_t p = 0; p < shifts.size(); ++p)
@@ -201,7 +200,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
 /// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that a single sum over the surface is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
-  if (!x.allFinite() || (tube_ && !enter_tube(x)) || !in_front_of_wall(x))
+  if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());
   const bool constrained = parameters_.constrained();
   const Net b = constrained ? volumes_.gradient(x) : Net();
@@ -223,13 +222,13 @@ Net Capsule::defect_here(const Net& x, const Net& u) {
 
 void Capsule::freeze(const Net& at) {
   Net x = at;
-  if (lattice_.cell) put_into_cell(x);
+  if (around_.cell) put_into_cell(x);
   const auto clock = phases_.time("assembly");
   ++work_.assemblies;
   frozen_.assemble(at, x);
-  if (!tube_) return;
+  if (!duct_.tube) return;
   place(x);
-  tube_->freeze();
+  duct_.tube->freeze();
 }
 
 void Capsule::linearise(const Net& x) {
@@ -276,12 +275,12 @@ Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
 void Capsule::forget_recycled() const {
   velocity_solver_.forget();
   jacobian_.forget_recycled();
-  if (tube_) tube_->forget_recycled();
-  if (tractions_) tractions_->forget_recycled();
+  if (duct_.tube) duct_.tube->forget_recycled();
+  if (bodies_.tractions) bodies_.tractions->forget_recycled();
 }
 
 void Capsule::restore_volume(Net& x) {
-  rigid_.place(x);
+  bodies_.rigid.place(x);
   if (parameters_.volume.constraint != "exact") return;
   const auto clock = phases_.time("volume");
   volumes_.restore(x, [&](const Net& b) { return jacobian_.inflation(symmetric(membranes_.solved(b))); });
@@ -290,7 +289,7 @@ void Capsule::restore_volume(Net& x) {
 double Capsule::distance(const Net& from, const Net& to) const { return norm(Corotation::deformation(particles(), from, to)); }
 
 double Capsule::norm(const Net& displacement) const {
-  const double along = tube_ && !tube_->fixed() ? displacement.col(0).mean() : 0;
+  const double along = duct_.tube && !duct_.tube->fixed() ? displacement.col(0).mean() : 0;
   double largest = 0;
   for (const Particle& particle : particles()) {
     const Net moved = particle.block.rows(displacement).rowwise() - Eigen::RowVector3d(along, 0, 0);
@@ -302,9 +301,9 @@ double Capsule::norm(const Net& displacement) const {
 
 stokes::Evaluations Capsule::kernel_evaluations() const {
   stokes::Evaluations sum = layers_.evaluations() + frozen_.evaluations();
-  if (tube_) sum += tube_->kernel_evaluations();
-  if (tractions_) sum += tractions_->kernel_evaluations();
-  if (lattice_.solids) sum += lattice_.solids->evaluations();
+  if (duct_.tube) sum += duct_.tube->kernel_evaluations();
+  if (bodies_.tractions) sum += bodies_.tractions->kernel_evaluations();
+  if (around_.solids) sum += around_.solids->evaluations();
   return sum;
 }
 

@@ -79,7 +79,7 @@ class Capsule : public Dynamics {
   Net velocity(const Net& x) override { return evaluate(x)->velocity(); }
   void at(double time, double start) override;
 
-  double next_kink(double time) const override { return flow_.next_kink(time); }
+  double next_kink(double time) const override { return around_.flow.next_kink(time); }
   void freeze(const Net& x) override;
   double frozen_bytes() const override { return frozen_.bytes(); }
   void linearise(const Net& x) override;
@@ -123,7 +123,7 @@ class Capsule : public Dynamics {
 
   /// Returns the rigid bodies among the particles, at their positions in x.
   RigidParticles rigid_at(Net x) const {
-    RigidParticles rigid = rigid_;
+    RigidParticles rigid = bodies_.rigid;
     rigid.place(x);
     return rigid;
   }
@@ -132,10 +132,10 @@ class Capsule : public Dynamics {
   const membrane::Membrane& membrane() const { return membranes_.membrane(); }
   const std::vector<Particle>& particles() const { return parameters_.particles; }
   double volume_error(double volume, std::size_t p = 0) const { return volumes_.error(volume, p); }  ///< V/V0 - 1 of particle p
-  Tube* tube() { return tube_.get(); }      ///< null if there is no tube
-  SolidResponse* solids() { return lattice_.solids.get(); }  ///< null if there are no plates or posts
-  const stokes::AmbientFlow& flow() const { return flow_; }  ///< flow at the time set by `at`
-  const std::optional<stokes::PeriodicCell>& cell() const { return lattice_.cell; }  ///< cell at the time set by `at`
+  Tube* tube() { return duct_.tube.get(); }  ///< null if there is no tube
+  SolidResponse* solids() { return around_.solids.get(); }  ///< null if there are no plates or posts
+  const stokes::AmbientFlow& flow() const { return around_.flow; }  ///< flow at the time set by `at`
+  const std::optional<stokes::PeriodicCell>& cell() const { return around_.cell; }  ///< cell at the time set by `at`
 
   /// Subtracts a lattice vector from every particle so that its mean is in the cell, and returns these vectors. The cell is centred on the origin; in
   /// a channel, on the middle of the channel; and in a straight tube, whose wall moves with the particles, on the mean of the particles.
@@ -143,7 +143,7 @@ class Capsule : public Dynamics {
 
   /// Returns the ambient velocity at a point displaced by the lattice vector `shift`, minus the ambient velocity at the point itself. 0 in a duct,
   /// whose flow is periodic.
-  Vec3 faster_beyond(const Vec3& shift) const { return tube_ ? Vec3::Zero() : Vec3(flow_.cell_gradient() * shift); }
+  Vec3 faster_beyond(const Vec3& shift) const { return duct_.tube ? Vec3::Zero() : Vec3(around_.flow.cell_gradient() * shift); }
 
   stokes::Evaluations kernel_evaluations() const;  ///< kernel evaluations of all layers
   const Targets& targets() const { return targets_; }
@@ -158,21 +158,31 @@ class Capsule : public Dynamics {
  private:
   friend class Evaluation;
 
-  /// Net of the particles for which the tube was set up last. `origin`: current x1 of the origin of the frame of a straight periodic wall, which
-  /// moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
-  struct TubePlace {
-    Net net;
-    std::optional<double> origin, origin_of_net;
-  };
-  /// Current cell, and the plates and posts in it. Unset without a lattice.
-  struct Lattice {
+  /// Ambient flow, cell, plates and posts at the time set by `at`. `cell` and `solids` are unset without a lattice.
+  struct Surroundings {
+    stokes::AmbientFlow flow;
     std::optional<stokes::PeriodicCell> cell;
     std::unique_ptr<SolidResponse> solids;
   };
-  bool by_sites() const { return tube_ || parameters_.solids || !flow_.affine(); }
-  bool schur() const { return !tube_ || tractions_ || parameters_.solvers.tube == "schur"; }
+  /// Tube or channel, and the net of the particles for which it was set up last. `origin`: current x1 of the origin of the frame of a straight
+  /// periodic wall, which moves with the particles. `origin_of_net`: value of `origin` when `net` was set.
+  struct Duct {
+    std::unique_ptr<Tube> tube;
+    Net net;
+    std::optional<double> origin, origin_of_net;
+    double inner_radius = 0;  ///< radius of the largest circle in the section of a straight tube about its centroid
+  };
+  /// Rigid bodies among the particles. `tractions`: set if their unknowns are their tractions. `isolated`: inverses of the system (2.23) for isolated
+  /// bodies, used as a preconditioner; set up at the first use.
+  struct Bodies {
+    RigidParticles rigid;
+    std::unique_ptr<RigidTractions> tractions;
+    std::optional<OneBodyInverses> isolated;
+  };
+  bool by_sites() const { return duct_.tube || parameters_.solids || !around_.flow.affine(); }
+  bool schur() const { return !duct_.tube || bodies_.tractions || parameters_.solvers.tube == "schur"; }
   bool has_velocity_system() const { return layers_.has_double() || viscous() || !schur(); }
-  bool unknowns_follow() const { return !interface_ && rigid_.empty(); }  // true if the unknowns are velocities of control points
+  bool unknowns_follow() const { return !interface_ && bodies_.rigid.empty(); }  // true if the unknowns are velocities of control points
   bool pressed() const { return forces_[0].size() > 0 || forces_[1].size() > 0; }
   bool deform_cell(double time);
   Vec3 cell_origin(const Net& x) const;
@@ -199,7 +209,7 @@ class Capsule : public Dynamics {
 
   const spline::Space& space_;
   Net rest_;
-  stokes::AmbientFlow flow_;
+  Surroundings around_;
   CapsuleParameters parameters_;
   Phases& phases_;
   Work work_;
@@ -209,14 +219,8 @@ class Capsule : public Dynamics {
   Volumes volumes_;
   ParticleLayers layers_;
   FrozenLayers frozen_;
-  std::unique_ptr<Tube> tube_;
-  TubePlace tube_place_;
-  double inner_radius_ = 0;  // radius of the largest circle in the section of a straight tube about its centroid
-  Lattice lattice_;
-  RigidParticles rigid_;
-  std::unique_ptr<RigidTractions> tractions_;  // set if there are rigid bodies whose unknowns are their tractions
-  std::optional<OneBodyInverses> alone_;  // inverses of the system (2.23) for isolated rigid bodies, used as a preconditioner; set up at the first
-                                          // use
+  Duct duct_;
+  Bodies bodies_;
   std::unique_ptr<InterfaceMotion> interface_;  // set if any control points slide along an interface
   Krylov velocity_solver_;
   CapsuleJacobian jacobian_;

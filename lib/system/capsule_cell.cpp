@@ -10,42 +10,42 @@ namespace tanktread::coupling {
 
 /// Deforms the cell to this time (2.51). Returns whether it has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
-  if (tube_) {
-    lattice_.cell = tube_->cell();
+  if (duct_.tube) {
+    around_.cell = duct_.tube->cell();
     return false;
   }
-  const Mat3 deformation = lattice_.solids ? Mat3(Mat3::Identity()) : flow_.deformation(time);  // no flow deforms a cell with walls or posts
+  const Mat3 deformation = around_.solids ? Mat3(Mat3::Identity()) : around_.flow.deformation(time);  // no flow deforms a cell with walls or posts
   const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
-  if (lattice_.cell && *lattice_.cell == now) return false;
-  lattice_.cell = now;
+  if (around_.cell && *around_.cell == now) return false;
+  around_.cell = now;
   layers_.repeat(now);
-  if (tractions_) tractions_->repeat(now);
+  if (bodies_.tractions) bodies_.tractions->repeat(now);
   return true;
 }
 
 std::vector<Vec3> Capsule::put_into_cell(Net& x) {
   std::vector<Vec3> shifts;
   const Vec3 middle = cell_origin(x);
-  if (tube_ && !tube_->fixed()) tube_place_.origin = middle[0];
+  if (duct_.tube && !duct_.tube->fixed()) duct_.origin = middle[0];
   for (const Particle& particle : particles()) {
     auto rows = particle.block.rows(x);
-    shifts.push_back(lattice_.cell->shift(rows.colwise().mean().transpose() - middle));
+    shifts.push_back(around_.cell->shift(rows.colwise().mean().transpose() - middle));
     rows.rowwise() -= shifts.back().transpose();
   }
   return shifts;
 }
 
 void Capsule::place(const Net& x) {
-  if (tube_place_.net.rows() == x.rows() && tube_place_.net == x && tube_place_.origin == tube_place_.origin_of_net) return;
-  tube_->place(x, tube_place_.origin);
-  tube_place_.net = x, tube_place_.origin_of_net = tube_place_.origin;
+  if (duct_.net.rows() == x.rows() && duct_.net == x && duct_.origin == duct_.origin_of_net) return;
+  duct_.tube->place(x, duct_.origin);
+  duct_.net = x, duct_.origin_of_net = duct_.origin;
 }
 
 /// Returns the middle of the cell. In a straight tube, whose wall moves with the particles, it is the mean of all particles' control points, even if
 /// they are far apart.
 Vec3 Capsule::cell_origin(const Net& x) const {
-  if (!tube_) return Vec3::Zero();
-  if (tube_->fixed()) return (tube_->wall().start + tube_->wall().end) / 2 * Vec3::UnitX();
+  if (!duct_.tube) return Vec3::Zero();
+  if (duct_.tube->fixed()) return (duct_.tube->wall().start + duct_.tube->wall().end) / 2 * Vec3::UnitX();
   return x.col(0).mean() * Vec3::UnitX();
 }
 
@@ -54,17 +54,17 @@ Vec3 Capsule::cell_origin(const Net& x) const {
 void Capsule::add_solids(const Net& x, const Net& f, const Net& moves, bool with_empty, Net& u) {
   const auto clock = phases_.time("wall");
   place_among_solids(x);
-  Solids::Flow flow = lattice_.solids->respond(f, moves);
-  if (with_empty) flow = flow + lattice_.solids->empty();
+  Solids::Flow flow = around_.solids->respond(f, moves);
+  if (with_empty) flow = flow + around_.solids->empty();
   Net part = targets_.zero();
-  lattice_.solids->velocities(flow, part);
+  around_.solids->velocities(flow, part);
   targets_.gather(false, part);
   u += part;
 }
 
 /// Returns the control values of the velocity by which a tube or solids respond to a load f and a velocity v.
 Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
-  if (tube_) return targets_.collocation().solve(tube_->respond(f, v).velocity);
+  if (duct_.tube) return targets_.collocation().solve(duct_.tube->respond(f, v).velocity);
   Net u = targets_.zero();
   add_solids(x, f, v, false, u);
   return targets_.serial_control_values(u);
@@ -73,22 +73,22 @@ Net Capsule::velocity_by_walls(const Net& x, const Net& f, const Net& v) {
 /// Constructs the response of plates and posts, if there are any.
 void Capsule::put_among_solids() {
   if (!parameters_.solids) return;
-  lattice_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, flow_);
-  lattice_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
-  if (tractions_) tractions_->put_among(*lattice_.solids);
-  lattice_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
+  around_.solids = std::make_unique<SolidResponse>(*parameters_.solids, space_, around_.flow);
+  around_.solids->set_reference(membranes_.unstressed(), measure(), measured_on_present(particles()));
+  if (bodies_.tractions) bodies_.tractions->put_among(*around_.solids);
+  around_.solids->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 void Capsule::place_among_solids(const Net& x) {
-  lattice_.solids->place(x, targets_.values() * x, targets_.own());
+  around_.solids->place(x, targets_.values() * x, targets_.own());
 }
 
 /// Evaluates the shape with each particle moved by a lattice vector so that its mean is in the cell, and transfers the velocities back.
 Net Capsule::in_cell(Evaluation& e, const Net& guess) {
-  if (!lattice_.cell || !e.x().allFinite()) return solve(e, e.x(), guess);
+  if (!around_.cell || !e.x().allFinite()) return solve(e, e.x(), guess);
   Net x = e.x();
   const std::vector<Vec3> shifts = put_into_cell(x);
-  rigid_.enter(shifts, tube_ ? Mat3::Zero() : flow_.cell_gradient());
+  bodies_.rigid.enter(shifts, duct_.tube ? Mat3::Zero() : around_.flow.cell_gradient());
   Net slower = guess;
   const auto faster_by = [&](std::size_t p) { return faster_beyond(shifts[p]); };
   for (std::size_t p = 0; p < shifts.size() && guess.size() > 0; ++p) particles()[p].block.rows(slower).rowwise() -= faster_by(p).transpose();
@@ -97,7 +97,7 @@ Net Capsule::in_cell(Evaluation& e, const Net& guess) {
     const Vec3 faster = faster_by(p);
     for (Net* net : {&v, &e.fluid_})
       if (net->size() > 0) particles()[p].block.rows(*net).rowwise() += faster.transpose();
-    rigid_.carry(p, shifts[p], faster);
+    bodies_.rigid.carry(p, shifts[p], faster);
   }
   return v;
 }

@@ -31,27 +31,28 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
-    : space_(space), rest_(initial), flow_(flow), parameters_(completed(parameters, space)), phases_(phases),
+    : space_(space), rest_(initial), around_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
       layout_(space, parameters_.symmetry, ranks),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
       volumes_(space, initial, particles(), layout_, phases),
       layers_(space, unstressed, parameters_, layout_, targets_, phases),
       frozen_(space, membranes_.unstressed(), parameters_, layout_, targets_, membranes_.mass_matrix(), layers_),
-      tube_(std::move(tube)),
-      rigid_(particles(), initial, parameters.viscosity, parameters.quadrature),
+      duct_{std::move(tube), {}, {}, {}},
+      bodies_{RigidParticles(particles(), initial, parameters.viscosity, parameters.quadrature), {}, {}},
       interface_(interface_motion(space, parameters_, layout_, targets_, membranes_)),
       velocity_solver_(parameters.solvers.of(parameters.solvers.velocity)),
-      jacobian_(parameters_, flow_, by_sites(), targets_, membranes_, volumes_, frozen_, tube_.get(), interface_.get(), work_) {
-  if (parameters.solvers.rigid_bodies == "first kind" && !rigid_.empty())
-    tractions_ = std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
-                                                  parameters.solvers, parameters.wall, tube_.get(), layout_.points(), ranks);
+      jacobian_(parameters_, around_.flow, by_sites(), targets_, membranes_, volumes_, frozen_, duct_.tube.get(), interface_.get(), work_) {
+  if (parameters.solvers.rigid_bodies == "first kind" && !bodies_.rigid.empty())
+    bodies_.tractions =
+        std::make_unique<RigidTractions>(space, membranes_.unstressed(), initial, particles(), parameters.viscosity, parameters.quadrature,
+                                         parameters.solvers, parameters.wall, duct_.tube.get(), layout_.points(), ranks);
   if (parameters_.cell) deform_cell(0);
   put_among_solids();
-  if (!tube_) return;
-  if (!tube_->fixed()) inner_radius_ = tube_->wall().outline.distance(tube_->wall().outline.centroid());
-  tube_->set_reference(unstressed, measure(), measured_on_present(particles()));
-  tube_->set_contrasts(viscosity_contrasts_of_points(particles()));
+  if (!duct_.tube) return;
+  if (!duct_.tube->fixed()) duct_.inner_radius = duct_.tube->wall().outline.distance(duct_.tube->wall().outline.centroid());
+  duct_.tube->set_reference(unstressed, measure(), measured_on_present(particles()));
+  duct_.tube->set_contrasts(viscosity_contrasts_of_points(particles()));
 }
 
 Capsule::~Capsule() = default;

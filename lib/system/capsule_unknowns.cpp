@@ -17,7 +17,8 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
   const auto contrast = [](const Particle& particle) { return std::abs(std::log(particle.viscosity_ratio)); };
   const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
-  const std::string system = rigid_.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
+  const std::string system =
+      bodies_.rigid.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
   if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
 }
 
@@ -31,14 +32,14 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
   layers_.assemble(x, viscous());
   const auto load_of = [&](const Net& v) {  // returns the velocity-dependent load (viscous membranes, prescribed rigid motions); empty if there is
                                             // none
-    Net load = rigid_.prescribed() ? rigid_.completing_load(v) : Net();
+    Net load = bodies_.rigid.prescribed() ? bodies_.rigid.completing_load(v) : Net();
     if (viscous()) load = load.size() > 0 ? Net(load + membranes_.viscous_load(x, v)) : membranes_.viscous_load(x, v);
     return load;
   };
   const auto without_wall = [&](const Net& v, const Net& load) -> Net {  // B v
     if (!layers_.has_double() && !viscous()) return v;
     Net bv = v - targets_.serial_control_values(layers_.apply(x, v, load));
-    rigid_.complete(v, bv);
+    bodies_.rigid.complete(v, bv);
     return bv;
   };
   if (!schur()) return solve_blocks(load_of, without_wall, f, b, c, rhs);
@@ -50,23 +51,24 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     project(v);
     const Net load = load_of(v);
     Net bv = without_wall(v, load);
-    if (tube_ || solids()) bv -= velocity_by_walls(x, load, v);
+    if (duct_.tube || solids()) bv -= velocity_by_walls(x, load, v);
     project(bv);
     Eigen::Map<Net>(out, n, 3) = bv;
   };
   const Eigen::VectorXd right = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
-  Eigen::VectorXd v = guess.size() > 0 && rigid_.empty() ? Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size())) : right;
-  if (!alone_) alone_.emplace(particles(), rigid_, rest_, parameters_.quadrature);
+  Eigen::VectorXd v = right;
+  if (guess.size() > 0 && bodies_.rigid.empty()) v = Eigen::Map<const Eigen::VectorXd>(guess.data(), guess.size());
+  if (!bodies_.isolated) bodies_.isolated.emplace(particles(), bodies_.rigid, rest_, parameters_.quadrature);
   const auto rows_of = [&](std::span<const int> sites) { return layers_.double_rows(sites); };
-  const FilmInverses films(particles(), *alone_, rigid_, x, rows_of);
+  const FilmInverses films(particles(), *bodies_.isolated, bodies_.rigid, x, rows_of);
   const auto precondition = [&](const double* in, double* out) {
     Net y = Eigen::Map<const Net>(in, n, 3);
-    alone_->take_to_sites(y);
+    bodies_.isolated->take_to_sites(y);
     films.add(y);
-    alone_->solve(rigid_, y);
+    bodies_.isolated->solve(bodies_.rigid, y);
     Eigen::Map<Net>(out, n, 3) = y;
   };
-  const LinearSystem system{velocity_blocks(particles()), apply, alone_->empty() ? Apply() : precondition};
+  const LinearSystem system{velocity_blocks(particles()), apply, bodies_.isolated->empty() ? Apply() : precondition};
   note(velocity_solver_.solve(system, right, v, parameters_.solvers.tolerance), v);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
@@ -81,7 +83,7 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std:
   std::vector<spline::Block> constrained;
   for (const Particle& one : particles())
     if (b.size() > 0 && !one.rigid) constrained.push_back(one.block);
-  const BlockSystem system{*tube_, load, unbounded, control_values, b, c, constrained, tube_->wall().radius() / parameters_.viscosity};
+  const BlockSystem system{*duct_.tube, load, unbounded, control_values, b, c, constrained, duct_.tube->wall().radius() / parameters_.viscosity};
   const Eigen::VectorXd right = system.right_hand_side(rhs, f);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
   x.head(rhs.size()) = right.head(rhs.size());
@@ -112,9 +114,9 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
     layers_.place_double(x);
     Net u = layers_.apply(x, v, other);
     if (caused.size() > 0) u += caused;
-    if (tube_) u += tube_->respond(load, v).velocity;
+    if (duct_.tube) u += duct_.tube->respond(load, v).velocity;
     if (solids()) add_solids(x, load, v, false, u);
-    if (tractions_->alone()) return u;
+    if (bodies_.tractions->alone()) return u;
     Net all = v - targets_.serial_control_values(u);
     if (b.size() > 0) volumes_.constrain(all, b, c);
     for (const Particle& one : particles())
@@ -126,25 +128,25 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   std::vector<Vec3> centres;
   std::vector<Rigid> driven;
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (rigid_.holds(p)) centres.push_back(rigid_.centre(p)), driven.push_back(rigid_.given(p));
-  const bool responds = layers_.repeats() || tube_ || solids() || layers_.has_double() || viscous();
-  tractions_->solve(x, centres, driven, flow_, RigidTractions::Surroundings{flow, responds, product, load});
-  Net v = parts(tractions_->unknowns()).first;
-  auto body = tractions_->bodies().begin();
+    if (bodies_.rigid.holds(p)) centres.push_back(bodies_.rigid.centre(p)), driven.push_back(bodies_.rigid.given(p));
+  const bool responds = layers_.repeats() || duct_.tube || solids() || layers_.has_double() || viscous();
+  bodies_.tractions->solve(x, centres, driven, around_.flow, RigidTractions::Surroundings{flow, responds, product, load});
+  Net v = parts(bodies_.tractions->unknowns()).first;
+  auto body = bodies_.tractions->bodies().begin();
   for (std::size_t p = 0; p < particles().size(); ++p)
-    if (rigid_.holds(p)) rigid_.move(p, body->motion, body->force, body->torque, v), ++body;
-  e.load_ = load(tractions_->unknowns());
-  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
-  if (tube_) e.response_ = tube_->respond(e.load_, v, tractions_->lacking_pressure());
+    if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
+  e.load_ = load(bodies_.tractions->unknowns());
+  for (const SolveReport& report : bodies_.tractions->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
+  if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->lacking_pressure());
   return v;
 }
 
 /// Returns the first moment int df r dG of the load df on particle p, a rigid body whose unknown is its traction. `at`: evaluation of the shape.
 Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   at.rigid();
-  const Mat3 moment = tractions_->moment(static_cast<std::size_t>(std::ranges::count_if(
+  const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
-  for (const SolveReport& report : tractions_->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(at.x().data(), at.x().size()));
+  for (const SolveReport& report : bodies_.tractions->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(at.x().data(), at.x().size()));
   return -moment;
 }
 

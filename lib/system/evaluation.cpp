@@ -47,7 +47,7 @@ const std::vector<Net>& Evaluation::load_sums() {
 
 const Net& Evaluation::load() {
   if (load_.size() == 0) {
-    if (!system_->rigid_.empty() || system_->viscous()) solve();  // because the load depends on the solution of the velocity system
+    if (!system_->bodies_.rigid.empty() || system_->viscous()) solve();  // because the load depends on the solution of the velocity system
     else load_ = system_->membrane_load(*this, x_, nullptr);
   }
   return load_;
@@ -56,7 +56,7 @@ const Net& Evaluation::load() {
 const RigidParticles& Evaluation::rigid() {
   if (!solved_ && near_) return near_->rigid();
   solve();
-  return rigid_ ? *rigid_ : system_->rigid_;
+  return rigid_ ? *rigid_ : system_->bodies_.rigid;
 }
 
 /// Computes the load and the unknowns from the velocity if it is known; otherwise solves for them.
@@ -73,7 +73,7 @@ const Tube::Response& Evaluation::response() {
   Net inside = x_;
   if (system_->cell()) system_->put_into_cell(inside);
   system_->place(inside);
-  if (!response_) response_ = system_->tube_->respond(load_, unknowns_);
+  if (!response_) response_ = system_->duct_.tube->respond(load_, unknowns_);
   return *response_;
 }
 
@@ -92,7 +92,7 @@ Evaluation::SolidFlow Evaluation::solid_flow() {
 
 Tube::Checks Evaluation::checks() {
   const Tube::Response& known = response();
-  return system_->tube_->checks(load_, unknowns_, known);
+  return system_->duct_.tube->checks(load_, unknowns_, known);
 }
 
 const Net& Evaluation::viscous_work() {

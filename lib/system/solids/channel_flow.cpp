@@ -73,10 +73,10 @@ const ChannelFlow::Solved& ChannelFlow::solved() const {
   if (solved_) return *solved_;
   const std::shared_ptr<Wall> wall = this->wall();
   Solved solved;
-  const std::vector<int>& own = wall->own_targets();
-  Net of_ends(wall->targets().rows(), 3);
-  of_ends(own, Eigen::all) = ends(wall->targets()(own, Eigen::all));
-  const Net without = viscosity() * wall->solve(wall->collocated(of_ends)), &with = wall->pumped();
+  const std::vector<int>& own = wall->points().own_targets();
+  Net of_ends(wall->points().targets().rows(), 3);
+  of_ends(own, Eigen::all) = ends(wall->points().targets()(own, Eigen::all));
+  const Net without = viscosity() * wall->solve(wall->points().collocated(of_ends)), &with = wall->pumped();
   const double middle = (channel_->start() + channel_->end()) / 2;
   const stokes::DuctEnd::Points points = section(middle, 1).points();
   const Vec3 along = channel_->section(middle).along;
@@ -118,7 +118,7 @@ Net ChannelFlow::velocities(const Net& x, const Net& traction, double pressure_d
     if (driving != 0) rest += driving * ends(at);
     v(own, Eigen::all) = rest - v(own, Eigen::all) / viscosity();
   };
-  if (x.rows() >= few) return wall->ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
+  if (x.rows() >= few) return wall->points().ranks().divided<Net>(static_cast<int>(x.rows()), 3, evaluate);
   Net v(x.rows(), 3);
   evaluate(indices(x.rows()), v);
   return v;

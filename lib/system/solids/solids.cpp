@@ -26,13 +26,9 @@ surface::SolidSurface all_of(const std::vector<Solids::Solid>& solids) {
 
 }  // namespace
 
-Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
-               const quadrature::Options& quadrature, Phases& phases)
+Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases)
     : surface_(all_of(solids)),
-      cell_(cell),
-      free_(free),
-      viscosity_(viscosity),
-      quadrature_(quadrature),
+      parameters_(parameters),
       sites_(surface_.n_points(), 3),
       velocities_(surface_.n_points(), 3),
       first_{0},
@@ -51,15 +47,15 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
   }
   areas_ = moments([](const Vec3&) { return 1.; });
   flux_ = surface_.open_from_periodic.transpose() * surface::Geometry(surface_.space).volume_gradient(surface_.net);
-  across_ = cell_.range(surface_.net);
-  if (solids.size() == 1 && cell_.n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
-    const double period = cell_.vectors().col(0).norm();
+  across_ = cell().range(surface_.net);
+  if (solids.size() == 1 && cell().n() == 2) {  // widens the range of coordinates across a single plate, which has no thickness
+    const double period = cell().vectors().col(0).norm();
     across_[0][2] -= period, across_[1][2] += period;
   }
   reached_ = across_;
   make_layer();
-  stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, for_assembly(quadrature));
-  on_itself.repeat(cell_, {.assembled = true, .across = across_});
+  stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, for_assembly(parameters.quadrature));
+  on_itself.repeat(cell(), {.assembled = true, .across = across_});
   on_itself.place(surface_.net);
   const bool only_plates = std::ranges::all_of(solids, [&](const Solid& one) {
     return one.surface.grid[0] > 0 && one.surface.grid == solids.front().surface.grid;
@@ -72,7 +68,7 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
     for (std::size_t s = 0; s < middle.size(); ++s) {
       const Vec3 n = normals_.row(middle[s]).transpose();
       const auto at = 3 * static_cast<Eigen::Index>(s);
-      regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell_.volume())) * n * n.transpose();
+      regular.block<3, 3>(at, at) = std::sqrt(std::abs(cell().volume())) * n * n.transpose();
     }
     plates_.emplace(rows(on_itself, middle), solids.front().surface.grid, std::array{n1 / 2, n2 / 2}, regular);
   }
@@ -82,16 +78,16 @@ Solids::Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cel
 
 void Solids::make_layer() {
   if (layer_) evaluations_ += layer_->evaluations();
-  layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), quadrature_);
-  layer_->repeat(cell_, {.across = reached_});
+  layer_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, stokes::Sites(), parameters_.quadrature);
+  layer_->repeat(cell(), {.across = reached_});
   layer_->place(surface_.net);
 }
 
 /// Includes x in the range of coordinates for which the layer is set up. The range depends only on the current x, so that a resumed run computes the
 /// same velocities. It grows in steps, so that a moving particle seldom needs a new layer.
 void Solids::reach(const Net& x) {
-  if (cell_.n() == 3) return;
-  const auto [low, high] = cell_.range(x);
+  if (cell().n() == 3) return;
+  const auto [low, high] = cell().range(x);
   const double step = (across_[1][2] - across_[0][2]) / 4;
   const auto rounded = [&](double length) { return step * std::ceil(std::max(0., length) / step); };
   std::array<Vec3, 2> range = across_;
@@ -102,10 +98,10 @@ void Solids::reach(const Net& x) {
 }
 
 bool Solids::outside(const Net& at) const {
-  const std::vector<Vec3> images = rods_.empty() ? std::vector<Vec3>() : cell_.around({1, 1, 1});
+  const std::vector<Vec3> images = rods_.empty() ? std::vector<Vec3>() : cell().around({1, 1, 1});
   for (const Rod& rod : rods_)
     for (Eigen::Index i = 0; i < at.rows(); ++i) {
-      const Vec3 apart = at.row(i).transpose() - rod.point, near = apart - cell_.shift(apart);
+      const Vec3 apart = at.row(i).transpose() - rod.point, near = apart - cell().shift(apart);
       for (const Vec3& image : images)
         if ((near - image).cross(rod.axis).norm() <= rod.radius) return false;
     }
@@ -129,7 +125,7 @@ Eigen::MatrixXd Solids::rows(stokes::Layer& on_itself, std::span<const int> site
 /// plates, factors only the block for densities that are uniform on each plate.
 void Solids::factor(stokes::Layer& on_itself) {
   constexpr std::size_t at_a_time = 240;
-  const auto m = static_cast<Eigen::Index>(free_.size()), solids = static_cast<Eigen::Index>(first_.size()) - 1;
+  const auto m = static_cast<Eigen::Index>(parameters_.free.size()), solids = static_cast<Eigen::Index>(first_.size()) - 1;
   const Eigen::Index n = plates_ ? 3 * solids : sites_.size();
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n + m, n + m);
   if (plates_) {
@@ -151,20 +147,20 @@ void Solids::factor(stokes::Layer& on_itself) {
   }
   for (Eigen::Index k = 0; k < m; ++k)
     for (Eigen::Index i = 0; i < n / 3; ++i) {
-      all.col(n + k).segment<3>(3 * i) = free_[static_cast<std::size_t>(k)];
-      all.row(n + k).segment<3>(3 * i) = (plates_ ? cell_.volume() : areas_[i]) * free_[static_cast<std::size_t>(k)].transpose();
+      all.col(n + k).segment<3>(3 * i) = parameters_.free[static_cast<std::size_t>(k)];
+      all.row(n + k).segment<3>(3 * i) = (plates_ ? cell().volume() : areas_[i]) * parameters_.free[static_cast<std::size_t>(k)].transpose();
     }
   factors_ = DenseFactors(all);
 }
 
 Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
-  const auto m = static_cast<Eigen::Index>(free_.size());
+  const auto m = static_cast<Eigen::Index>(parameters_.free.size());
   Net given = u, f;
   if (plates_) f = plates_->solve(u, given);
   const Eigen::Index n = given.size();
   Eigen::VectorXd right(n + m);
   right.head(n) = Eigen::Map<const Eigen::VectorXd>(given.data(), n);
-  for (Eigen::Index k = 0; k < m; ++k) right[n + k] = free_[static_cast<std::size_t>(k)].dot(force) / viscosity_;
+  for (Eigen::Index k = 0; k < m; ++k) right[n + k] = parameters_.free[static_cast<std::size_t>(k)].dot(force) / viscosity();
   const Eigen::VectorXd solution = factors_.solve(right);
   const Eigen::Map<const Net> found(solution.data(), n / 3, 3);
   if (plates_)
@@ -172,14 +168,14 @@ Solids::Flow Solids::solve(const Net& u, const Vec3& force) const {
       f.middleRows(first_[s], first_[s + 1] - first_[s]).rowwise() += found.row(static_cast<Eigen::Index>(s));
   else
     f = found;
-  Flow flow{viscosity_ * f};
-  for (Eigen::Index k = 0; k < m; ++k) flow.drift += solution[n + k] * free_[static_cast<std::size_t>(k)];
+  Flow flow{viscosity() * f};
+  for (Eigen::Index k = 0; k < m; ++k) flow.drift += solution[n + k] * parameters_.free[static_cast<std::size_t>(k)];
   return flow;
 }
 
 void Solids::velocity_at(const Net& at, std::span<const int> rows, const Flow& flow, Net& u, const stokes::Layer::Near* kept) {
   layer_->apply(on_space(flow.force), at, rows, u, kept);
-  for (const int i : rows) u.row(i) = u.row(i) / viscosity_ + flow.drift.transpose();
+  for (const int i : rows) u.row(i) = u.row(i) / viscosity() + flow.drift.transpose();
 }
 
 Eigen::VectorXd Solids::moments(const std::function<double(const Vec3& x)>& function) const {

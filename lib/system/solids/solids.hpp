@@ -47,9 +47,15 @@ class Solids {
     std::optional<Rod> rod;  ///< set if the solid is a cylinder
   };
 
-  /// `free`: unit vectors along which the uniform velocity U of (2.46) is an unknown. The arguments need not outlive this object.
-  Solids(const std::vector<Solid>& solids, const stokes::PeriodicCell& cell, const std::vector<Vec3>& free, double viscosity,
-         const quadrature::Options& quadrature, Phases& phases);
+  struct Parameters {
+    stokes::PeriodicCell cell;  ///< lattice on which the solids repeat
+    std::vector<Vec3> free;     ///< unit vectors e along which the uniform velocity U of (2.46) is an unknown
+    double viscosity;           ///< viscosity mu of the fluid
+    quadrature::Options quadrature;
+  };
+
+  /// `solids` need not outlive this object.
+  Solids(const std::vector<Solid>& solids, const Parameters& parameters, Phases& phases);
 
   /// Force density and uniform velocity of (2.46).
   struct Flow {
@@ -84,9 +90,8 @@ class Solids {
   const Net& sites() const { return sites_; }            ///< collocation points
   const std::vector<int>& own() const { return own_; }   ///< rank-owned collocation points
   const Net& velocities() const { return velocities_; }  ///< prescribed velocity at the collocation points
-  const stokes::PeriodicCell& cell() const { return cell_; }
-  const std::vector<Vec3>& free() const { return free_; }
-  double viscosity() const { return viscosity_; }
+  const stokes::PeriodicCell& cell() const { return parameters_.cell; }
+  double viscosity() const { return parameters_.viscosity; }
   const Ranks& ranks() const { return ranks_; }
   stokes::Layer& layer() { return *layer_; }
   Net on_space(const Net& f) const { return surface_.open_from_periodic * f; }  ///< control values of f on the layer's space, which is not periodic
@@ -100,12 +105,9 @@ class Solids {
   void make_layer();
 
   surface::SolidSurface surface_;
-  stokes::PeriodicCell cell_;
-  std::vector<Vec3> free_;
-  double viscosity_;
+  Parameters parameters_;
   Ranks ranks_;
   std::vector<int> own_;
-  quadrature::Options quadrature_;
   std::array<Vec3, 2> across_;            // lowest and highest coordinates of the solids, in the axes of the cell
   std::array<Vec3, 2> reached_;           // lowest and highest coordinates of targets of `layer_`, in the axes of the cell
   std::unique_ptr<stokes::Layer> layer_;  // at points off the solids

@@ -78,19 +78,20 @@ double Tube::lacking_pressure(const BetweenSites& between, const Net& at_places,
 }
 
 Net Tube::load_on_wall(const Net& f) {
-  if (cell()) return wall_->collocated(particle_->cause(f, {}, *wall_).at_wall);
-  Net u(wall_->targets().rows(), 3);
-  particle_->single.apply(f, wall_->targets(), wall_->own_targets(), u);
-  return wall_->collocated(u) / -viscosity();
+  if (cell()) return wall_->points().collocated(particle_->cause(f, {}, *wall_).at_wall);
+  Net u(wall_->points().targets().rows(), 3);
+  particle_->single.apply(f, wall_->points().targets(), wall_->points().own_targets(), u);
+  return wall_->points().collocated(u) / -viscosity();
 }
 
 Net Tube::velocity_on_wall(const Net& v) {
-  if (!particle_->dual) return Net::Zero(wall_->sites().rows(), 3);
-  if (cell()) return wall_->collocated(particle_->cause({}, v, *wall_).at_wall);
-  const Net strength = particle_->strength(v), &targets = wall_->targets();
+  if (!particle_->dual) return Net::Zero(wall_->points().sites().rows(), 3);
+  if (cell()) return wall_->points().collocated(particle_->cause({}, v, *wall_).at_wall);
+  const Net strength = particle_->strength(v), &targets = wall_->points().targets();
   Net u(targets.rows(), 3);
-  particle_->dual->apply(strength, particle_->nearest_values(strength), targets, wall_->own_targets(), u, particle_->kept(particle_->dual_on_wall));
-  return wall_->collocated(u);
+  const std::vector<int>& own = wall_->points().own_targets();
+  particle_->dual->apply(strength, particle_->nearest_values(strength), targets, own, u, particle_->kept(particle_->dual_on_wall));
+  return wall_->points().collocated(u);
 }
 
 Net Tube::wall_on_particle(const Net& traction) {
@@ -127,12 +128,12 @@ Tube::Response Tube::respond(const Net& f, const Net& v, double lacking) {
   if (moves && !fixed()) response.pressure_drop += dot(particle_->pressure_of_velocity, v);
   if (cell()) {
     Particle::Cause cause = particle_->cause(f, v, *wall_);
-    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? velocity_on_wall(v) : wall_->collocated(cause.at_wall));
-    response.wall_traction = solve_wall(wall_->collocated(cause.at_wall));
+    if (by_flow) response.pressure_drop += pressure_of_velocity(v, f.size() > 0 ? velocity_on_wall(v) : wall_->points().collocated(cause.at_wall));
+    response.wall_traction = solve_wall(wall_->points().collocated(cause.at_wall));
     response.velocity = on_particle(std::move(cause.at_sites));
     response.load = f, response.moves = v;
   } else {
-    Net on_wall = Net::Zero(wall_->sites().rows(), 3);
+    Net on_wall = Net::Zero(wall_->points().sites().rows(), 3);
     if (moves) on_wall += velocity_on_wall(v);
     if (by_flow) response.pressure_drop += pressure_of_velocity(v, on_wall);
     if (f.size() > 0) on_wall += load_on_wall(f);
@@ -197,7 +198,7 @@ Net Tube::frozen_response(const Net& f, const Net& v) {
     to += factor * part;
   };
   const bool loads = f.size() > 0, moves = v.size() > 0 && particle_->dual;
-  const Net on_wall = wall_->ranks().filled(wall_->sites().rows(), [&](Net& u) {
+  const Net on_wall = wall_->points().ranks().filled(wall_->points().sites().rows(), [&](Net& u) {
     if (loads) add(-1 / viscosity(), frozen.single, f, u);
     if (moves) add(1, frozen.dual, particle_->strength(v), u);
   });

@@ -100,7 +100,7 @@ Tube::Leak Tube::leak(const Net& f) {
   stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
   if (cell()) layer.repeat(*cell());
   layer.place(wall.net);
-  const Net u = wall_->ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
+  const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
     Net of_wall(at.rows(), 3), of_load = of_wall;
     layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
     particle_->single.see_images_only(everything);

@@ -61,20 +61,20 @@ void Tube::Particle::place(const Net& x, double origin, const stokes::DuctFlow& 
   if (!period) inlet = wall.inlet().integral(sites) / parameters.viscosity;
   single.place(shape, measure);
   if (period) {
-    const auto n = static_cast<int>(wall.targets().rows());
+    const auto n = static_cast<int>(wall.points().targets().rows());
     period->targets.resize(n + sites.rows(), 3);
-    period->targets << wall.targets(), sites;
-    period->own = wall.own_targets();
+    period->targets << wall.points().targets(), sites;
+    period->own = wall.points().own_targets();
     for (const int i : own) period->own.push_back(n + i);
   }
   if (dual) {
     dual->place(shape);
-    nearest = nearest_sites(sites, wall.targets(), indices(wall.targets().rows()), period ? &period->cell : nullptr);
+    nearest = nearest_sites(sites, wall.points().targets(), indices(wall.points().targets().rows()), period ? &period->cell : nullptr);
     if (period) {
-      dual->see_images_only(static_cast<int>(wall.targets().rows()));
+      dual->see_images_only(static_cast<int>(wall.points().targets().rows()));
       dual_on_wall = dual->near(period->targets, period->own);
     } else {
-      dual_on_wall = dual->near(wall.targets(), wall.own_targets());
+      dual_on_wall = dual->near(wall.points().targets(), wall.points().own_targets());
     }
     wall_on_sites = wall.layer().near(sites, own);
   }
@@ -94,7 +94,7 @@ void Tube::Particle::add_images(const Net& f, const Net& v, const Net& at, std::
 }
 
 Tube::Particle::Cause Tube::Particle::cause(const Net& f, const Net& v, const Wall& wall) {
-  const auto n = wall.targets().rows();
+  const auto n = wall.points().targets().rows();
   const auto& [cell, across, both, own_of_both] = *period;
   Net u = Net::Zero(both.rows(), 3), part(both.rows(), 3);
   if (f.size() > 0) {
@@ -172,20 +172,21 @@ void Tube::Particle::freeze(Wall& wall, const Net& pressure_of_wall) {
   using Targets = std::span<const int>;
   const auto on_wall = [&](Layer& layer) {
     return [&](Targets targets, stokes::Rows<float>& rows) {
-      wall.collocate<float>(targets, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(wall.targets(), at, some); }, rows);
+      const WallPoints& points = wall.points();
+      points.collocate<float>(targets, [&](Targets at, stokes::Rows<float>& some) { layer.assemble(points.targets(), at, some); }, rows);
     };
   };
-  frozen.single.assemble(wall.own(), space.n_points, on_wall(single));
+  frozen.single.assemble(wall.points().own(), space.n_points, on_wall(single));
   const Net weights = ranks.assembled<Net>(space.n_points, 3, [&](Net& sums) {
     if (!dual) return;
-    frozen.dual.assemble(wall.own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
+    frozen.dual.assemble(wall.points().own(), space.n_points, [&](Targets targets, stokes::Rows<float>& rows) {
       on_wall(*dual)(targets, rows);
       Eigen::Map<Eigen::RowVectorXd> sum(sums.data(), sums.size());
       for (std::size_t k = 0; k < targets.size() && pressure_of_wall.size() > 0; ++k)
         for (int c = 0; c < 3; ++c) sum += pressure_of_wall(targets[k], c) * rows.row(static_cast<Eigen::Index>(3 * k) + c).cast<double>();
     });
   });
-  frozen.wall.assemble(own, static_cast<int>(wall.sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
+  frozen.wall.assemble(own, static_cast<int>(wall.points().sites().rows()), [&](Targets targets, stokes::Rows<float>& rows) {
     wall.layer().assemble(sites, targets, rows);
     wall.from_space(rows);
   });

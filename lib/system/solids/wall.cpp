@@ -77,21 +77,10 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-constexpr double mean_of_wave = 0.516;  // m of (2.39): mean of the velocity error on the wall divided by the error at the midpoints of elements, if
-                                        // the harmonics of the error decrease with the wave number k like k^-5 (k^-4 from spline interpolation, k^-1
-                                        // from the single layer)
-
 /// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
 quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
   return options;
-}
-
-Net collocation_points(const surface::TubeWall& wall) {
-  Net at(static_cast<Eigen::Index>(wall.sites.size()), 3);
-  for (Eigen::Index i = 0; i < at.rows(); ++i)
-    at.row(i) = surface::value(wall.space, wall.net, wall.sites[static_cast<std::size_t>(i)].front()).transpose();
-  return at;
 }
 
 /// Returns the lattice of a periodic wall. The reference distance l of (2.43) is well outside the duct: if it were close to the duct's radius,
@@ -108,22 +97,16 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
            const surface::Symmetry& symmetry, const WallSolver& solver)
     : surface_(wall),
       symmetry_(symmetry.order() > 1 ? symmetry : surface::Symmetry(static_cast<int>(wall.sites.size()))),
+      points_(surface_, symmetry_, phases),
       cell_(lattice(wall)),
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
-      sites_(collocation_points(wall)),
       tolerance_(solver.tolerance) {
   const auto n = static_cast<int>(wall.sites.size());
   if (!cell_) inlet_.emplace(wall.outline, wall.start, sharper(quadrature).tolerance);
-  own_ = ranks_.divide_in_order(symmetry_);
-  if (phases) ranks_.measure(*phases);
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
   layer_.place(wall.net);
-  targets_ = sites_, own_targets_ = own_;
   if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
-  if (has_middles()) add_middles();
-  stokes::Sites sites = wall.sites;
-  for (int e = 0; e < targets_.rows() - n; ++e) sites.push_back({wall.middles[static_cast<std::size_t>(e)]});
-  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, sites, sharper(quadrature));
+  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall), sharper(quadrature));
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
   if (cell_) find_pressure();
@@ -133,41 +116,15 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   } else {
     factors_ = DenseFactors(assembled());
   }
-  inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : collocated(inlet_->integral(targets_));
+  inlet_column_ = cell_ ? Net(Net::Zero(n, 3)) : points_.collocated(inlet_->integral(points_.targets()));
   pumped_ = cell_ ? inlet_column_ : solve(inlet_column_);
-}
-
-/// Appends the midpoints of the wall's elements to the targets (2.39).
-void Wall::add_middles() {
-  const auto n = static_cast<int>(surface_.middles.size()), first = static_cast<int>(sites_.rows());
-  targets_.conservativeResize(first + n, 3);
-  for (int e = 0; e < n; ++e)
-    targets_.row(first + e) = surface::value(surface_.space, surface_.net, surface_.middles[static_cast<std::size_t>(e)]).transpose();
-  std::vector<bool> needed(static_cast<std::size_t>(n));
-  for (const int i : own_)
-    for (const int e : middles_around(i)) needed[static_cast<std::size_t>(e)] = true;
-  for (int e = 0; e < n; ++e)
-    if (needed[static_cast<std::size_t>(e)]) own_targets_.push_back(first + e);
-}
-
-/// Returns the weight of each adjacent element midpoint in the mean velocity (2.39) around a collocation point. Between collocation points the
-/// residual velocity is nearly a wave, whose mean is `mean_of_wave` times its value at the midpoints.
-double Wall::share_of_middle(int point) const { return mean_of_wave / static_cast<double>(middles_around(point).size()); }
-
-/// Returns the indices (in `middles`) of the midpoints of the elements that touch a collocation point. In a periodic wall, elements are the elements
-/// of the traction density, not of the geometry.
-std::vector<int> Wall::middles_around(int point) const {
-  std::vector<int> all;
-  for (const spline::Site& site : surface_.sites[static_cast<std::size_t>(point)])
-    all.push_back(surface_.middle_of[static_cast<std::size_t>(site.element)]);
-  return all;
 }
 
 /// Computes pressure_ and flux_. The product of these two fields is added to A to make it regular, because a uniform pressure produces no velocity.
 /// The product is scaled so that it maps a uniform pressure to about the velocity that A produces for a tangential traction of equal size.
 void Wall::find_pressure() {
   flux_ = from_space(weights([](const surface::Point& at) -> Vec3 { return at.n; }));
-  pressure_.resize(sites_.rows(), 3);
+  pressure_.resize(n_sites(), 3);
   for (Eigen::Index i = 0; i < pressure_.rows(); ++i)
     pressure_.row(i) = surface::point(surface_.space, surface_.net, surface_.sites[static_cast<std::size_t>(i)].front()).n.transpose();
   pressure_ *= surface_.radius() / dot(flux_, pressure_);
@@ -189,17 +146,17 @@ Eigen::MatrixXd Wall::assembled() {
     on_itself_->assemble(targets, rows);
     if (!cell_) return;
     on_itself_->assemble_rest(targets, rows);
-    const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * sites_.rows()));
+    const stokes::Rows<double> on_space = std::exchange(rows, stokes::Rows<double>(rows.rows(), 3 * n_sites()));
     for (Eigen::Index r = 0; r < rows.rows(); ++r)
-      Eigen::Map<Net>(rows.row(r).data(), sites_.rows(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
+      Eigen::Map<Net>(rows.row(r).data(), n_sites(), 3) = from_space(Eigen::Map<const Net>(on_space.row(r).data(), surface_.space.n_points, 3));
   };
   const int m = surface_.n_around;
-  const std::vector<Congruence> maps = congruences(surface_, sites_);
+  const std::vector<Congruence> maps = congruences(surface_, points_.sites());
   const std::vector<Original> original = originals(maps, m);
   const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
-  std::vector<int> own = own_;  // rank-owned sites, sorted by Original::point (see congruence.hpp), so that sites with equal originals are adjacent
+  std::vector<int> own = points_.own();  // rank-owned sites, sorted by Original::point (congruence.hpp), so that sites with equal originals are adjacent
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
-  Eigen::MatrixXd complete = ranks_.assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
+  Eigen::MatrixXd complete = points_.ranks().assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     for (std::size_t first = 0, last = 0; first < own.size(); first = last) {
       std::vector<int> some, row;  // some: sites whose rows are assembled. row: for each site of `own`, index in `some` of the congruent site
       for (; last < own.size() && some.size() < at_a_time; ++last) {
@@ -208,7 +165,7 @@ Eigen::MatrixXd Wall::assembled() {
         row.push_back(static_cast<int>(some.size()) - 1);
       }
       stokes::Rows<double> part;
-      collocate<double>(some, rows_of, part);
+      points_.collocate<double>(some, rows_of, part);
       for (std::size_t k = 0; k < row.size(); ++k) {
         const int site = own[first + k];
         const Congruence& map = *original_of(site).from;
@@ -231,51 +188,19 @@ Eigen::MatrixXd Wall::assembled() {
 
 void Wall::from_space(stokes::Rows<float>& rows) const {
   if (!cell_) return;
-  const stokes::Rows<float> on_space = std::exchange(rows, stokes::Rows<float>(rows.rows(), 3 * sites_.rows()));
+  const stokes::Rows<float> on_space = std::exchange(rows, stokes::Rows<float>(rows.rows(), 3 * n_sites()));
   for (Eigen::Index r = 0; r < rows.rows(); ++r) {
     const Net of_row = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(on_space.row(r).data(), surface_.space.n_points, 3)
                            .cast<double>();
-    Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(rows.row(r).data(), sites_.rows(), 3) = from_space(of_row).cast<float>();
+    Eigen::Map<Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(rows.row(r).data(), n_sites(), 3) = from_space(of_row).cast<float>();
   }
 }
 
-template <class Real>
-void Wall::collocate(std::span<const int> sites, const std::function<void(std::span<const int>, stokes::Rows<Real>&)>& assemble,
-                     stokes::Rows<Real>& rows) const {
-  if (!has_middles()) return assemble(sites, rows);
-  std::vector<int> targets(sites.begin(), sites.end()), row(surface_.middles.size(), -1);  // entry e: index of midpoint e among the targets, or -1 if
-                                                                                           // it is not a target
-  for (const int i : sites)
-    for (const int e : middles_around(i))
-      if (int& own = row[static_cast<std::size_t>(e)]; own < 0) {
-        own = static_cast<int>(targets.size());
-        targets.push_back(static_cast<int>(sites_.rows()) + e);
-      }
-  stokes::Rows<Real> all;
-  assemble(targets, all);
-  rows = static_cast<Real>(1 - mean_of_wave) * all.topRows(3 * static_cast<Eigen::Index>(sites.size()));
-  for (std::size_t k = 0; k < sites.size(); ++k)
-    for (const int e : middles_around(sites[k]))
-      rows.template middleRows<3>(3 * static_cast<Eigen::Index>(k)) +=
-          static_cast<Real>(share_of_middle(sites[k])) * all.template middleRows<3>(3 * row[static_cast<std::size_t>(e)]);
-}
-template void Wall::collocate(std::span<const int>, const std::function<void(std::span<const int>, stokes::Rows<float>&)>&,
-                              stokes::Rows<float>&) const;
-
-Net Wall::collocated(const Net& u) const {
-  return ranks_.filled(sites_.rows(), [&](Net& all) {
-    for (const int i : own_) {
-      all.row(i) = (has_middles() ? 1 - mean_of_wave : 1) * u.row(i);
-      if (!has_middles()) continue;
-      for (const int e : middles_around(i)) all.row(i) += share_of_middle(i) * u.row(sites_.rows() + e);
-    }
-  });
-}
-
 Net Wall::apply(const Net& f) const {
-  Net u(targets_.rows(), 3);
-  on_itself_->apply(on_space(f), own_targets_, u);
-  return cell_ ? Net(collocated(u) + dot(flux_, f) * pressure_) : collocated(u);
+  Net u(points_.targets().rows(), 3);
+  on_itself_->apply(on_space(f), points_.own_targets(), u);
+  const Net rows = points_.collocated(u);
+  return cell_ ? Net(rows + dot(flux_, f) * pressure_) : rows;
 }
 
 Net Wall::solve(const Net& rhs) const {
@@ -329,7 +254,7 @@ Eigen::VectorXd Wall::fundamental(const Net& net) const {
 
 /// Returns the net whose components at fundamental points are `numbers` (inverse of `fundamental`). Rows of image points are zero.
 Net Wall::fundamental_net(const Eigen::VectorXd& numbers) const {
-  Net net = Net::Zero(sites_.rows(), 3);
+  Net net = Net::Zero(n_sites(), 3);
   Eigen::Index n = 0;
   for (const int a : symmetry_.fundamental())
     for (int c = 0; c < 3; ++c)

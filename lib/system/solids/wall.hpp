@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,7 @@
 #include "surface/geometry.hpp"
 #include "surface/symmetry.hpp"
 #include "surface/tube_wall.hpp"
-#include "system/ranks.hpp"
+#include "system/solids/wall_points.hpp"
 #include "system/solvers/krylov.hpp"
 
 namespace tanktread::coupling {
@@ -60,11 +59,6 @@ struct WallSolver {
 /// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
 /// recycled from earlier solves (2.24).
 ///
-/// If the velocity vanishes at the collocation points of a wall, the residual velocity between these points has the same sign everywhere, so that
-/// fluid leaks through the wall. In a channel this leak would be a part of the flow rate, and for a train of particles it would grow with the
-/// pressure from one particle to the next. On the wall of a channel the mean velocity around each collocation point is therefore set to zero instead
-/// of the velocity at the point (2.39).
-///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
 class Wall {
@@ -78,26 +72,7 @@ class Wall {
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
-  const std::vector<int>& own() const { return own_; }  ///< rank-owned rows, all of fundamental points
-  const Net& sites() const { return sites_; }           ///< collocation points
-
-  /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the midpoints of elements
-  /// (2.39).
-  const Net& targets() const { return targets_; }
-  const std::vector<int>& own_targets() const { return own_targets_; }  ///< targets that rank-owned rows need
-
-  /// Returns the right-hand side for `solve`, one row per collocation point, from the velocity u at the targets. Reads only the rows of u of targets
-  /// that are in own_targets() on some rank. Collective.
-  Net collocated(const Net& u) const;
-
-  /// Assembles an operator for the linear system of the wall, three rows for each of the collocation points `sites`. `assemble` computes the rows of
-  /// the operator at given targets. In a channel, the rows at a collocation point are the weighted mean (2.39) of the rows at this point and at the
-  /// adjacent midpoints of elements. collocated() forms the same mean of velocities.
-  template <class Real>
-  void collocate(std::span<const int> sites, const std::function<void(std::span<const int> targets, stokes::Rows<Real>& rows)>& assemble,
-                 stokes::Rows<Real>& rows) const;
-
-  const Ranks& ranks() const { return ranks_; }         ///< division of the fundamental rows among the ranks; other rows are their images
+  const WallPoints& points() const { return points_; }  ///< collocation points, and the points at which the velocity is evaluated
   stokes::Layer& layer() { return layer_; }             ///< single layer at points off the wall, for control values on the layer's space
   const stokes::Cap& inlet() const { return *inlet_; }  ///< inlet of an open wall; not available for a periodic wall
 
@@ -113,8 +88,8 @@ class Wall {
   Net from_space(const Net& weights) const { return cell_ ? Net(surface_.open_from_periodic.transpose() * weights) : weights; }
   void from_space(stokes::Rows<float>& rows) const;  ///< applies the transpose of on_space() to each row of a matrix
 
-  /// Returns A f = collocated(u), where u is the velocity of the single layer at the targets x_i: u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In
-  /// a periodic wall, A includes the condition int f.n dG = 0.
+  /// Returns A f = points().collocated(u), where u is the velocity of the single layer at the targets x_i:
+  /// u_i = (1 / 8 pi) sum_B int G(x, x_i) N_B dG f_B. In a periodic wall, A includes the condition int f.n dG = 0.
   Net apply(const Net& f) const;
   Net solve(const Net& rhs) const;  ///< returns A^-1 rhs
   void forget_recycled() const;     ///< discards the data that the preconditioner keeps from earlier solves
@@ -150,14 +125,11 @@ class Wall {
   stokes::Evaluations evaluations() const;
 
  private:
+  Eigen::Index n_sites() const { return points_.sites().rows(); }
   Net weights(const std::function<Vec3(const surface::Point&)>& field) const;
-  std::vector<int> middles_around(int point) const;
-  void add_middles();
   Eigen::MatrixXd assembled();
   Net iterated(const Net& rhs) const;
-  bool has_middles() const { return surface_.channel.get() != nullptr; }
   void find_pressure();
-  double share_of_middle(int point) const;
   Eigen::VectorXd fundamental(const Net& net) const;
   Net fundamental_net(const Eigen::VectorXd& numbers) const;
 
@@ -165,12 +137,11 @@ class Wall {
   surface::Symmetry symmetry_;
   std::optional<surface::Patches> patches_;
   std::optional<surface::ElementBoxes> boxes_;
-  std::vector<int> own_, own_targets_;
-  Ranks ranks_;
+  WallPoints points_;
   std::optional<stokes::PeriodicCell> cell_;
   stokes::Layer layer_;
   std::optional<stokes::Cap> inlet_;
-  Net sites_, targets_, inlet_column_, pumped_;
+  Net inlet_column_, pumped_;
   Net pressure_, flux_;  // periodic wall only. pressure_: w n at the sites, the traction of a constant pressure w. flux_: int N_A n dG
   std::unique_ptr<stokes::Layer> on_itself_;  // single layer of the wall at the targets on the wall itself
   DenseFactors factors_;                      // LU factors of A; if not set, patches_of_rows_ and krylov_ solve by iteration

@@ -37,7 +37,7 @@ surface::TubeWall bent() {
 /// The number of maps of a wall, and how many of its points around have rows of their own.
 std::pair<std::size_t, int> found(const surface::TubeWall& wall) {
   quadrature::Options rule;
-  const std::vector<Congruence> maps = congruences(wall, Wall(wall, rule).sites());
+  const std::vector<Congruence> maps = congruences(wall, Wall(wall, rule).points().sites());
   int own = 0;
   const std::vector<Original> all = originals(maps, wall.n_around);
   for (int k = 0; k < wall.n_around; ++k) {
@@ -62,9 +62,9 @@ TEST(Congruence, MapsRowsOfTheWallToRows) {
   const surface::TubeWall periodic = surface::periodic_tube_wall(surface::outline(circle()), circle(), 3, 6);
   for (const surface::TubeWall& surface : {open(circle()), open(rectangle(1)), bent(), periodic}) {
     const Wall wall(surface, rule);
-    Net f(wall.sites().rows(), 3);
+    Net f(wall.points().sites().rows(), 3);
     for (Eigen::Index i = 0; i < f.rows(); ++i) {
-      const Vec3 x = wall.sites().row(i).transpose();
+      const Vec3 x = wall.points().sites().row(i).transpose();
       const double phase = 2 * std::numbers::pi * x[0] / 3;
       f.row(i) << std::sin(phase) + x[1], x[2] * std::cos(phase), 0.3 - x[1] * x[2];
     }

@@ -35,7 +35,7 @@ TEST(Solids, PlatesThatMoveFeelUniformForces) {
   Phases phases;
   const double mu = 0.7, d = 1.3;
   const Vec3 lower(0.3, -0.2, 0), upper(-1, 0.5, 0);
-  Solids solids(plates(d, lower, upper), slab(), {}, mu, fine(), phases);
+  Solids solids(plates(d, lower, upper), {slab(), {}, mu, fine()}, phases);
   const Solids::Flow flow = solids.solve(solids.velocities(), Vec3::Zero());
   const std::vector<Vec3> forces = solids.forces(flow.force);
   EXPECT_LT((forces[1] + 2 * mu * 3 / d * lower).norm(), 1e-6);
@@ -53,7 +53,7 @@ TEST(Solids, VelocitiesAtAPlateDoNotDependOnEarlierTargets) {
   Phases phases;
   const std::vector<Solids::Solid> plate{plates(1, Vec3::Zero(), Vec3::Zero()).front()};
   const std::vector<Vec3> along{Vec3::UnitX(), Vec3::UnitY()};
-  Solids fresh(plate, slab(), along, 1, fine(), phases), used(plate, slab(), along, 1, fine(), phases);
+  Solids fresh(plate, {slab(), along, 1, fine()}, phases), used(plate, {slab(), along, 1, fine()}, phases);
   Net u = Net::Zero(fresh.sites().rows(), 3);
   u.row(5) << 0.3, -0.1, 0.2;
   const Solids::Flow flow = fresh.solve(u, Vec3(1, 0.5, 0));
@@ -71,7 +71,7 @@ TEST(Solids, ForcesBalanceThePressureGradient) {
   Phases phases;
   const stokes::PeriodicCell cell(Mat3(Vec3(1, 1.2, 0.8).asDiagonal()), 3);
   const std::vector<Solids::Solid> post{{surface::cylinder(Vec3(0.1, 0.2, 0), Vec3(0, 0, 0.8), 0.25, 12, 6), Vec3::Zero(), {}}};
-  const auto posts = std::make_shared<Solids>(post, cell, directions(), 2, fine(), phases);
+  const auto posts = std::make_shared<Solids>(post, Solids::Parameters{cell, directions(), 2, fine()}, phases);
   const Vec3 gradient(-1, 0.5, 0.3);
   const SolidScene scene{posts, {}, gradient, fine()};
   const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
@@ -86,7 +86,7 @@ TEST(Solids, PostsInASquareArrayTakeTheKnownForce) {
   for (const auto& [c, expected] : {std::pair(0.05, 15.56), {0.2, 51.53}, {0.4, 217.89}}) {
     const stokes::PeriodicCell cell(Mat3(Vec3(1, 1, 0.5).asDiagonal()), 3);
     const std::vector<Solids::Solid> post{{surface::cylinder(Vec3::Zero(), Vec3(0, 0, 0.5), std::sqrt(c / std::numbers::pi), 20, 4), {}, {}}};
-    const auto posts = std::make_shared<Solids>(post, cell, directions(), 1, fine(), phases);
+    const auto posts = std::make_shared<Solids>(post, Solids::Parameters{cell, directions(), 1, fine()}, phases);
     const SolidScene scene{posts, {}, -Vec3::UnitX(), fine()};
     const Solids::Flow flow = without_particles(scene, stokes::AmbientFlow());
     EXPECT_NEAR(1 / flow.drift[0] / expected, 1, 2e-4) << "area fraction " << c;
