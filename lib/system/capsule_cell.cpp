@@ -8,13 +8,13 @@
 
 namespace tanktread::coupling {
 
-/// Deforms the cell to this time (2.51). Returns whether it has changed. The cell of a duct is constant.
+/// Sets the cell as deformed by the flow until `time` (2.51). Returns whether the cell has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (tube_) {
     lattice_.cell = tube_->cell();
     return false;
   }
-  const Mat3 deformation = lattice_.solids ? Mat3(Mat3::Identity()) : flow_.deformation(time);  // no flow deforms a cell with walls or posts
+  const Mat3 deformation = lattice_.solids ? Mat3(Mat3::Identity()) : flow_.deformation(time);  // a cell with walls or posts is not deformed
   const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
   if (lattice_.cell && *lattice_.cell == now) return false;
   lattice_.cell = now;

@@ -42,7 +42,7 @@ class WallPatches {
   std::vector<Patch> patches_;
 };
 
-/// How the linear system of a wall is solved.
+/// Solver options of the linear system for the traction on a wall.
 struct WallSolver {
   std::string method = "factored";  ///< "factored", "iterative", or "auto", which is iterative if the factors take more than most_bytes
   double tolerance = 1e-8;          ///< relative residual of the iterative solver
@@ -57,8 +57,8 @@ struct WallSolver {
 /// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
 /// those of their fundamental points (4.12).
 ///
-/// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
-/// recycled from earlier solves (2.24).
+/// If the factors would be too large, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner combines WallPatches
+/// and data recycled from earlier solves (2.24).
 ///
 /// If the velocity vanishes at the collocation points of a wall, the residual velocity between these points has the same sign everywhere, so that
 /// fluid leaks through the wall. In a channel this leak would be a part of the flow rate, and for a train of particles it would grow with the
@@ -78,7 +78,7 @@ class Wall {
 
   const surface::TubeWall& surface() const { return surface_; }
   const surface::Symmetry& symmetry() const { return symmetry_; }
-  const std::vector<int>& own() const { return own_; }  ///< rank-owned rows, all of fundamental points
+  const std::vector<int>& own() const { return own_; }  ///< rows that this rank owns; all belong to fundamental points
   const Net& sites() const { return sites_; }           ///< collocation points
 
   /// Returns the points at which the velocity on the wall is evaluated: the collocation points, followed in a channel by the midpoints of elements
@@ -123,7 +123,7 @@ class Wall {
   /// Available only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
+  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet integral c (2.13); 0 for a periodic wall
   const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
                                                              ///< the operator A
 
