@@ -152,7 +152,7 @@ std::string default_name(const std::vector<std::string>& decks, const std::vecto
   return name.substr(0, longest - end.size()) + end;
 }
 
-/// Reads the deck of the checkpoint into `scene`. Throws UserError if a key has changed that may not change when a run is resumed.
+/// Reads the deck of the checkpoint, `stored`, into `scene`. Throws UserError if the deck `now` changes a key that may not change on resumption.
 void check_changes(const std::string& stored, const deck::Document& now, Scene& scene) {
   deck::Document before = deck::read_text(stored, "The stored deck");
   before.declare(scene);
@@ -183,7 +183,7 @@ void find(std::string& file, const std::string& kept, const Arguments& arguments
   scene.files.emplace_back(file, kept);
 }
 
-/// Finds the files that a kind of particle names (shapes, positions of copies), and reads the shape.
+/// Finds the files that the section of a particle names (shapes, positions of copies), and reads the shape.
 void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
   if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);

@@ -6,10 +6,10 @@
 
 namespace tanktread {
 
-/// Exit code of a run that was stopped. A run in time can be resumed.
+/// Exit code of a run that was stopped. A time-dependent run can be resumed.
 constexpr int stopped = 4;
 
-/// Runs the scene to its end: the run in time, or one of the functions below if the deck requests a steady shape, a spectrum or a prescribed motion.
+/// Runs the scene to its end: in time, or by one of the functions below if the deck requests a steady shape, a spectrum or a prescribed motion.
 /// Returns the exit code: 0 if every expectation is met, 1 if one is not, or `stopped`. Throws UserError, RunFailure, and motion::Stopped if a stop
 /// signal arrives before the first step. Collective.
 int simulate(const Scene& scene, const RunRequest& request);

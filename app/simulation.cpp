@@ -52,7 +52,7 @@ Scene first_deforming(const Scene& scene) {
   return std::move(found == all.end() ? all.front() : *found);
 }
 
-/// A run in time, from its first to its last step.
+/// A time-dependent run, from its first to its last step.
 class Run {
  public:
   Run(const Scene& scene, const RunRequest& request)
@@ -212,7 +212,7 @@ class Run {
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
       Net frozen = std::move(state_.frozen);
       state_ = before;
-      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // secants of the old operators
+      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the old operator
       state_.frozen = std::move(frozen);
       state_.step = report_.step / 2;
     }

@@ -263,7 +263,7 @@ class SteadyRun {
       std::optional<motion::ReturnMap> of_parity;
       if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // runs keep the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: a run conserves the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -361,7 +361,7 @@ class SteadyRun {
   const Scene& scene_;
   const RunRequest& request_;
   const Clock::time_point start_ = Clock::now();
-  // Returns whether this rank has received a stop signal or has passed the wall-clock limit.
+  // Function that returns whether this rank has received a stop signal or has passed the wall-clock limit.
   const std::function<bool()> told_ = [this] {
     return told_to_stop() || scene_.output.too_late(std::chrono::duration<double>(Clock::now() - start_).count());
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Estimated errors of a series from its differences between successive levels. Pure arithmetic.
+// Estimated errors of a series (a quantity as a function of time) from its differences between successive levels of refinement.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,10 @@ namespace tanktread::accuracy {
 ///
 ///   e_l = 1.2 C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                  (9.1)
 ///
-/// The factor 1.2 was found with estimates in 18 scenes. In these scenes, 92 % of the 118 estimates for the series that users request were 1/3 to 3
-/// times the true error, and 89 % of the 905 estimates for all series. Two alternatives are less accurate: the largest or the mean C of several
-/// levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to the differences, one of which may be small by chance.
+/// The factor 1.2 was fitted to estimates in 18 scenes. In these scenes, the ratio of the estimate to the true error was between 1/3 and 3 for 92 %
+/// of the 118 estimates for series that users request, and for 89 % of the 905 estimates for all series. Two alternatives are less accurate: the
+/// largest or the mean C of several levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to the differences, because a difference may
+/// be small by chance.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is

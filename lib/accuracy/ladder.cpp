@@ -26,8 +26,8 @@ using Clock = std::chrono::steady_clock;
 /// State of the directory of a level: finished, failed with the same deck, to be resumed, or to be run anew.
 enum class Start { finished, failed, resume, anew };
 
-/// File in the directory of a level whose search for steady shapes failed: the level's deck and the reason. A resumed ladder does not search again.
-/// Failed runs in time are continued from their checkpoint instead.
+/// File in the directory of a level whose search for steady shapes failed. It holds the level's deck and the reason, so that a resumed ladder does
+/// not search again. Time-dependent runs that failed are continued from their checkpoint instead.
 constexpr const char* failure_file = "failure.txt";
 constexpr const char* before_reason = "\n--- failed: ";
 
@@ -52,8 +52,8 @@ class Ladder {
   }
 
  private:
-  // First level whose time and quadrature tolerances are chosen from the measured shares of these errors, see `balanced`. The shares are measured at
-  // level 2, so levels 0 to 2 cannot use them.
+  // First level whose time and quadrature tolerances are chosen by `balanced` from the measured shares of the time and quadrature errors in the total
+  // error. The shares are measured at level 2, so levels 0 to 2 cannot use them.
   static constexpr int balanced_from = 3;
 
   fs::path directory(const std::string& name) const { return task_.directory / ("level_" + name); }
@@ -79,8 +79,8 @@ class Ladder {
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns whether an earlier part of a resumed ladder has finished level k or recorded its failure. The level then probably need not be run again.
-  /// The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
+  /// Returns whether level k was finished, or its failure was recorded, before this ladder was resumed. The level then probably need not be run
+  /// again. The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
   bool is_over(int k) const {
     return coupling::decided([&] {
       std::error_code absent;
@@ -89,7 +89,7 @@ class Ladder {
     })[0] != 0;
   }
 
-  /// Returns a sentence if level k is not run, because it is predicted to exceed the wall-clock limit of all levels; empty if it is run.
+  /// Returns the reason not to run level k if it is predicted to exceed the wall-clock limit of all levels together, otherwise an empty text.
   std::string reason_to_stop(int k) const {
     const auto limit = task_.options.wall_clock_limit;
     if (!limit) return {};
@@ -155,8 +155,8 @@ class Ladder {
   }
 
   /// Runs one level in its directory, unless it is finished already. Sets `outcome` on the first rank. Returns `stopped` if the run was interrupted
-  /// and can be resumed, or 0 if the run ended or failed. If the scene rejects the deck of a new level and a coarser level is finished, the level
-  /// counts as failed.
+  /// and can be resumed, or 0 if the run ended or failed. If the deck of a new level is invalid (UserError) and a coarser level is finished, the
+  /// level counts as failed.
   int run(const Level& level, const std::string& name, std::optional<Outcome>& outcome) try {
     failure_of_last_.clear();
     resuming_ = false;
@@ -196,7 +196,7 @@ class Ladder {
     return 0;
   }
 
-  /// Runs a deck. Keeps the reason if a search fails. Returns `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
+  /// Runs a deck. If a search fails, stores the reason. Returns `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
   int run(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
     try {
       if (program_.run(deck, directory(name), resume, limit) == stopped) return stopped;
@@ -264,8 +264,8 @@ class Ladder {
     return all_met[0] != 0;
   }
 
-  /// Returns whether finer levels are not expected to help: either `obstacle` finds a reason why no error can be estimated on each of the two finest
-  /// levels, or every request that is not met is for a series that vanishes (Answer::vanishes).
+  /// Returns whether finer levels are not expected to help. This is so if `obstacle` reports, for each of the two finest levels, a reason why no
+  /// error can be estimated, or if every request that is not met is for a series that vanishes (Answer::vanishes).
   bool hopeless() const {
     return coupling::decided([&] {
       if (levels_.size() < 4) return std::vector<double>{0};
@@ -312,7 +312,7 @@ class Ladder {
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
   std::vector<Answer> answers_;                     // on the first rank
   int count_ = 0;                                   // number of finished levels
-  double seconds_ = 0;                              // wall seconds of all runs, on the first rank; of a finished run, also before it was resumed
+  double seconds_ = 0;                              // wall seconds of all runs, on the first rank; for a finished run, also before it was resumed
   bool balanced_ = false;                           // true if `shares_` is measured
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
   bool resuming_ = false;                           // whether the latest run resumes an earlier one

@@ -10,8 +10,8 @@ namespace tanktread::accuracy {
 /// Values of the keys of a deck, including defaults, as texts by the path of the key (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
-/// Level of refinement of each part of the discretisation: mesh, time integration, quadrature. Usually the three are equal. Two levels that differ in
-/// one part only measure the error of this part.
+/// Level of refinement of each part of the discretisation: mesh, time integration, quadrature. Usually the three are equal. Two levels that differ
+/// only in one part measure the error of this part.
 struct Level {
   int mesh = 0, time = 0, quadrature = 0;
 
@@ -36,10 +36,10 @@ double expected_error(const Level& level);
 /// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns the mesh level k with levels of time integration and quadrature whose errors are small compared with the mesh error. `time`, `quadrature`:
-/// shares of their errors in the error at level 2. The level of each is the loosest from max(2, k - 2) to k + 2 at which its error is at most a
-/// quarter of the expected error of level k; k + 2 if none is. Levels below 2 are not used: their larger error could undo a request that was met at
-/// level 2. Example: for k = 2 and shares of 0.25, both levels are 2.
+/// Returns the Level with mesh level k whose time and quadrature levels keep these two errors small compared with the mesh error. `time`,
+/// `quadrature`: shares of the time and the quadrature error in the error at level 2. Each of the two levels is the lowest from max(2, k - 2) to k +
+/// 2 at which the corresponding error is at most a quarter of the expected error of level k; k + 2 if there is none. Levels below 2 are not used:
+/// their larger error could undo a request that was met at level 2. Example: for k = 2 and shares of 0.25, both levels are 2.
 Level balanced(int k, double time, double quadrature);
 
 /// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:

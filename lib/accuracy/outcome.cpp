@@ -87,8 +87,8 @@ double scale_of(const output::RunRecord& record, const std::string& series) {
   return most;
 }
 
-/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. That of an oscillation, which may be
-/// out of phase between levels, does not.
+/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. The magnitude of an oscillation does
+/// not, even if the oscillations on different levels are out of phase.
 bool is_noise(const std::vector<Outcome>& levels, const std::string& series) {
   std::vector<double> sizes;
   for (std::size_t k = levels.size() - 3; k < levels.size(); ++k) sizes.push_back(magnitude(curve(levels[k].record, series)));
@@ -194,8 +194,8 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = is_branch(finest) ? std::vector<double>() : finest.values("time");
-      // On a branch of steady shapes, errors are estimated only at folds and at the end. Each row has the error of the next fold, or of the end of
-      // the branch if no fold follows.
+      // On a branch of steady shapes, errors are estimated only at folds and at the end of the branch. Each row takes the error of the next fold, or
+      // the error at the end if no fold follows.
       if (const double folds = static_cast<double>(whole.at.size() - 1); at.empty())
         for (double k = 0; const double fold : finest.values("fold")) at.push_back(std::min(k, folds)), k += fold != 0;
       one.values = envelope(pairs.back(), at);

@@ -33,7 +33,7 @@ std::optional<Outcome> finished(const std::filesystem::path& directory, const Le
 bool is_branch(const output::RunRecord& record);
 
 /// Returns a series as a function of time. For a branch of steady shapes, returns the values at its folds and its last point as a function of their
-/// index, because all other points differ between levels. A run of one row gives one point.
+/// index, because all other points differ between levels. A record with one row gives one point.
 Curve curve(const output::RunRecord& record, const std::string& series);
 
 /// The estimate for one request.
@@ -52,8 +52,8 @@ struct Answer {
 /// was computed; it shows which share of the errors is due to the time integration.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
-/// Returns the part of the error of `level` that is due to time integration only, or to quadrature only, for a request. `looser`: a run in which only
-/// this part of the discretisation is one level looser. `ratio`: factor by which one level reduces this part of the error.
+/// Returns the part of the error of `level` that is due to one part of the discretisation (time integration or quadrature), for a request. `looser`:
+/// a run in which only this part of the discretisation is one level looser. `ratio`: factor by which one level reduces this part of the error.
 double part_error(const Request& request, const Outcome& level, const Outcome& looser, double ratio);
 
 /// Returns the reason, as a clause, why no error of this scene can be estimated from levels; empty if errors can be estimated. Checks the finest

@@ -15,8 +15,8 @@ struct Column {
   std::string name, unit;
   std::string description;
   std::string undefined_if = {};  ///< condition under which the value is NaN, as a clause; empty if the value is always defined
-  /// Runs that have this column, as text for the manual. A text that begins with a semicolon, for example `; in a tube`, is appended to the list of
-  /// the kinds of runs and particles that have the column. Any other text replaces this list, unless it is empty.
+  /// Runs that have this column, as text for the manual, which lists the kinds of runs and particles with the column. A text that begins with a
+  /// semicolon, for example `; in a tube`, is appended to this list. An empty text leaves the list unchanged. Any other text replaces it.
   std::string where = {};
 };
 
@@ -43,10 +43,10 @@ class Columns {
   /// Adds the columns of another row with `prefix` before each name: `<particle>/` if there are several particles.
   void append(const Columns& other, const std::string& prefix = {});
 
-  /// Sorts by increasing rank of the name, and columns of equal rank in the order in which they were added.
+  /// Sorts the columns by increasing rank(name). Columns of equal rank keep the order in which they were added.
   void sort(const std::function<std::size_t(const std::string& name)>& rank);
 
-  /// Throws RunFailure, which names the column, if a value is NaN and its column is always defined.
+  /// Throws RunFailure with the name of the column if a value is NaN although its column is always defined (`undefined_if` is empty).
   void check() const;
 
   std::size_t size() const { return columns_.size(); }

@@ -1,6 +1,6 @@
 #pragma once
-// Compilation of kernels for several instruction sets. The functions of a kernel are in a namespace INSTRUCTIONS inside the namespace of their
-// module. KERNEL defines the function of the module, which calls the function for the instruction set in use.
+// Compilation of kernels for several instruction sets. Each kernel function is compiled once per instruction set, in a nested namespace whose name is
+// the macro INSTRUCTIONS (for example avx2). KERNEL defines the function outside of it that calls the version for the instruction set in use.
 
 #include "base/instruction_set.hpp"
 #include "base/register.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // SIMD registers. Operators +, -, *, / act on each lane. A lane does not depend on its neighbours, so results do not depend on how targets or
-// elements are split over ranks. Only for kernels: the width is that of the instruction set for which a file is compiled, and each instruction set
-// has its own namespace.
+// elements are split over ranks. This file is only for kernels: the width of a register depends on the instruction set for which a file is
+// compiled, and each instruction set has its own namespace.
 
 #include <cmath>
 #include <cstring>

@@ -29,7 +29,7 @@ const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const 
   return list && list->isSublist(name) ? &list->sublist(name) : nullptr;
 }
 
-/// Appends to `changes` the path of each key of `over` that is not in `base` or has another value there. Skips Output and Expect.
+/// Appends to `changes` the path of each key of `over` that `base` does not have or has with another value. Skips Output and Expect.
 void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterList& over, const std::string& path,
                  std::vector<std::string>& changes) {
   for (const auto& item : over) {
@@ -81,8 +81,8 @@ struct Layers {
     overlay(*merged, over);
   }
 
-  /// Returns whether the expectation is for a time `at` that is not later than Time/final time. A change of the final time does not affect such an
-  /// expectation.
+  /// Returns whether the expectation has a time `at` that is not later than Time/final time. Such an expectation is not affected by a change of the
+  /// final time.
   bool before_end(const Teuchos::ParameterList& expectation, const std::optional<Units>& units) const {
     const Teuchos::ParameterList* time = sublist(merged.get(), "Time");
     const auto *at = expectation.getEntryPtr("at"), *end = time ? time->getEntryPtr("final time") : nullptr;

@@ -11,7 +11,7 @@
 
 namespace tanktread::deck {
 
-/// A merged deck. Fills options structs through their `declare`, and records the keys that they declare.
+/// A merged deck. Fills options structs by calling their function `declare`, and records the keys that they declare.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});
 ///   deck.declare(scene);                  // throws UserErrors with all wrong values, and unknown keys if all were read
@@ -29,7 +29,7 @@ class Document {
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // throws the errors of wrong values first, because such keys keep their defaults, which may have caused this error
+      refuse_wrong_values();  // throws errors of wrong values instead, if any: such keys keep their defaults, which may have caused this error
       throw;
     }
     finish();
@@ -63,8 +63,8 @@ class Document {
 ///
 /// An expectation (section Expect/<name>) is binding only for the deck that states it. It stops being binding if a later file, or the settings
 /// together, change a key that affects results and set no key of the expectation. Its key `not binding` then names the changed keys. All keys affect
-/// results except the keys of Output and Expect, and Time/final time if it is not before the time `at` of the expectation. If `excuse` is not empty,
-/// it becomes the value of `not binding` in all expectations.
+/// results except the keys of Output and Expect, and except Time/final time if the run still reaches the time `at` of the expectation. If `excuse` is
+/// not empty, it becomes the value of `not binding` in all expectations.
 Document read(const std::vector<std::string>& files, const std::vector<std::string>& settings, const std::string& stored = {},
               const std::string& excuse = {});
 

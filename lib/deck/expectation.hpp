@@ -40,7 +40,7 @@ std::vector<std::string> too_late(const std::vector<Expectation>& expectations, 
 /// Result of the comparison of one expectation with the results.
 struct Verdict {
   std::string name;
-  double value = 0;  ///< value in the results; NaN if they have none
+  double value = 0;  ///< value of the series in the results; NaN if it has none
   double expected = 0;
   double error = 0;  ///< |value - expected|, divided by |expected| if the kind is relative
   bool passed = false;

@@ -24,7 +24,7 @@ struct List {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;   ///< points to `merged` if that is set, otherwise to the section in the deck; null if it is absent
+  const Teuchos::ParameterList* given = nullptr;   ///< points to `merged` if that is set, otherwise to the section in the deck; null if none
   const Teuchos::ParameterList* itself = nullptr;  ///< the section in the deck, without keys inherited through the key `like` or from `defaults`
   std::shared_ptr<Teuchos::ParameterList> merged;  ///< the section in the deck, with keys inherited through the key `like` or from `defaults`
   std::vector<Entry> entries;

@@ -39,7 +39,7 @@ using Choice = std::vector<std::string>;
 ///   }
 ///
 /// The value of the field before the call is the default. If the given value is wrong, the field keeps its default, and Document::declare throws
-/// UserError (path, rule, unit, given value). It also reports unknown keys, with the key that was probably meant.
+/// UserError (path, rule, unit, given value). This function also reports unknown keys, with the key that was probably meant.
 class Section {
  public:
   /// Declares a key with numbers. `Field`: double, int, Vec3, Mat3 (nine numbers row by row), or std::optional of one of these, of Eigen::Vector2d or

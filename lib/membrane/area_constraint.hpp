@@ -1,5 +1,5 @@
 #pragma once
-// Conditions of constant local area, which represent the stiff part of the tangent of nearly area-incompressible membranes.
+// Conditions of constant local area, which represent the stiff part of the tangent stiffness of nearly area-incompressible membranes.
 
 #include <vector>
 
@@ -15,9 +15,9 @@ namespace tanktread::membrane {
 ///
 ///   P = (1 + time m D'D)^-1 = 1 - time m D'(1 + time D m D')^-1 D                                                                 (4.25)
 ///
-/// removes from a displacement the part that changes these areas; it removes more of that part the stiffer the membrane is. In the stiff directions,
-/// P approximates the inverse of the matrix of an implicit step. P is also used to move a shape until its conditions t have the values of another
-/// shape.
+/// removes from a displacement the part that changes these areas. The stiffer the membrane is, the more of this part is removed. In the stiff
+/// directions, P approximates the inverse of the matrix of an implicit step. P is also used to move a shape until its conditions t have the values of
+/// another shape.
 class AreaConstraint {
  public:
   /// Sets up one condition of constant local area per Gauss point. `mobility`: m_A, the velocity of control point A per unit of force on it.
@@ -32,7 +32,7 @@ class AreaConstraint {
   /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by place(). m: mobility.
   void factor(double time);
 
-  /// Returns P r.
+  /// Returns P r, with the operator P of (4.25).
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
   /// Moves the shape x so that the area at every Gauss point nearly equals the area in the shape `like`. Takes two steps with the operator P (4.25),
@@ -56,7 +56,7 @@ class AreaConstraint {
 
   const spline::Space* space_;
   std::vector<Point> points_;
-  Eigen::VectorXd mobility_;  // three times each
+  Eigen::VectorXd mobility_;  // mobility of each control point, three times in succession (once per component)
   Rows now_;
   double time_ = 0;  // 0: not factored
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> system_;

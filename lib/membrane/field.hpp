@@ -35,8 +35,8 @@ class Field {
   /// power that the field dissipates as heat in the membrane; dissipation in the surface flow is not included
   virtual double dissipation() const { return 0; }
 
-  /// Stores the state set last and the slip (fluid minus control-point velocity). The four linearised functions from value_change() to solve() use
-  /// them.
+  /// Stores the state set last and the slip (fluid minus control-point velocity). value_change(), load_change(), rate_change() and solve() use the
+  /// stored data.
   virtual void linearise(const Net& slip) = 0;
 
   /// Returns the change of the values of the field (concentration or strain) for the change dx of the shape and dq of the coefficients.
@@ -53,8 +53,8 @@ class Field {
   /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq. Some fields have a weighted sum of coefficients that the motion
-  /// conserves, see conserved(). After the correction, this sum is the same for dq and r, to round-off.
+  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq, for fields with a conserved weighted sum of coefficients (see
+  /// conserved()). After the correction, the weighted sums of dq and of r are equal to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns dq/dt, at the state set last, if the control points slide along the surface with this velocity while the material is at rest.

@@ -1,7 +1,7 @@
 #pragma once
 // Materials of membranes. A constitutive law is the stored energy per unstressed area, Psi, as a function of the two surface invariants
 //
-//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  P-5, where -2 is missing
+//   I1 = G^ab g_ab - 2 = l1^2 + l2^2 - 2,   I2 = J_s^2 - 1 = l1^2 l2^2 - 1        (3.1)  (P-5 lacks the -2)
 //
 // with the principal stretches l1 and l2. Psi is a force per length (energy per area), and so are all of its derivatives.
 
@@ -204,7 +204,8 @@ struct SurfaceMetric {
 };
 
 /// Returns the squares of the principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the
-/// stretch tensor h in the orthonormal frame whose first axis is along X_,s. Computed this way, equal stretches are equal to round-off.
+/// stretch tensor h in the orthonormal frame whose first axis is along X_,s. With this formula, stretches that should be equal are computed as equal
+/// to round-off.
 template <class Number>
 std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
   const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;

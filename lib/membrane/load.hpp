@@ -33,13 +33,14 @@ struct SurfaceValues {
 /// Linear conditions c.(U, W) = 0 on a rigid motion with velocity U and angular velocity W, one condition c per row.
 using RigidConditions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-/// Load on the membrane, added to the virtual work (3.5) of the membrane. A load is given by dE/dx, where x is the control net, shape (N, 3). Either
-/// E(x) is an energy that the membrane stores, or -dE/dx is the virtual work of an external force. dE/dx (a force) and the product (d2E/dx2) dx have
-/// the shape (N, 3).
+/// Load on the membrane, added to the virtual work (3.5) of the membrane. A load is given by dE/dx, where x is the control net. Either E(x) is an
+/// energy that the membrane stores, or -dE/dx is the virtual work of an external force. x, dE/dx (a force) and the product (d2E/dx2) dx have the
+/// shape (N, 3).
 ///
-/// Both are evaluated in two phases. In the local phase, each rank adds the contributions of its elements to their control points. In the global
-/// phase, every rank adds the same terms to all points. Between the phases, the caller sums over ranks and, if the scene is symmetric, over images. A
-/// load may need further nets in the global phase, for example the gradient of the total area. The caller sums these nets too. Uses no MPI.
+/// dE/dx and the product (d2E/dx2) dx are evaluated in two phases. In the local phase, each rank adds the contributions of its elements to their
+/// control points. In the global phase, every rank adds the same terms to all points. Between the phases, the caller sums over ranks and, if the
+/// scene is symmetric, over images. A load may need further nets in the global phase, for example the gradient of the total area. The caller sums
+/// these nets too. Uses no MPI.
 class Load {
  public:
   virtual ~Load() = default;

@@ -15,7 +15,8 @@ namespace tanktread::membrane {
 /// of (3.6); on the unstressed surface it is M0 in (3.7). The sparsity pattern is built at the first update, the entries at every update.
 class MassMatrix {
  public:
-  /// `order`: Gauss points per direction at degree 3, plus one for each higher degree. `space` must outlive this object.
+  /// `order`: number of Gauss points per direction on elements of degree 3. It grows by one with each higher degree. `space` must outlive this
+  /// object.
   explicit MassMatrix(const spline::Space& space, int order = 4);
 
   /// Returns the matrix of the surface x, valid until the next update. If x equals the x of the latest update, nothing is computed.

@@ -69,10 +69,10 @@ class MaxwellElement : public Field {
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  // divisors of the components of C (3.23) in the coefficients, one row per Gauss point: g^11, sqrt(g^11 g^22), g^22 of the shape `initial`
+  // g^11, sqrt(g^11 g^22), g^22 of the shape `initial`, one row per Gauss point; each coefficient is a component of C (3.23) divided by one
   Net unit_;
   Net x_;
-  std::vector<ReferencePoint> relaxed_;                 // stress-free surface, batch after batch
+  std::vector<ReferencePoint> relaxed_;                 // stress-free surface at the Gauss points, batch after batch
   Eigen::VectorXd rate_;
   double dissipation_ = 0;
   Eigen::VectorXd q_, known_q_;  // q_: coefficients set last. known_q_: coefficients stored by linearise()

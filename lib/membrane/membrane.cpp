@@ -23,8 +23,8 @@ constexpr int max_gauss = max_order * max_order;
 /// A set of elements, sorted into batches for the packed kernels (one element per register lane), with the unstressed surface at the Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< materials of the surface, followed by one material for each area elasticity that has another Gauss rule; it
-                                    ///< has only this elasticity
+  std::vector<Material> materials;  ///< materials of the surface, followed by one material for each area elasticity that has another Gauss rule. An
+                                    ///< added material has only this area elasticity
   std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It also has the terms that split_material()
                                     ///< moves to another material
   std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at its Gauss points. False for the shear part of a split law:

@@ -31,10 +31,11 @@ struct ElementTensions {
 /// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. `elements` are the elements to evaluate, in ascending
 /// order. The summation order of each row of a load does not depend on how the elements are distributed over callers.
 ///
-/// Not safe for concurrent calls: the elements of the latest calls are kept packed for the innermost loops.
+/// Not thread-safe, because the packed elements of the latest calls are cached.
 class Membrane {
  public:
-  /// `order`: Gauss points per direction at degree 3, plus one for each higher degree; 2 to 10. `space` must outlive the membrane.
+  /// `order`: number of Gauss points per direction on elements of degree 3, from 2 to 10. It grows by one with each higher degree. `space` must
+  /// outlive the membrane.
   Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {})
       : Membrane(space, unstressed, Materials{{{law, bending}}, {}}, order) {}
 

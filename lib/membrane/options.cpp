@@ -65,7 +65,7 @@ void declare_bending(Options& options, deck::Section& section) {
       "each other, but each keeps its number of molecules, so that a change of their area difference costs energy; 0: no such energy");
   section.key("area difference", options.leaf_difference, deck::positive(), "1",
               "preferred difference of the areas of a bilayer's two leaflets, at which the energy of Membrane/area difference modulus "
-              "vanishes, divided by the area difference of a sphere of the same area; if not given, that of the unstressed surface");
+              "vanishes, divided by the area difference of a sphere of the same area; if not given, the value of the unstressed surface");
 }
 
 void check_energy(const Options& options) {
@@ -89,31 +89,31 @@ void Options::declare(deck::Section& section) {
   declare_energy(*this, section);
   if (!section.given("shear modulus") && !section.given("surface tension")) capillary_number = 0.3;
   section.key("capillary number", capillary_number, deck::positive(), "1",
-              "capillary number viscosity x U/G_s, with the surface shear modulus G_s (for a drop the surface tension). U: in a duct the "
-              "mean velocity, otherwise rate x R_C, with Flow/shear rate (or the largest singular value of Flow/gradient) and R_C, the "
-              "radius of the sphere with the particle's volume. 0.3 if neither this, `shear modulus` nor `surface tension` is given");
+              "capillary number viscosity x U/G_s, with the surface shear modulus G_s (for a drop the surface tension). U: in a duct the mean "
+              "velocity, otherwise rate x R_C. rate: Flow/shear rate, or the largest singular value of Flow/gradient. R_C: radius of the "
+              "sphere with the particle's volume. 0.3 if neither this, `shear modulus` nor `surface tension` is given");
   section.key("shear modulus", shear_modulus, deck::positive(), "force/length",
               "surface shear modulus G_s of the membrane, instead of `capillary number`");
   section.key("surface tension", surface_tension, deck::positive(), "force/length", "surface tension of a drop, instead of `capillary number`");
   if (dilates()) area_dilatation = 1.0;
-  section.key(
-      "area dilatation", area_dilatation, deck::not_negative(), "1",
-      "constant C of the laws `Skalak` and `Evans-Skalak`: at small strains, area modulus / shear modulus = 1 + 2 C; 1 if not given");
+  section.key("area dilatation", area_dilatation, deck::not_negative(), "1",
+              "constant C of the laws `Skalak` and `Evans-Skalak`: at small strains, area modulus / shear modulus = 1 + 2 C; 1 if not given");
   section.key("area points", area_order, deck::between(0, 8), "1",
               "number of Gauss points per direction of an element at which the area resistance of the laws `Skalak` and `Evans-Skalak` is "
-              "evaluated; 0: those of the rest of the law. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks (is too "
-              "stiff) if the area is resisted at all 16 points of an element");
+              "evaluated; 0: the points that the rest of the law uses. Use 1 if Membrane/area dilatation is 50 or more, because the mesh locks "
+              "(is too stiff) if the area is resisted at all 16 points of an element");
   section.key(
       "global area dilatation", global_area_dilatation, deck::not_negative(), "1",
-      "modulus K that keeps the total area A of a vesicle (a drop with bending): the energy K G (A - A0)^2/(2 A0) is added to the law "
-      "(3.26), with the area A0 of the unstressed surface and the surface shear modulus G (for a drop the surface tension). The relative "
-      "area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
+      "dimensionless modulus K that keeps the total area A of a vesicle (a drop with bending): the energy K G (A - A0)^2/(2 A0) is added to "
+      "the law (3.26), with the area A0 of the unstressed surface and the surface shear modulus G (for a drop the surface tension). The "
+      "relative area change decreases like 1/K; above about 1e4 many steps are needed. 0: no such energy");
   section.key("neo-Hookean share", neo_hookean_share, deck::between(0, 1), "1",
-              "fraction m of the neo-Hookean term in the energy of `Mooney-Rivlin`, which needs it; smaller values stiffen it at large stretch");
+              "fraction m of the neo-Hookean term in the energy of Membrane/law `Mooney-Rivlin` (required for this law); the smaller it is, "
+              "the stiffer the membrane at large stretch");
   section.key("stress-free shape", stress_free, deck::Choice{"resting", "sphere", "spheroid", "file"},
-              "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, "
-              "axis and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in "
-              "`stress-free file`. If it is not `resting`, the equilibrium shape is another one, which a run without flow finds");
+              "shape in which the membrane has no stress. `resting`: the resting shape. `sphere` or `spheroid` (oblate): with the area, axis "
+              "and center of the resting shape; every piece of the membrane has the same area as at rest. `file`: the surface in `stress-free "
+              "file`. If it is not `resting`, the resting shape is not in equilibrium; a run without flow finds the equilibrium shape");
   section.key("stress-free reduced volume", reduced_volume, deck::between(0.05, 1), "1",
               "reduced volume 6 sqrt(pi) V/A^1.5 (V: volume, A: area) of the stress-free `spheroid`: 1 for a sphere, 0.646 for a red cell");
   section.key("stress-free file", stress_free_file, deck::Choice{},
@@ -127,8 +127,8 @@ void Options::declare(deck::Section& section) {
               "surface divergence of the tensions, which fails as Maestre et al. (2017) show");
   if (law == "surface tension") load_measure = "current";
   section.key("load measure", load_measure, deck::Choice{"reference", "current"},
-              "area per which the membrane load (force per area) is computed, with Membrane/load `weak`. `reference`: area of the "
-              "unstressed surface (3.7). `current`: current area (3.6), as by Maestre et al. (2017); default for drops");
+              "area to which the membrane load (force per area) refers, with Membrane/load `weak`. `reference`: area of the unstressed surface "
+              "(3.7). `current`: current area (3.6), as by Maestre et al. (2017); default for drops");
   declare_bending(*this, section);
   section.key("shear viscosity", viscosity.shear, deck::not_negative(), "viscosity x length",
               "surface shear viscosity eta_s of a membrane, in parallel with its elasticity, or of a drop's interface (3.10). If it is not "

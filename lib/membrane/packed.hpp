@@ -22,7 +22,7 @@ struct Batch {
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin; the id for function A in lane l is A *
                                       ///< pack_lanes() + l entries further
-  /// index in Group::extraction at which the batch's matrices begin, [A * (p + 1)^2 + b]; batches with equal matrices share them
+  /// index in Group::extraction at which the batch's matrices begin; entry (A, b) follows A * (p + 1)^2 + b later. Batches share equal matrices
   std::size_t extraction = 0;
 };
 
@@ -32,7 +32,7 @@ struct Group {
   int material = 0;                        ///< material of its elements
   std::vector<double> value, slope, bend;  ///< values, first and second derivatives of the 1-D Bernstein polynomials i at the Gauss nodes q, at index
                                            ///< q * (p + 1) + i
-  std::vector<double> weight;              ///< tensor weights, [q_t * order + q_s]
+  std::vector<double> weight;              ///< tensor-product weights, at index q_t * order + q_s
   std::vector<Batch> batches;
   std::vector<int> points;
   std::vector<Pack> extraction;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int max_bernstein = (max_degree + 1) * (max_degree + 1);
 
-// Small matrix product: out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1.
+// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1.
 template <int Width>
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int first, Register* out) {
   Register sum[Width][3] = {};

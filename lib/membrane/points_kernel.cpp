@@ -32,7 +32,7 @@ void visit_points(const Law& law, int n, const ReferencePoint* points, const Pac
       law);
 }
 
-// Mean curvature: with N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N, it is 2 chi = -M/J^3.
+// Twice the mean curvature, 2 chi = -M/J^3 with N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N.
 template <class Number>
 struct Curved {
   Vector<Number> s, t, ss, st, tt, normal, turned;  // turned: the bracket of M
@@ -46,8 +46,8 @@ struct Curved {
     curvature = -(dot(turned, normal) / (square * j));
   }
 
-  // Gradient of the bending energy density, d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ, with respect to the five
-  // vectors of the jet.
+  // Computes p, the gradient of the bending energy density with respect to the five vectors of the jet, by the product rule
+  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ.
   void gradient(double modulus, const Register& c0, Vector<Number>* p) const {
     const Number excess = curvature - c0, inverse = 1.0 / j;
     const Number by_m = -modulus * (excess * inverse * inverse);                                              // derivative by M
@@ -136,8 +136,8 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // contribution to the moduli c13 and c22 from the change of K with the metric, K = J_s^2
-                                                             // (g^11, g^12, g^22)
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // contribution to the moduli c13 and c22: K = J_s^2 (g^11, g^12, g^22) changes with
+                                                             // the metric
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);

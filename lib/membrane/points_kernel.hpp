@@ -26,7 +26,7 @@ inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers
 template <class Number>
 struct TangentPointOf {
   Number a1[3], a2[3];                  ///< tangents at the linearisation
-  Number s11, s12, s22;                 ///< stress S^ab, weights included; the derivative of the energy by the tangent a_a is S^ab a_b
+  Number s11, s12, s22;                 ///< stress S^ab, weights included; the derivative of the energy with respect to the tangent a_a is S^ab a_b
   Number c11, c12, c13, c22, c23, c33;  ///< moduli C, weights included
 };
 using TangentPoint = TangentPointOf<Pack>;

@@ -54,8 +54,8 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< solves (M + shift D K) c = m, thus includes only diffusion, on
-                                                                                 ///< the shape stored by freeze()
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes only diffusion: solves (M + shift D K) c = m with
+                                                                                 ///< the matrices M and K of the shape stored by freeze()
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
@@ -105,7 +105,7 @@ class Surfactant : public Field {
   Eigen::VectorXd q_;                                     // coefficients set last
   Net x_, known_x_;                                       // x_: shape set last. known_x_: shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation
-  std::vector<std::vector<double>> known_slip_;           // slip at the Gauss points of each element, three fields; empty without slip
+  std::vector<std::vector<double>> known_slip_;           // components of the slip at the Gauss points of each element; empty without slip
   mutable MassMatrix known_mass_;                         // mass matrix at the linearisation
   Eigen::SparseMatrix<double> frozen_mass_, frozen_stiffness_;
   // factors of M + shift D_s K, with the mass matrix M and the stiffness matrix K of the frozen shape and the diffusivity D_s

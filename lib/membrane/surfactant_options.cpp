@@ -10,15 +10,15 @@ namespace tanktread::membrane {
 
 void SurfactantOptions::declare(deck::Section& section) {
   section.key("equation of state", equation_of_state, deck::Choice{"linear", "Langmuir"},
-              "surface tension of a drop with surfactant, divided by that of the clean interface (Membrane/surface tension or capillary "
-              "number), as a function of the concentration. `linear`: 1 - E c. `Langmuir`: 1 + E ln(1 - x c). c: concentration divided "
-              "by the initial concentration, E: `elasticity number`, x: `coverage`");
+              "surface tension of a drop with surfactant as a function of the concentration, divided by the surface tension of the clean "
+              "interface (Membrane/surface tension or capillary number). `linear`: 1 - E c. `Langmuir`: 1 + E ln(1 - x c). c: concentration "
+              "divided by the initial concentration, E: `elasticity number`, x: `coverage`");
   section.key("elasticity number", elasticity, deck::positive(), "1",
               "elasticity number E of the surfactant: gas constant x temperature x concentration / surface tension of the clean interface. "
               "The concentration is the initial one for the equation of state `linear`, and the largest possible one for `Langmuir`");
   section.key("coverage", coverage, deck::between(1e-6, 0.999999), "1",
-              "initial coverage x for the equation of state `Langmuir`, which needs it: initial concentration of surfactant divided by the "
-              "largest possible concentration");
+              "initial coverage x of the interface for the equation of state `Langmuir` (required for it): initial concentration of surfactant "
+              "divided by the largest possible concentration");
   section.key("diffusivity", diffusivity, deck::not_negative(), "length^2/time",
               "surface diffusivity D_s of the surfactant; 0 (no diffusion) if neither `diffusivity` nor `Peclet number` is given");
   section.key("Peclet number", peclet_number, deck::positive(), "1",

@@ -17,9 +17,9 @@ namespace tanktread::membrane {
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
-/// Here m_a is the number of images of a, and s_c(g) is the sign by which the image g multiplies component c. With the factor m_a, A^c is symmetric
-/// if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the system has no unknown for it. Components
-/// with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
+/// Here m_a is the number of points in the orbit of a, and s_c(g) is the sign by which the image g multiplies component c. With the factor m_a, A^c
+/// is symmetric if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the system has no unknown for it.
+/// Components with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
 class SymmetricSolver {
  public:
   /// Throws as DirectSolver does.
@@ -42,8 +42,8 @@ class SymmetricSolver {
   /// Components that share a factor.
   struct Part {
     std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components may be nonzero
-    std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if left out
-    Eigen::VectorXd images;               // m_a, number of images of each fundamental point
+    std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if it has none
+    Eigen::VectorXd images;               // m_a, number of points in the orbit of each fundamental point
     DirectSolver solver;
   };
   Part part(const DirectSolverOptions& options, int component) const;

@@ -52,7 +52,7 @@ class WholeMembrane : public Load {
  private:
   struct Measure {
     int degree;                                      // m: Q(x) is homogeneous of degree m = 2 (total area) or m = 1 (area difference)
-    std::vector<std::pair<double, Membrane>> parts;  // factors and membranes: Q is the sum of factor times energy
+    std::vector<std::pair<double, Membrane>> parts;  // pairs of a factor and a membrane: Q is the sum of factor times energy of the membrane
     double stiffness = 0, relaxed = 0;               // k, Q0
     std::vector<Tangent> tangents = {};              // tangents of the parts
     double tension = 0;                              // derivative k (Q - Q0) of the energy (3.26) or (3.27) with respect to Q, at the shape of

@@ -44,8 +44,8 @@ void AdaptationOptions::declare(deck::Section& section) {
               "ratio of length to width of an element above which it is halved along its length, for Adaptation/indicator `variation`; "
               "2.5 if not given");
   section.key("order", order, deck::positive(), "1",
-              "exponent kappa for Adaptation/indicator `variation`: where curvature, traction or velocity varies r > 1 times as much as "
-              "its reference value, elements may be as long as Adaptation/reference length / r^kappa; 1 if not given");
+              "exponent kappa for Adaptation/indicator `variation`: where curvature, traction or velocity varies r > 1 times as much as its "
+              "reference value, the largest allowed length of elements is Adaptation/reference length / r^kappa; 1 if not given");
   section.key(
       "film resolution", film_resolution, deck::positive(), "1",
       "largest allowed length of elements next to a thin film of fluid (between two particles, a particle and a wall, or periodic images), "
@@ -63,8 +63,8 @@ void AdaptationOptions::declare(deck::Section& section) {
       "largest number of control points of the surface mesh. Near this limit only the most urgent refinements are made, at the limit none");
   section.key("coarsen", coarsen, "whether elements are merged again where their refinement is not needed any more");
   section.key("coarsening margin", coarsening_margin, deck::between(0.01, 1), "1",
-              "safety factor of coarsening: elements are merged only if the merged element, of twice the length, stays below this fraction "
-              "of every tolerance and limit of refinement. Smaller values avoid that it is soon refined again");
+              "safety factor of coarsening: elements are merged only if the merged element, of twice the length, stays below this fraction of "
+              "every tolerance and limit of refinement. With smaller values, merged elements are less often refined again");
   section.key("coarsening tolerance", coarsening_tolerance, deck::positive(), "length",
               "largest allowed displacement of the surface by one coarsening of the mesh; default 1e-4 R_C, where R_C is the radius of the "
               "sphere with the particle's volume");
@@ -105,7 +105,7 @@ AdaptationOptions AdaptationOptions::coarser(double factor) const {
 
 namespace {
 
-/// Returns L_ref min{1, (phi_ref / phi)^kappa}.
+/// Returns the largest allowed length of an element: the smallest L_ref min{1, (phi_ref / phi)^kappa} of all quantities phi.
 double allowed_length(const surface::MidLine& line, const AdaptationOptions& options) {
   double factor = 1;
   const auto heed = [&](const std::optional<double>& reference, double variation) {
@@ -153,8 +153,8 @@ std::vector<spline::Merge> merges(const std::vector<surface::ElementMetrics>& me
   const auto slender = [&](double ratio) { return ratio >= margin * options.limit_aspect_ratio.value(); };
   const auto is_short = [&](const surface::MidLine& line) { return 2 * line.length < margin * allowed_length(line, options); };
   const auto alone = [&](std::size_t e, int a) { return is_short(metrics[e].along[a]) && !slender(2 * metrics[e].aspect_ratio(a)); };
-  // Merging in both directions keeps the aspect ratio of an element. It is possible even if merging in one direction would exceed the limit on the
-  // aspect ratio.
+  // Merging in both directions at once keeps the aspect ratio of an element. Therefore it is allowed even if merging in only one direction would
+  // exceed the limit on the aspect ratio.
   const auto both = [&](const surface::ElementMetrics& m) {
     return !slender(std::max(m.aspect_ratio(0), m.aspect_ratio(1))) && is_short(m.along[0]) && is_short(m.along[1]);
   };

@@ -22,14 +22,15 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("parameter", parameter, deck::Choice{},
               "path of the numerical key of the deck that varies along the branch of steady shapes, for example Membrane/capillary number");
   section.key("to", to, deck::any(), "that of the key",
-              "value, in the unit of the key that Continuation/parameter names, at which the branch of steady shapes ends. The branch "
-              "starts at the value of that key in the deck, and also ends if a fold leads it back there");
+              "value, in the unit of the key that Continuation/parameter names, at which the branch of steady shapes ends. The branch starts "
+              "at the value of that key in the deck, and also ends if it returns to this value after a fold");
   section.key("method", method, deck::Choice{"arclength", "natural"},
               "method of continuation along a branch of steady shapes. `arclength`: continues around folds, where the parameter turns "
               "back. `natural`: stops at the first fold");
   section.key(
       "step", step, deck::positive(), "that of the key",
-      "first increment of the continuation parameter; if not given, a twentieth of the interval from the deck's value to Continuation/to");
+      "first increment of the continuation parameter; if not given, a twentieth of the interval from the parameter's value in the deck to "
+      "Continuation/to");
   section.key("largest change", largest_change, deck::between(1e-5, 1), "1",
               "largest allowed change of the shape between two points of the branch of steady shapes: root mean square displacement of the "
               "control points divided by R_C, the radius of the sphere with the particle's volume");
@@ -40,7 +41,7 @@ void ContinuationOptions::declare(deck::Section& section) {
               "turns back");
   section.key("second parameter", second_parameter, deck::Choice{},
               "path of a second numerical key of the deck, for example Particle/viscosity ratio, to find how the fold depends on it. The "
-              "branch is followed to its first fold with the deck's value, and then only the fold is computed, for each of "
+              "branch is followed to its first fold with the value of this key in the deck. Then only the fold is computed, for each of "
               "Continuation/second values");
   section.key("second values", second_values, deck::any(), "that of the key",
               "values of the key Continuation/second parameter for which the fold is computed, in this order. Values that are evenly "
@@ -208,7 +209,7 @@ void Branch::adapt() {
   }
 }
 
-/// Returns a point only after the following point has been computed, because that point may reveal a fold before the returned point.
+/// Returns the next point, but computes the point after it first, because the latter may reveal a fold before the returned point.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
@@ -250,8 +251,8 @@ void Branch::begin() {
 void Branch::advance() {
   ++count_;
   if (last_.size() < 2) return begin();
-  // The step grows if the last solve took few iterations, or if the last prediction was close to the solution, so that the branch bends little. The
-  // second condition is needed because a small tolerance requires many iterations in any case.
+  // The step grows if the last solve took few iterations, or if the last prediction was close to the solution, which shows that the branch is nearly
+  // straight. The second condition is needed because a small tolerance requires many iterations in any case.
   const int iterations = last_.back().iterations;
   const double change = iterations < 25 || missed_ < 0.05 ? 1.5 : iterations < 45 || missed_ < 0.2 ? 1 : 0.7;
   step_ = std::min(step_ * change, options_.largest_change * std::numbers::sqrt2);

@@ -42,9 +42,9 @@ struct BranchPoint {
   void add_columns(bool follows_fold, Columns& to) const;
 };
 
-/// A connected branch of steady shapes, from a start to a given value of the parameter, or around a fold back to the start. Let t be the direction
-/// from the second last point to the last one, in the norm of `Time/tolerance`. The parameter p is scaled so that it contributes as much to the
-/// length of the first step as the change of shape. The next point satisfies
+/// A connected branch of steady shapes, from a start to a given value of the parameter, or around a fold and back to the start. Let t be the
+/// direction from the second last point to the last one, in the norm of `Time/tolerance`. The parameter p is scaled so that it contributes as much to
+/// the length of the first step as the change of shape. The next point satisfies
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
@@ -54,8 +54,8 @@ struct BranchPoint {
 /// vertex is computed, and replaces one of the three points, until the p of the vertex no longer changes.
 ///
 /// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
-/// if the values were evenly spaced. Equation (4.20) then gives three points at, before and after the prediction, where t is the direction of the
-/// branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh of the first fold is kept.
+/// if the values were evenly spaced. Equation (4.20) then gives one point at the prediction, one before and one after it, where t is the direction of
+/// the branch at the previous fold. If no fold is found, the step to the next value is halved. The mesh of the first fold is kept.
 class Branch {
  public:
   /// Returns the equations of steady shapes for given values of the parameter and of the second parameter. If there is no second parameter, its value

@@ -41,9 +41,9 @@ void forget(State& state);
 /// Computes the slope dx/dt at the state, if the state has no slope yet.
 void begin(coupling::Dynamics& dynamics, State& state);
 
-/// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. Keeps only position, step and frozen
-/// operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; before this call, the state has the
-/// slope before the kink.
+/// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
+/// and frozen operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the state has
+/// the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.

@@ -17,7 +17,7 @@ void TimeOptions::declare(deck::Section& section) {
       "stores no matrix of the boundary integrals. `crank-nicolson`: the scheme of Maestre et al. 2017 (4.1)");
   std::optional<double> end;
   section.key("final time", end, deck::positive(), "time",
-              "time at which the run ends; required for a run in time, except for a single particle with Particle/motion `prescribed`");
+              "time at which the run ends; required for a time-dependent run, except for a single particle with Particle/motion `prescribed`");
   final_time = end.value_or(std::numeric_limits<double>::quiet_NaN());
   section.key("tolerance", tolerance, deck::between(1e-13, 1.0), "1",
               "largest allowed error of a time step: root mean square displacement of the control points divided by R_C, the radius of the "
@@ -26,8 +26,8 @@ void TimeOptions::declare(deck::Section& section) {
   section.key("fixed step", fixed_step, deck::positive(), "time", "length of all time steps; if not given, error control varies it");
   section.key("maximum step", maximum_step, deck::positive(), "time", "upper limit for the length of time steps; no limit if not given");
   section.key("minimum step", minimum_step, deck::positive(), "time",
-              "smallest allowed length of time steps with error control. If a shorter one is needed, the run ends; if not given, 1e-9 divided by "
-              "the rate of the flow");
+              "smallest allowed length of time steps with error control. If a shorter step is needed, the run fails; if not given, 1e-9 "
+              "divided by the rate of the flow");
   section.key("steady tolerance", steady_tolerance, deck::positive(), "1",
               "value of the series `shape_velocity` below which the shape counts as steady and the run ends: root mean square of the "
               "normal velocity that changes the shape, divided by the velocity scale of the flow (6.8). If not given, the run continues "

@@ -41,8 +41,8 @@ struct PeriodicOptions {
 /// crossing of the plane within the last step. If the flow itself is periodic, T is its period, and there is no plane.
 class ReturnMap {
  public:
-  /// Defines the plane (4.27) through the shape c at whose crossing the motion has returned. Motion and options must outlive this object. Collective,
-  /// like all other functions.
+  /// Defines the plane (4.27) through the shape c. The motion has returned when it crosses this plane. Motion and options must outlive this object.
+  /// Collective, like all other functions.
   ReturnMap(coupling::Dynamics& dynamics, const TimeOptions& time, std::shared_ptr<Teuchos::ParameterList> nox, const PeriodicOptions& options,
             Net c);
 

@@ -10,7 +10,7 @@ namespace tanktread::motion {
 /// Memory of the step controller between steps, stored at the front of State::memory.
 struct Memory {
   double error = 0;  ///< local error of the last accepted step divided by the tolerance; 0 before the first step
-  double step = 0;   ///< size of that step
+  double step = 0;   ///< size of the last accepted step
 };
 
 /// Stage of an implicit scheme, y - shift v(y) = rhs with the velocity v, and its solution.
@@ -18,7 +18,7 @@ struct Stage {
   Net y;                ///< start value of the iteration, and after `solve` the solution
   Net slope;            ///< slope (y - rhs)/shift of the result
   double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier stage; 0 if none was observed yet
-  double error = 0;     ///< bound of the distance of the result to the exact solution of the stage, in the norm of `Time/tolerance`
+  double error = 0;     ///< upper bound of the distance of the result from the exact solution of the stage, in the norm of `Time/tolerance`
   int iterations = 0;   ///< evaluations of the defect
   bool solved = false;
 

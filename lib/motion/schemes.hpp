@@ -29,7 +29,7 @@ std::vector<double> values_of(const Memory& memory) {
 /// Gustafsson 1991.
 double step_factor(double error, double previous, int power);
 
-/// Returns the fraction of the tolerance that the error of a step may have, for a scheme of this order whose error estimate has the same order as its
+/// Returns the largest allowed error of a step divided by the tolerance, for a scheme of this order whose error estimate has the same order as its
 /// result. The error of a run is the sum of the errors of its steps, whose number grows like tolerance^(-1/(order + 1)). With this fraction the sum
 /// stays proportional to the tolerance (Soderlind & Wang 2006):
 ///
@@ -80,8 +80,8 @@ class Scheme : public Integrator {
   TimeOptions options_;
 };
 
-/// Bogacki & Shampine 1989, explicit, of third order with an embedded second-order result. It needs three velocity evaluations per step, because the
-/// last slope is the first one of the next step. Stable for dt rho <= 2.51 with rho the stiffness (4.5).
+/// The explicit scheme of Bogacki & Shampine (1989), of third order with an embedded second-order result. It needs three velocity evaluations per
+/// step, because the last slope of a step is the first slope of the next step. It is stable for dt rho <= 2.51 with rho the stiffness (4.5).
 class Bs3 : public Scheme {
  public:
   using Scheme::Scheme;
@@ -145,10 +145,10 @@ class CrankNicolson : public Scheme {
 ///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
-/// The formula b^ is of third order but not stable. e2 is the difference between b and b^, in which the two solves damp the stiff modes. A step
-/// multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the stability functions of b and b^. The modulus of this factor
-/// is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth order, so its secants are not
-/// used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors of the two stages
+/// The formula b^ is of third order but not stable. e2 is the difference between the results of b and b^, after two solves that damp its stiff modes.
+/// A step multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the stability functions of b and b^. The modulus of this
+/// factor is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth order, so its secants are
+/// not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors of the two stages
 /// (4.28).
 ///
 /// The first slope is the last slope of the previous step. Slopes follow from the stage equations without further evaluations. Stages are predicted

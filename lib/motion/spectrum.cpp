@@ -30,13 +30,13 @@ void SpectrumOptions::declare(deck::Section& section) {
               "value first. If not given, the rate of the flow; without flow, the relaxation rate of the membrane, modulus / (viscosity x "
               "R_C), where R_C is the radius of the sphere with the particle's volume");
   section.key("block", block, deck::between(1, 50), "1",
-              "number of vectors in a block of Spectrum/method `krylov`. It should be at least the number of modes with equal growth "
-              "rates, which symmetric shapes have, because further ones may be missed");
+              "number of vectors in a block of Spectrum/method `krylov`. It should be at least the largest number of modes with equal growth "
+              "rates, which symmetric shapes have; otherwise some of these modes may be missed");
   section.key(
       "parity", parity, deck::Rule{"1 or -1", [](double sign) { return std::abs(sign) == 1; }}, "1",
-      "mirror symmetry of the eigenmodes that are sought, three numbers for the mirror planes normal to x1, x2, x3 that the steady shape "
-      "has: 1 for symmetric, -1 for antisymmetric modes, which break the symmetry; all 1 if not given. Under half turns and point "
-      "symmetry, modes have the product of the parities of the axes. With Symmetry/use `none` modes of all parities are found at once");
+      "mirror symmetry of the eigenmodes that are sought, three numbers for the mirror planes normal to x1, x2, x3 that the steady shape has: 1 "
+      "for symmetric, -1 for antisymmetric modes, which break the symmetry; all 1 if not given. The parity under a half turn or point reflection "
+      "is the product of the parities of the axes that it reverses. With Symmetry/use `none`, modes of all parities are found at once");
   section.key("difference", difference, deck::between(1e-7, 1e-1), "R_C",
               "step of the finite differences from which the Jacobian of the velocity is computed: largest displacement of a control "
               "point in a perturbed shape, divided by R_C, the radius of the sphere with the particle's volume");
@@ -49,8 +49,8 @@ const char* name(ModeKind kind) {
 
 void Mode::add_columns(const std::string& number, Columns& to) const {
   to.add(rate.real(), {"rate_" + number, "1/time",
-                       "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. The modes are in the "
-                       "order of Spectrum/number and Spectrum/near"});
+                       "growth rate of eigenmode k of the steady shape, k from 1: real part of the eigenvalue. Spectrum/number and "
+                       "Spectrum/near determine the order of the modes"});
   to.add(std::abs(rate.imag()), {"frequency_" + number, "1/time",
                                  "angular frequency of eigenmode k of the steady shape, in radians per time: magnitude of the imaginary "
                                  "part of the eigenvalue; 0 if the mode does not oscillate"});

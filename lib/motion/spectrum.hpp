@@ -27,7 +27,7 @@ struct SpectrumOptions {
   std::string method = "dense";    ///< dense, krylov
   std::optional<double> shift;     ///< shift for krylov, 1/time
   int block = 3;                   ///< block size for krylov
-  std::optional<Vec3> parity;      ///< parity of the modes under mirror planes across x1, x2, x3; empty: parity of the shape
+  std::optional<Vec3> parity;      ///< parity of the modes under reflections of x1, x2, x3; empty: parity of the shape
   double difference = 1e-5;        ///< size of the displacements in the finite differences for the Jacobian, divided by the particle radius R_C
 
   void declare(deck::Section& section);
@@ -55,7 +55,7 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
 ///
-/// Modes are changes of the shape, not motions of the control points along it. In a steady shape the velocity v is a sum of relabellings
+/// Modes are changes of the shape, not motions of the control points along it. On a steady shape the velocity v is a sum of relabellings
 /// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
 /// quantities: the volume and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a fold, and an
 /// error of J would change their rates by the square root of the error.

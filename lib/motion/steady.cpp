@@ -21,10 +21,10 @@ void SteadyOptions::declare(deck::Section& section) {
   section.key("iterations", iterations, deck::between(1, 100000), "1",
               "largest number of iterations of NOX (a package of Trilinos) in the search for the steady shape");
   section.key("step", step, deck::positive(), "time",
-              "length of the implicit time step that preconditions the equations of the steady shape; decrease it if the shape is not "
-              "found. If not given, 0.5 divided by the rate of the flow (without flow, 0.5 relaxation times), but at most ten times the "
-              "relaxation time of any membrane. This time is viscosity x R_C/modulus, where R_C is the radius of the sphere with the "
-              "particle's volume");
+              "length of the implicit time step that preconditions the equations of the steady shape; decrease it if the shape is not found. "
+              "If not given, 0.5 divided by the rate of the flow (without flow, 0.5 relaxation times), but at most ten times the relaxation "
+              "time of any membrane. The relaxation time is viscosity x R_C/modulus, where R_C is the radius of the sphere with the particle's "
+              "volume");
 }
 
 namespace {
@@ -76,7 +76,7 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Makes implicit time steps until a step of the full length equations.step() changes x by less than `little`. Earlier steps are shorter.
+/// Makes implicit time steps, each so short that it changes x by less than `little`, until a step of the full length equations.step() would do so.
 void approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;

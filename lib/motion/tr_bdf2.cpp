@@ -21,7 +21,7 @@ struct Orders {
   double second = 1, third = 1;
 };
 
-/// Content of State::memory. `step` comes first, because Bdf3 reads it.
+/// Content of State::memory. `step` is the first member, because Bdf3 reads it from the front of the memory.
 struct Remembered {
   Memory step;
   Orders orders;

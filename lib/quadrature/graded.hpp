@@ -9,7 +9,7 @@
 
 namespace tanktread::quadrature {
 
-/// Required accuracy of an integral over an element with the surface element dA, at the distance r from the target. For the kernel 1/r (`steep` = 0):
+/// Required accuracy of an integral over an element. dA is the area element, and r is its distance from the target. For the kernel 1/r (`steep` = 0):
 /// |error of int dA / r| <= `allowed`, a length. For the kernel 1/r^2 (`steep` > 0, a length): |error of int `steep` dA / r^2| <= `allowed`. The
 /// smooth factors of the integrand (density, metric) are integrated to the relative accuracy `tolerance` by `smooth_order` Gauss points on the whole
 /// element.

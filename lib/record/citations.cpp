@@ -18,7 +18,7 @@ struct Citation {
   bool (*used)(const Scene& scene);
 };
 
-// The publications that doc comments of the library name as sources, if title or journal, volume and year are known.
+// Publications that comments of the library name as sources. Only publications whose title, or journal with volume and year, is known are listed.
 constexpr std::array<Citation, 9> all{{
     {"method",
      "J. Maestre, J. Pallares, I. Cuesta, M. A. Scott: A 3D isogeometric BE-FE analysis with dynamic remeshing for the simulation of a deformable "

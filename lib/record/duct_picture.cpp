@@ -82,8 +82,8 @@ std::vector<double> flat(const std::vector<Vec3>& rows) {
   return out;
 }
 
-/// Data along the channel, on the line on the wall that begins at the first point of the outline. s: arc length along the centre line. shear:
-/// magnitude of the tangential traction.
+/// Data along the line on the channel's wall that begins at the first point of the outline. s: arc length along the centre line. shear: magnitude of
+/// the tangential traction.
 struct WallLine {
   std::vector<double> s, shear, pressure;
 };

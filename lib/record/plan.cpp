@@ -296,8 +296,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
                        (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
 }
 
-/// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, each has one line, joined
-/// from its lines; consecutive particles with equal lines share one line.
+/// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, each has one line, into
+/// which its lines are joined; consecutive particles with equal lines share one line.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   const bool responds = std::ranges::any_of(alone, [](const Scene& one) {

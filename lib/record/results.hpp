@@ -82,7 +82,8 @@ class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
-  /// Returns the newest checkpoint of the directory if the run is resumed, and cuts `run.h5` back to it. Throws UserError if there is no checkpoint.
+  /// Returns the newest checkpoint of the directory if the run is resumed. Removes later rows of `run.h5`. Throws UserError if there is no
+  /// checkpoint.
   std::optional<Resumed> resumed();
 
   /// Sets the body to which later snapshots refer, and its Bezier extraction.

@@ -25,7 +25,7 @@ constexpr Entry fields[] = {
      "load of the fluids on the membrane, force per unstressed area (3.7) or per current area (3.6), depending on Membrane/load measure"},
     {"traction", "force/length^2", "all",
      "load of the fluids on the membrane per current area; for a single rigid body the traction on it, for one of several bodies the load "
-     "of (2.23)"},
+     "Delta f of equation (2.23)"},
     {"displacement", "length", "capsule, drop", "displacement x - X of the surface from the unstressed shape X"},
     {"velocity", "length/time", "capsule, drop, free body",
      "velocity of the surface; for a free rigid body the velocity of its rigid motion"},
@@ -43,7 +43,8 @@ constexpr Entry fields[] = {
      "displacement of eigenmode k of the Spectrum, scaled to a largest displacement of 1; real part of an oscillating mode"},
     {"mode k imaginary", "1", "capsule, drop", "imaginary part of the displacement of the oscillating eigenmode k of the Spectrum"},
     {"pressure", "force/length^2", "prescribed body",
-     "pressure p = -t.n on the rigid body, with the traction t and the normal n; its mean over the surface is that of the exact solution"},
+     "pressure p = -t.n on the rigid body, with the traction t and the normal n; its mean over the surface equals the mean of the exact "
+     "solution, if that is known"},
     {"position error", "length", "with requested accuracy", "estimated error of the position of the surface, along its normal (9.1)"},
     {"pressure error", "force/length^2", "prescribed body",
      "error p - p_exact of the pressure on the rigid body, if the exact solution is known"},
@@ -63,7 +64,7 @@ constexpr Entry entries[] = {
      "last value of the estimated error of every series; `/error/<name>` in `run.h5` has all values"},
     {"accuracy", "", "with requested accuracy",
      "accuracy requests with their estimated errors, and the levels with their settings and wall-clock seconds"},
-    {"counts", "1", "all", "amount of work of the whole run, as the numbers below"},
+    {"counts", "1", "all", "amount of work of the whole run: the entries `counts/...` below"},
     {"counts/unknowns", "1", "prescribed body", "number of unknowns of the traction on the body"},
     {"seconds", "s", "all", "wall-clock time of the first MPI rank in each phase of the run; the sum is the time of the run"},
     {"memory", "bytes", "all", "largest memory in use: `largest of a rank` is the maximum over the MPI ranks, `all ranks` the sum"},

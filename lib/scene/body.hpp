@@ -75,7 +75,7 @@ struct Body {
 /// particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
-/// Returns true if body() can copy the mesh and the resting shape of the particle of one scene to the particle of the other.
+/// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const Scene& one, const Scene& other);
 
 /// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.
@@ -84,7 +84,7 @@ void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 /// Returns the symmetry shared by the scene and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
-/// Makes the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
+/// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
 /// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 

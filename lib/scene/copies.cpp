@@ -93,7 +93,7 @@ class Packing {
     PackedSphere &a = spheres_[i], &b = spheres_[other.number];
     const Vec3 between = apart(i, other);
     const double distance = between.norm(), least = least_distance(a, b);
-    if (distance >= least || (a.fixed && b.fixed)) return true;  // spheres that must not move count as apart; check_apart tests their surfaces
+    if (distance >= least || (a.fixed && b.fixed)) return true;  // two fixed spheres may overlap; check_apart tests their surfaces
     const Vec3 direction = distance > 1e-12 * least ? Vec3(between / distance) : direction_at_random();
     const double all = clear * least - distance, of_a = a.fixed ? 0 : b.fixed ? 1 : 0.5;
     a.centre -= of_a * all * direction;
@@ -208,7 +208,7 @@ std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius,
   return copies;
 }
 
-/// Returns the number of copies on the lattice or at random positions. Throws UserError if it is too large. `of_one`: volume of a particle.
+/// Returns the number of copies on the lattice or at random positions. Throws UserError if the number is too large. `of_one`: volume of a particle.
 int count(const CopiesOptions& how, double of_one, const std::optional<stokes::PeriodicCell>& cell, const std::string& list) {
   constexpr double most = 1e6;
   double number = 0;
@@ -226,8 +226,8 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   return static_cast<int>(number);
 }
 
-/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards. Skips the random numbers of the spheres
-/// in `taken` that were drawn in the cell before, because these kinds of particles may have the same seed.
+/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards. Skips the random numbers that were used
+/// for earlier spheres in the cell (in `taken`), because earlier kinds of particles may have the same seed.
 std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
                           std::vector<PackedSphere>& taken) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));

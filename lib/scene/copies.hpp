@@ -62,10 +62,10 @@ struct CopiesOptions {
   void check(const std::string& list, bool cell) const;
 };
 
-/// Returns the kinds of particles, in which every copy is a kind of its own, named `<name> 1`, `<name> 2`, …. Copies at random positions in a box or
-/// ball do not overlap the circumscribed spheres of particles placed before. Copies at random positions in the cell, of all kinds together, are moved
-/// until no two particles overlap. Throws UserError if a file does not hold positions, if the copies do not fit, or if a copy has the name of another
-/// particle.
+/// Returns the kinds of particles after each kind with copies is replaced by one kind per copy, named `<name> 1`, `<name> 2`, …. Copies at random
+/// positions in a box or ball do not overlap the circumscribed spheres of earlier particles. Copies at random positions in the cell, of all kinds
+/// together, are moved until no two particles overlap. Throws UserError if a file does not hold positions, if the copies do not fit, or if a copy has
+/// the name of another particle.
 std::vector<ParticleKind> with_copies(const std::vector<ParticleKind>& kinds, const DomainOptions& domain);
 
 }  // namespace tanktread

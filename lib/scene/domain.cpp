@@ -143,8 +143,8 @@ void DomainRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.domain.present)) return;
   to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
          {"cell_", "length",
-          "component # (vector and direction) of the period vectors of the periodic cell at this time; unit vectors for directions that "
-          "are not periodic"});
+          "component # (number of the vector, then direction) of the period vectors of the periodic cell at this time; in directions that are "
+          "not periodic, they are unit vectors"});
   if (!to.when(scene.domain.directions() == 3)) return;
   to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
   to.add(components(stress), "11 22 33 12 13 23",
@@ -159,8 +159,8 @@ void DomainRow::add_columns(const Scene& scene, Columns& to) const {
           "the rate of strain of the flow is zero at this time"});
   to.add(normal_stress_differences, "1 2",
          {"normal_stress_difference_", "force/length^2",
-          "normal stress difference # of the particle stress: 1 is component 11 - 33 and 2 is component 33 - 22 if the flow is along x1 in "
-          "the plane x1 x3; otherwise the axes are those of the plane of the flow"});
+          "normal stress difference # of the particle stress: 1 is component 11 minus 33, 2 is component 33 minus 22. If the flow is not along "
+          "x1 in the plane x1 x3, these are components in the axes of the plane of the flow"});
 }
 
 }  // namespace tanktread

@@ -55,7 +55,7 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
-/// Returns the shape in the last state of a run. The rows of x after the shape, if any, are coefficients of the surfactant.
+/// Returns the shape in the last state of a run. The rows of x after the shape, if any, are coefficients of surface fields.
 Net shape_of(const output::Checkpoint& run) {
   const Eigen::MatrixXd& x = run.arrays.at("x");
   const auto alone = run.arrays.find("unstressed");

@@ -39,7 +39,7 @@ bool translated(const Net& a, const Net& b) {
   return (change.rowwise() - change.row(0)).cwiseAbs().maxCoeff() < 1e-14 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
 }
 
-/// Sets geometry and membrane of member p: shared with an equal earlier member, or new.
+/// Sets the geometry and the membrane of member p. Shares each with an earlier member for which it is equal, or constructs a new one.
 void share_or_make(std::vector<Member>& members, std::size_t p) {
   Member& member = members[p];
   const Body& body = *member.body;
@@ -95,7 +95,7 @@ void arrange(std::vector<Member>& members) {
     member.block = blocks[p];
     if (members.size() == 1) continue;  // with one member, the coupled system constructs the geometry and the membrane
     Body& body = *member.body;
-    body.symmetry = surface::Symmetry(body.space.n_points);  // trivial group: several particles need not have a symmetry of one of them
+    body.symmetry = surface::Symmetry(body.space.n_points);  // no symmetry: a symmetry of one particle need not be a symmetry of all particles
     share_or_make(members, p);
   }
 }

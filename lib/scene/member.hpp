@@ -37,7 +37,7 @@ struct Member {
   std::string column(const std::string& what) const { return name.empty() ? what : name + "/" + what; }
 };
 
-/// Returns the drive of a rigid body: the prescribed motion, or the force (including the weight) and the torque.
+/// Returns what drives a rigid body: the prescribed motion, or the force (including the weight) and the torque.
 coupling::Rigid rigid(const Scene& scene, const Body& body);
 
 /// Builds all particles of a scene in their resting shapes.

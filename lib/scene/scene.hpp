@@ -164,8 +164,8 @@ struct Scene : ParticleKind {
   bool reciprocal_forces() const;    ///< true if forces are computed by the reciprocal theorem, as set by `Particle/forces` or by default
   double radius() const;             ///< R_C, radius of the sphere of equal volume
   double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
-  double rate() const;               ///< speed/R_C; if the speed is 0, the rate of the membrane, modulus/(viscosity x R_C); units 1/time
-  double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
+  double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
+  double speed() const;              ///< speed that defines Ca: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
                                      ///< gradient
   double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body

@@ -117,7 +117,7 @@ std::shared_ptr<const surface::TubeWall> wall(const Scene& scene, const Body& bo
   if (!scene.tube.present) return {};
   if (const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(body.duct.get())) return channel->surface();
   const surface::Outline& outline = body.duct->outline();
-  double first = 0, last = 0;  // extent of the particle along x1 from its centroid, at rest and at the start
+  double first = 0, last = 0;  // smallest and largest x1 relative to the centroid, of the resting and the initial shape
   for (const Net* net : {&body.rest, &body.initial}) {
     const Eigen::ArrayXd x1 = net->col(0).array() - surface::measures(body.space, *net).centroid[0];
     first = std::min(first, x1.minCoeff()), last = std::max(last, x1.maxCoeff());
@@ -158,7 +158,8 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   to.add(pressure_drop,
          {"disturbed_pressure_drop",
           "force/length^2",
-          "pressure drop in the tube caused by the particles, in addition to that of the empty tube (2.7); for a train, of one period",
+          "pressure drop in the tube caused by the particles, in addition to the pressure drop of the empty tube (2.7); in a periodic tube, "
+          "over one period",
           {},
           tube});
   add_gap(gap, to);
@@ -180,8 +181,8 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
   }
   to.add(checks.flux, {"disturbance_flux",
                        "1",
-                       "flow rate of the disturbance velocity through the inlet divided by that of the empty duct; a measure of error that "
-                       "vanishes in the exact solution (2.14)",
+                       "flow rate of the disturbance velocity through the inlet divided by the flow rate of the empty duct; a measure of error "
+                       "that vanishes in the exact solution (2.14)",
                        {},
                        tube});
   to.add(checks.force,
@@ -200,8 +201,8 @@ void TubeRow::add_columns(const Scene& scene, Columns& to) const {
                                  tube});
   to.add(checks.pressure_by_flux, {"pressure_drop_by_flux",
                                    "force/length^2",
-                                   "pressure drop caused by the particles, computed from zero flow rate of the disturbance; agrees with "
-                                   "`disturbed_pressure_drop` in the exact solution",
+                                   "pressure drop caused by the particles, computed from the condition that the disturbance has zero flow "
+                                   "rate; agrees with `disturbed_pressure_drop` in the exact solution",
                                    {},
                                    tube});
   to.add(checks.pressure_by_force, {"pressure_drop_by_force",

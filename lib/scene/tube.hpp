@@ -41,15 +41,15 @@ TubeRow tube_row(const coupling::Tube& tube, double amplitude, coupling::Evaluat
 /// pressure drop. Collective.
 TubeRow tube_row(coupling::Tube& tube, double amplitude, const Net& density, double pressure_drop);
 
-/// Returns the smallest position of a particle's centroid in a row of the results: x1, or in a channel the coordinate along the centre line.
+/// Returns the smallest axial coordinate of a particle's centroid in a row of the results: x1, or in a channel the coordinate along the centre line.
 double least_way(const Scene& scene, const Body& body, const Columns& row);
 
 /// Returns a warning if the gap to the wall in a row of the results is smaller than 0.6 of the element size of the wall, because the error of the
 /// wall traction then exceeds 1e-4. Otherwise returns an empty text.
 std::string coarse_wall(const Scene& scene, const Body& body, const Columns& row);
 
-/// Throws RunFailure if the particles at x have moved so far apart that the modelled part of the tube is too short for them. Does nothing for a
-/// single particle, in a channel, or in a periodic tube.
+/// Throws RunFailure if the modelled part of the tube is too short for the shape x, because particles have moved apart or become long. Does nothing
+/// in a channel or in a periodic tube.
 void check_spread(const Scene& scene, const surface::TubeWall& wall, const surface::Geometry& geometry, const Net& x);
 
 }  // namespace tanktread

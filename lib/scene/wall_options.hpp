@@ -22,10 +22,10 @@ struct WallOptions {
   std::string shape = "plane";
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   std::optional<double> distance;                 ///< distance of a second plate along the normal
-  std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the flow
+  std::optional<Vec3> velocity, second_velocity;  ///< velocities of the plates; if not set, a plate moves with the ambient flow
   std::optional<int> elements_per_period;         ///< number of elements of a plate along the longest period
   bool solid = false;         ///< true if the walls are plates in a periodic cell, solved for by their tractions; false if the wall acts by images
-  double contact_gap = 1e-3;  ///< gap divided by the radius R_C; the run ends if the gap is smaller
+  double contact_gap = 1e-3;  ///< smallest allowed gap, divided by the radius R_C; the run ends if a gap is smaller
 
   void declare(deck::Section& section);
 

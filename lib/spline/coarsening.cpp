@@ -67,8 +67,8 @@ struct Remover {
     }
   }
 
-  /// Removes the edges from this start to the next perpendicular edge, and their images under all symmetries, or removes nothing. Returns whether
-  /// they were removed.
+  /// Removes the edges from `start` to the next perpendicular edge, and their images under all symmetries, or removes nothing. Returns whether they
+  /// were removed.
   bool remove_images(Ray start) {
     std::vector<Ray> starts{start}, gone;
     for (const LatticeMap& map : images) starts.push_back(image(lattice(), map, start));
@@ -178,7 +178,7 @@ TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairR
   const Lattice& l = *mesh.lattice;
   const Tiling tiling = elements(mesh);
   // Largest width and height to which an element may grow, in lattice cells. Both are powers of two. A mesh line is not removed if its coordinate is
-  // a multiple of the limit.
+  // a multiple of the smaller limit of the two elements at the line.
   std::vector<std::array<int, 2>> limit(tiling.tiles.size(), {1, 1});
   for (const Merge& m : merges) {
     const Rectangle& r = tiling.tiles[m.element];
@@ -201,7 +201,7 @@ TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairR
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // below, at a pole: marks the edge that continues a vertical line in the row of zero height (end knot)
+      if (!vertical || !l.pad) continue;  // the next lines mark the edge that continues a vertical line in the row of zero height (end knot) at poles
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

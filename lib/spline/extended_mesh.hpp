@@ -11,7 +11,7 @@
 namespace tanktread::spline {
 
 /// A T-mesh with the extensions of its T-junctions. Counts violations of the conditions for nested, linearly independent splines:
-///  - crossings: pairs of extensions along different axes that meet at a vertex. The end points of extensions belong to them. An extension that
+///  - crossings: pairs of extensions along different axes that meet at a vertex. An extension includes its two end points. An extension that
 ///    reaches an extraordinary point also counts as a crossing. A mesh without crossings is analysis-suitable (Scott et al. 2012).
 ///  - missing: edges of the lattice that an earlier extended mesh (T-mesh plus extensions) contains and the current one does not contain. If no edge
 ///    is missing, the extended meshes are nested.
@@ -85,14 +85,14 @@ class ExtendedMesh {
   int crossings_ = 0;
 };
 
-/// Returns the indices of the extraordinary points whose zone a path of new edges breaks. The zone of an extraordinary point consists of one square
-/// per face at the point. The point is a corner of the squares. Their side is `rings` times the spacing h of the point. In the zone, the mesh must be
-/// the uniform lattice of spacing h. A path breaks the zone if it has an edge there that is not on this lattice. Spline spaces are nested under
-/// refinement only if `rings` is 3.
+/// Returns the indices of the extraordinary points whose zone is broken by a path of new edges. The zone of an extraordinary point consists of one
+/// square per face at the point. Each square has a corner at the point, and its side is `rings` times the spacing h of the point. In the zone, the
+/// mesh must be the uniform lattice of spacing h. A path breaks the zone if it has an edge there that is not on this lattice. Spline spaces are
+/// nested under refinement only if `rings` is 3.
 std::vector<int> broken_zones(const TMesh& mesh, const std::vector<Ray>& path, int rings);
 
 /// Returns the lines that bisect the twelve elements in the two innermost rings around an extraordinary point. If these lines are added, the rings
-/// are uniform with half the spacing h.
+/// are uniform with the spacing h/2.
 std::vector<std::vector<Ray>> two_ring_cuts(const TMesh& mesh, int point);
 
 /// If one of the paths of edges breaks the zone of an extraordinary point (see broken_zones), adds mesh lines that halve the spacing h of this point.

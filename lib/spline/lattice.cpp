@@ -41,7 +41,7 @@ void connect(Lattice& l) {
       l.cell[v][s] = c;
       l.corner[v][s] = std::uint8_t(k);
       l.slot[c][k] = std::uint8_t(s);
-      const int last = l.corners[c][(k + 3) & 3];  // the next slot points there
+      const int last = l.corners[c][(k + 3) & 3];  // neighbour of v in the slot after s
       if (last == l.neighbour[v][0]) break;
       i = 0;
       while (l.corners[around[v][i]][(which[v][i] + 1) & 3] != last) ++i;

@@ -6,8 +6,8 @@
 
 namespace tanktread::spline {
 
-/// A point of the parametric domain: a macro face (face of the cube, or the whole polar domain) and coordinates in [0, 1] along its sides. These do
-/// not depend on the mesh.
+/// A point of the parametric domain: a macro face (face of the cube, or the whole polar domain) and coordinates in [0, 1] along its sides. Face and
+/// coordinates do not depend on the mesh.
 struct Place {
   int face = 0;
   double x = 0, y = 0;

@@ -14,8 +14,8 @@
 namespace tanktread::spline {
 namespace {
 
-/// Returns the blossom (polar form), at three knots (lattice units), of a periodic cubic spline on the initial mesh. Its coefficients are the cosines
-/// (or sines) of the azimuths of the mesh vertices.
+/// Returns the blossom (polar form), at three knots (lattice units), of a periodic cubic spline on the initial mesh. The coefficients of the spline
+/// are the cosines (or sines) of the azimuths of the mesh vertices.
 double blossom_of_circle(const Lattice& l, const std::array<double, 3>& knots, bool sine) {
   const int m = l.units / l.base, span = int(std::floor(knots[1] / l.base));
   double d[4];
@@ -109,8 +109,8 @@ class Shares {
   int n_points() const { return n_points_; }
   int per_pole() const { return per_pole_; }
 
-  /// Returns where function k of a pole is collocated with PoleRule::c1: the anchor that has this collocation point as its generalised Greville
-  /// point, or -1 for the pole itself. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
+  /// Returns the anchor whose generalised Greville point is the collocation point of function k of a pole with PoleRule::c1, or -1 if the collocation
+  /// point is the pole. `ahead`: true for the pole at the end of the meridian, false for the pole at its start.
   int site(bool ahead, int k) const { return sites_[ahead][k]; }
 
  private:

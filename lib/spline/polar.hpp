@@ -93,7 +93,7 @@ const std::array<Corners, 3>& thirds_of_triangle();
 
 /// One of the non-degenerate Bezier elements that replace an element with a side at a pole.
 struct PolePiece {
-  double from = 0, to = 1;     ///< range of v, a local coordinate of the degenerate element, in the triangle that contains this piece
+  double from = 0, to = 1;     ///< range of the local coordinate v of the degenerate element in the triangle that contains this piece
   Corners corners;             ///< corners of the piece, in barycentric coordinates of the triangle that contains it
   Eigen::MatrixXd conversion;  ///< maps Bezier points of the degenerate element to Bezier points of the piece; shape (16, 16)
 

@@ -23,14 +23,14 @@ Ray image(const Lattice& lattice, const LatticeMap& map, Ray ray);
 /// Returns the image, under the symmetry `map`, of each ray of a path.
 std::vector<Ray> image(const Lattice& lattice, const LatticeMap& map, const std::vector<Ray>& path);
 
-/// Index of the element that a symmetry of the mesh maps a mesh element to, and whether the map exchanges s and t.
+/// Image of a mesh element under a symmetry of the mesh: index of the image element, and whether the symmetry exchanges s and t.
 struct TileImage {
   int tile;
   bool exchanged;
 };
 TileImage image(const Lattice& lattice, const LatticeMap& map, const Tiling& tiling, int tile);
 
-/// Returns the unique map, mirrored or not, that maps one ray to another; nothing if the lattice does not have this symmetry.
+/// Returns the unique symmetry of the lattice that maps the ray `from` to the ray `to` and is mirrored or not, as given; nothing if there is none.
 std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, bool mirrored);
 
 /// Returns the map of the lattice that agrees with a map of Bezier elements; nothing if there is no such map. `element`: for every Bezier element e,
@@ -80,9 +80,9 @@ struct Merge {
   int s = 1, t = 1;
 };
 
-/// Removes mesh lines between elements that may grow (Merge). The two elements at a line may each grow to a certain width; let w be the smaller one.
-/// The line is removed if its coordinate is not a multiple of w. Lines of the initial mesh stay. The uniform rings of elements around an
-/// extraordinary point are coarsened only as a whole.
+/// Removes mesh lines between elements that may grow (Merge). Each of the two elements at a line may grow to a largest width; let w be the smaller of
+/// the two widths. The line is removed if its coordinate is not a multiple of w. Lines of the initial mesh stay. The uniform rings of elements around
+/// an extraordinary point are coarsened only as a whole.
 ///
 /// All these lines are removed together, and the mesh is repaired afterwards. If they were removed one by one, many lines would have to stay because
 /// of T-junctions on neighbouring lines. The new spline space need not be contained in the old one, so fields are transferred by Projection. With

@@ -21,7 +21,7 @@ Eigen::SparseMatrix<double> assemble(int n, const std::vector<LocalMatrix>& loca
 
 /// BiCGSTAB with the incomplete LU factors ILUT (Saad 1994) of Eigen. The inverses of mass and collocation matrices of splines decay within a few
 /// elements. So with factors that have only a few more entries than the matrix, three or four iterations are enough for any size. The cost of factors
-/// and solution is proportional to the number of unknowns, whereas the cost of complete factors grows with its power 1.5.
+/// and solution is proportional to the number n of unknowns, whereas the cost of complete factors grows like n^1.5.
 class IncompleteSolver {
  public:
   IncompleteSolver();

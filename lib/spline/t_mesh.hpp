@@ -20,12 +20,13 @@ struct TMesh {
 };
 
 /// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n >= 3. The lattice permits `levels` bisections of each element.
-/// Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary points would overlap) or
-/// the lattice would not fit into memory.
+/// Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary points would overlap) or the
+/// lattice is too large: more than 12 levels, or n 2^levels above 1536.
 TMesh cube(int elements_per_side, int levels = 0);
 
 /// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
-/// each element. Spline spaces are in polar.hpp. Throws UserError if m < 4 or r < 4, or the lattice would not fit into memory.
+/// each element. Spline spaces are in polar.hpp. Throws UserError if m < 4, r < 4, or the lattice is too large: more than 12 levels, or m 2^levels or
+/// r 2^levels above 4096.
 TMesh polar(int azimuthal_elements, int meridional_elements, int levels = 0);
 
 /// Returns whether the vertex is an anchor, which means that it has a control point: mesh edges of both directions meet there. T-junctions and

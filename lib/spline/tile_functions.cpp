@@ -29,7 +29,7 @@ void reach_along(const TMesh& mesh, Ray ray, int out[2]) {
 
 int width_along(const Rectangle& r, int turn) { return turn & 1 ? r.height : r.width; }
 
-/// Returns the number of lattice cells of the mesh element that are behind `cell`, where `turn` is the forward direction (see Walker).
+/// Returns the number of lattice cells between `cell` and the rear side of its mesh element r, where `turn` is the forward direction (see Walker).
 int behind(const Lattice& l, const Rectangle& r, int cell, int turn) {
   const int x = l.x_of(cell) - r.x, y = l.y_of(cell) - r.y;
   const int cells[4] = {x, y, r.width - 1 - x, r.height - 1 - y};

@@ -12,8 +12,8 @@ namespace tanktread::spline {
 /// Represents a field in a space that contains the old space. Every element of `to` must be inside one element of `from`, as after refinement.
 ///
 /// On elements that both spaces have in common, with the same functions, control values are copied bitwise. The other values are computed by least
-/// squares at the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. Otherwise all values are
-/// computed again by least squares. Both spaces must outlive this object.
+/// squares at the 4 x 4 Gauss points of the changed elements. If the spaces are nested, the residual is zero to round-off. If the spaces are not
+/// nested, all values are computed again by least squares. Both spaces must outlive this object.
 class Transfer {
  public:
   Transfer(const Space& from, const Space& to);
@@ -33,7 +33,7 @@ class Transfer {
 };
 
 /// Projects a field to another space by least squares at the 4 x 4 Gauss points of the elements of both spaces, weighted by parametric area. Uses one
-/// factorisation for all fields. Both spaces must outlive it.
+/// factorisation for all fields. Both spaces must outlive this object.
 class Projection {
  public:
   Projection(const Space& from, const Space& to);

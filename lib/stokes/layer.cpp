@@ -229,7 +229,7 @@ void Layer::add_forces_by_clusters(const Targets& targets, Net& u) {
 
 Vec3 Layer::mean_density() const {
   Vec3 mean;
-  for (int c = 0; c < 3; ++c) mean[c] = std::accumulate(density_[c].begin(), density_[c].end(), 0.) / n_nodes();  // wherever the array lies
+  for (int c = 0; c < 3; ++c) mean[c] = std::accumulate(density_[c].begin(), density_[c].end(), 0.) / n_nodes();  // independent of memory alignment
   return mean;
 }
 

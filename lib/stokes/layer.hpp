@@ -36,14 +36,14 @@ struct NearPoints {
   std::vector<int> point;
 };
 
-/// Returns rows of a net as vectors.
+/// Returns the given rows of a net (one point or vector per row) as vectors.
 inline std::vector<Vec3> rows_of(const Net& net, std::span<const int> rows) {
   std::vector<Vec3> all;
   for (const int i : rows) all.push_back(net.row(i).transpose());
   return all;
 }
 
-/// Treatment of the images of surfaces on a lattice.
+/// Options for the periodic images of the surfaces on a lattice.
 struct Repetition {
   bool assembled = false;  ///< true: assembled rows include the near images; assemble_rest() adds all other images (PeriodicSum)
   std::array<Vec3, 2> across{Vec3::Constant(1e300), Vec3::Constant(-1e300)};  ///< lowest and highest lattice coordinates of targets off the
@@ -56,16 +56,16 @@ struct Repetition {
 ///   single:  u(x0) = sum_p (k_p / 8 pi) int_p G(x, x0) f dG                                 f = sum_B f_B N_B               (2.1)
 ///   double:  u(x0) = sum_p (k_p / 8 pi) int_p (f_j(x) - f_j(x0)) T_ijk(x, x0) n_k dG        n out of the surface            (2.2)
 ///
-/// For a target on a surface, f(x0) is the density there, so that no principal value is needed. The contribution of the surface that contains the
-/// target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the surfaces,
-/// f(x0) is a constant given by the caller, by default 0. If the target is outside a closed surface, this constant does not change the result (2.3).
+/// In the double layer, f(x0) is the density at a target on a surface, so that no principal value is needed. The contribution of the surface that
+/// contains the target equals k_p times the sum of the principal value and f/2. If f is a rigid motion of all surfaces, u is 0. For a target off the
+/// surfaces, f(x0) is a constant given by the caller, by default 0. This constant does not change u if the target is outside a closed surface (2.3).
 ///
 /// The far-field sum over the Gauss nodes of all panels is evaluated to the tolerance, directly or by clusters (TreeSum). On panels that are close to
-/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. Its tolerance is
-/// relative to the surface of the panel. The value at a target does not depend on which other targets are requested. `desingularised` uses only the
-/// Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed surface: int G n dG = 0, and the boundary integral
-/// identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density at the target. After Klaseboer, Sun & Chan, J. Fluid
-/// Mech. 696, 2012, who use another flow.
+/// a target or contain it, near-singular or singular quadrature (NearField, SelfField) replaces the panel's terms of this sum. The tolerance of this
+/// quadrature is relative to an integral over the panel's whole surface. The value at a target does not depend on which other targets are requested.
+/// The quadrature rule `desingularised` uses only the Gauss nodes. It subtracts the singularity of the single layer by two identities of a closed
+/// surface: int G n dG = 0, and the boundary integral identity of the linear flow (n0.r) f_t, where n0 is the normal and f_t the tangential density
+/// at the target. After Klaseboer, Sun & Chan, J. Fluid Mech. 696, 2012, who use a different flow.
 class Layer {
  public:
   enum class Kernel { single_layer, double_layer };
@@ -75,7 +75,7 @@ class Layer {
   Layer(Kernel kernel, const spline::Space& space, const Sites& sites, const quadrature::Options& options, std::vector<double> factor = {});
 
   /// Sets the unstressed surface, which Measure::reference needs. Its areas are stored for all far nodes and all points of singular rules. `present`:
-  /// meaning of Measure::by_element for each element: the current area if true, the unstressed area if false.
+  /// for each element, whether Measure::by_element selects the current area (true) or the unstressed area (false).
   void set_reference(const Net& unstressed, std::vector<bool> present = {});
 
   /// Sets the symmetry that all later shapes and densities have. All later targets must be fundamental sites. If the far sum of a single layer uses
@@ -103,9 +103,9 @@ class Layer {
   /// on a lattice. The blocks assembled for near control points do not include the wall.
   void set_wall(const PlaneWall& wall);
 
-  /// If far sums use clusters, divides the far sums at the sites `everybody` among callers 0 .. parts - 1. In these rows, `apply` then computes only
-  /// the part of this caller, and the rows must be summed over all callers. Near-singular and singular quadrature is included only by the caller that
-  /// requests the row.
+  /// If far sums use clusters, divides the far sums at the sites `everybody` among the ranks 0 .. parts - 1; `part` is the number of this rank. Then
+  /// `apply` computes only the share of this rank in the rows `everybody`. The caller must sum these rows over all ranks. Near-singular and singular
+  /// quadrature is included only by the rank that requests the row.
   void share(int part, int parts, std::vector<int> everybody);
   bool shared() const { return !everybody_.empty(); }
 

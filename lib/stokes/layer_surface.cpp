@@ -13,8 +13,8 @@ namespace {
 constexpr double small = 0.6;
 
 /// Returns the number of Gauss points per direction of the far rule. The number was chosen from errors measured on deformed capsules at n = 3, 6 and
-/// 12 (tests/verify/layers.cpp). For targets off the surface the kernel is smoother, because near rules replace the far rule at small distances: with
-/// three points the far sum has an error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
+/// 12 (tests/verify/layers.cpp). Targets off the surface need fewer points, because near rules replace the far rule at small distances: with three
+/// points the far sum has an error of 1e-8 to 2e-7 (tests/verify/tube_gap.cpp).
 int far_order(const quadrature::Options& options, bool on_surface = true) {
   if (options.rule != "adaptive") return options.points;
   if (options.tolerance >= (on_surface ? 1e-4 : 1e-5)) return 3;

@@ -8,7 +8,7 @@
 namespace tanktread::surface {
 namespace {
 
-/// Buffer for n numbers. Allocates memory only if n is above 3 * 64, the number of coordinates of 64 control points.
+/// Buffer for n numbers. Allocates heap memory only if n is above 3 * 64, the number of coordinates of 64 control points.
 struct Room {
   explicit Room(int n) {
     if (n <= most) return;

@@ -41,7 +41,8 @@ struct Block {
 std::vector<Block> blocks_by_degree(const spline::Space& space);
 
 /// The extraction of a space as a map between control nets and Bezier points. It is computed once per mesh and can be applied to any number of nets.
-/// Equal extraction matrices, which most elements of a uniform mesh and equal particles have, are stored once, so they stay in the cache.
+/// Equal extraction matrices are stored only once, so that they stay in the cache. Most elements of a uniform mesh, and the elements of equal
+/// particles, have equal matrices.
 class BezierMap {
  public:
   explicit BezierMap(const spline::Space& space);
@@ -62,7 +63,7 @@ class BezierMap {
  private:
   struct Element {
     int degree, functions, first;  ///< degree p; number of functions; index in `points_` of the element's first control point
-    std::size_t operation;         ///< start in `by_bezier_` and `by_function_`
+    std::size_t operation;         ///< index in `by_bezier_` and `by_function_` at which the element's extraction matrix begins
   };
   int n_points_;
   std::vector<Block> blocks_;

@@ -46,7 +46,7 @@ Channel::Channel(const TubeOptions& options)
   check();
 }
 
-/// Reads rows s,f or s,f2,f3.
+/// Reads the scale factors from the file Channel/points, which has rows s,f or s,f2,f3.
 void Channel::read_points() {
   const std::string name = "Channel/points \"" + deck::shortened(*own_.points, 80) + "\"";
   std::vector<double> s;
@@ -66,8 +66,8 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// Returns the length of the wall contour minus the length of the centre line, on one side of the middle of the profile, for the profile `step`; 0
-/// for other profiles.
+/// For the profile `step`, returns the length of the wall contour minus the length of the centre line, from the middle of the profile to one end.
+/// Returns 0 for other profiles.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;
   return std::abs(*own_.depth) * height_ + (pi - 4) * *own_.corner_radius;
@@ -155,8 +155,8 @@ Channel::Place Channel::in_period(double u) const {
   return at;
 }
 
-/// Returns the point at arc length u of the wall contour of the profile `step`: a straight part, a rounded edge, a straight part across the
-/// channel, an edge rounded in the opposite direction, a straight part.
+/// Returns the point at arc length u of the wall contour of the profile `step`. From its middle u = 0, the contour has a straight part, a rounded
+/// edge, a straight part across the channel, an edge rounded in the opposite direction, and a straight part.
 Channel::Place Channel::step(double u) const {
   const double w = *own_.half_length, edge = *own_.corner_radius, depth = *own_.depth;
   const double inner = height_ * (1 - depth), up = depth > 0 ? 1 : -1, across = std::abs(depth) * height_ - 2 * edge, arc = pi / 2 * edge;
@@ -280,8 +280,8 @@ std::vector<double> Channel::kinks() const {
 }
 
 /// Returns the desired element length at each longitudinal parameter u: three quarters of the width of the elements at u, and less where the wall
-/// bends. In the straight ends, this length is multiplied by 2.5. Where the curvature jumps, it is multiplied by 0.25. The length changes by at most
-/// 0.3 per unit distance, so that elements grow gradually away from short ones.
+/// bends. More than 2.5 R_T away from the part of the channel that changes, it is multiplied by 2.5. Where the curvature jumps, it is multiplied by
+/// 0.25. The length changes by at most 0.3 per unit distance, so that elements grow gradually away from short ones.
 std::vector<double> Channel::sizes(const std::vector<double>& u) const {
   const double finer = 24. / options_.azimuthal_elements, radius = outline_.radius(), step = u[1] - u[0];
   const bool changes = last_ > first_;
@@ -315,7 +315,7 @@ int Channel::elements() const {
 }
 
 /// Makes knots triple where the curvature of the wall or of the centre line jumps, if there are enough elements. The slope of the wall pressure jumps
-/// there, and the shear stress behaves like d log d with the distance d. Splines that are smooth across the jump would oscillate.
+/// there, and the shear stress behaves like d log d with the distance d from the jump. Splines that are smooth across the jump would oscillate.
 std::vector<double> Channel::knots(int elements) const {
   const std::vector<double> u = lines(), size = sizes(u);
   std::vector<double> count{0};

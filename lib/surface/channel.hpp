@@ -15,12 +15,12 @@ Outline scaled(const Outline& outline, const Vec2& factor);
 ///
 ///   x = C(s) + f2(s) y2 N(s) + f3(s) y3 e3,   (y2, y3) in the unscaled outline, N = dC/ds turned towards x2 by a right angle
 ///
-/// A periodic channel with period L has no ends and no bend, and its factors satisfy f(s + L) = f(s). Its start and end are the ends of the
-/// modelled period, which is centred on the range of s in which the factors change.
+/// A periodic channel with period L has no bend, and its factors satisfy f(s + L) = f(s). start() and end() are then the ends of the modelled period,
+/// which is centred on the range of s in which the factors change.
 class Channel {
  public:
-  /// Throws UserError, with numbers in the message, if the channel is folded (cross-sections intersect), closed (a width is not above 0.02 R_T, with
-  /// R_T the tube radius) or has no straight ends.
+  /// Throws UserError, whose message states the values, if the channel is folded (cross-sections intersect), closed (a width is not above 0.02 R_T,
+  /// with R_T the tube radius) or has no straight ends.
   explicit Channel(const TubeOptions& options);
 
   struct Section {
@@ -44,7 +44,7 @@ class Channel {
   /// Returns the knots, in the longitudinal parameter u, of a spline surface for the wall from start() to end(). at() returns the section at any u in
   /// this range. At a step, the scale factors f2 and f3 change with u while the arc length s is constant.
   std::vector<double> knots(int elements) const;
-  int elements() const;  ///< number of elements along the wall that makes them about as long as wide
+  int elements() const;  ///< number of elements along the wall with which the elements are about as long as wide
   Section at(double u) const;
 
  private:

@@ -24,9 +24,9 @@ struct Disc {
   double gap(double squared_distance) const { return radius - std::sqrt(std::max(squared_distance, 0.)); }
 };
 
-/// Returns a disc for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the outline nearest to
-/// x, and its curvature is at least the curvature of the outline there. If a point of the outline lies inside the disc, the radius is reduced such
-/// that the circle passes through this point.
+/// Returns a Disc that is valid for pieces of the surface within the distance r of x. The disc touches the outline at `foot`, the point of the
+/// outline nearest to x, and its curvature is at least the curvature of the outline there. If a point of the outline lies inside the disc, the radius
+/// is reduced such that the circle passes through this point.
 Disc touching(const Outline& outline, const Vec2& x, const Nearest& foot, double r, double tolerance) {
   if (foot.distance < tolerance) return {foot.x, 0};
   const PlaneJet at = outline.at(foot.side, foot.u);
@@ -94,7 +94,7 @@ class OutlineSearch {
   double tolerance() const { return (best_.gap < 0 ? 1e-3 : 1e-8) * outline_.radius(); }
 
   /// Collects the elements that may contain the point nearest to the outline. Other elements are excluded by lower bounds of their distances,
-  /// computed from the largest disc inside the outline about its centroid.
+  /// computed from the largest disc in the outline about the centroid of the outline.
   void begin() {
     const Disc central{outline_.centroid(), outline_.distance(outline_.centroid())};
     const auto squared = [&](const Patch& patch, int b) {

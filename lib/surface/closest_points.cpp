@@ -30,7 +30,7 @@ Points bezier_points(const Patch& patch) {
   return Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>>(patch.points, 3, patch.n_bezier());
 }
 
-/// Part of an element: its Bezier points, s fastest, and the two halves into which its longer direction is divided, computed on demand.
+/// Part of an element, given by its Bezier points, s fastest. halves() divides the part across its longer direction when it is called first.
 struct Part {
   int degree = 0;
   Points points;

@@ -45,10 +45,10 @@ class ElementBoxes {
 /// Returns a lower bound of the distance between the contents of two boxes.
 double distance(const ElementBoxes::Box& a, const ElementBoxes::Box& b);
 
-/// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise returns `beyond` as the distance. Pairs of boxes,
-/// elements and parts of elements are divided in order of their lower bounds, until no pair can be closer than the best points by more than
-/// `tolerance`. The bounds of parts come from separating planes between their Bezier points. If the surfaces are nearly parallel, the error of
-/// these bounds is much smaller than the size of the parts.
+/// Returns the closest points of two surfaces if their distance is below `beyond`; otherwise returns `beyond` as the distance. Uses branch and bound:
+/// divides the pair of boxes, elements or parts of elements with the smallest lower bound, until no pair can be closer than the best points found by
+/// more than `tolerance`. The bounds of parts come from separating planes between their Bezier points. If the surfaces are nearly parallel, the error
+/// of these bounds is much smaller than the size of the parts.
 ClosestPoints closest_points(const ElementBoxes& first, const ElementBoxes& second, double tolerance, double beyond);
 
 /// Refines the closest points `near` of two elements by Newton's method. `first` and `second` are the patches of the elements. At the result, the

@@ -11,7 +11,7 @@
 
 namespace tanktread::surface {
 
-/// Calls use(degree, group) for all elements, in groups of equal degree with as many elements as a SIMD register has lanes.
+/// Calls use(degree, group) for all elements, in groups of equal degree. A group has at most as many elements as a SIMD register has lanes.
 template <class Use>
 void each_group(const BezierMap& map, std::span<const int> elements, Use use) {
   const std::size_t lanes = pack_lanes();

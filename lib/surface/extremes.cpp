@@ -67,8 +67,8 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
   return {here.value, at};
 }
 
-/// Returns the parameters of the point with the largest sign * x_c on the grid of sample(). The Bezier point with the largest sign * x_c may be far
-/// from the maximum.
+/// Returns the parameters of the point with the largest sign * x_c on the grid of sample(). This point is a start for summit(). The Bezier point with
+/// the largest sign * x_c may be far from the maximum.
 Vec2 start(const Patch& patch, int c, double sign) {
   const Grid x = sample(patch);
   int highest = 0;
@@ -92,7 +92,7 @@ double largest_coordinate(const Patches& surface, int c, double sign, double rea
   return best;
 }
 
-/// Length of the last step of Newton's method in local coordinates. The error after this step is of the order of its square.
+/// Newton's method stops after a step that is shorter than this, in local coordinates. The error is then of the order of the square of the step.
 constexpr double converged = 1e-6;
 
 /// Point of the section curve (the intersection of the surface with the plane x2 = centre_2) in one element.
@@ -116,9 +116,9 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
   return Crossing{at, std::hypot(y[0], y[2])};
 }
 
-/// Finds points of the section curve near the intersections of the plane x2 = centre_2 with the chords of a sampling grid. The intersections
-/// themselves are too far from the surface. On a nearly circular curve, the error of their distances from the centre may exceed the difference
-/// between the largest and the smallest distance.
+/// Returns points of the section curve: intersects the plane x2 = centre_2 with the chords of a sampling grid, and moves the intersections onto the
+/// curve. Without the move, on a nearly circular curve, the errors of their distances from the centre may exceed the difference between the largest
+/// and the smallest distance.
 std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   std::vector<Crossing> result;
   double above[cells + 1][cells + 1];
@@ -182,7 +182,7 @@ std::optional<double> stationary_distance(const Patch& patch, const Vec3& centre
   return std::hypot(y[0], y[2]);
 }
 
-/// An element that may contain an extremum of the distance, with sampled points of the section curve in ascending order of their distances.
+/// An element that may contain an extremum of the distance from the centre, with sampled points of the section curve in ascending order of distance.
 struct Candidate {
   int element;
   std::vector<Crossing> crossings;
@@ -193,14 +193,16 @@ struct Candidate {
   const Crossing& best(double sign, std::size_t k = 0) const { return crossings[sign < 0 ? k : crossings.size() - 1 - k]; }
 };
 
-/// Extends the range `found` by the distances at all candidates that may contain the maximum of sign * distance. On a nearly circular curve the
-/// search from a sampled maximum may converge to a minimum, or leave the element; then it starts from the next sampled point.
+/// Searches for the maximum of sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
+/// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then it starts again from the next
+/// sampled point.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);
   for (const Candidate& c : candidates) {
     const double best = c.best(sign).distance;
-    // skips elements that cannot contain the maximum, because sampling errors are smaller than the spread
+    // skips elements that cannot contain the maximum: their sampled maximum is below the largest one by more than the spread of their distances,
+    // which exceeds the sampling errors
     if (sign * best + c.spread() < sampled) continue;
     const auto add = [&](double distance) {
       found.smallest = std::min(found.smallest, distance), found.largest = std::max(found.largest, distance);

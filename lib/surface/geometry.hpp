@@ -51,7 +51,8 @@ struct PrincipalAxes {
 };
 PrincipalAxes principal_axes(const Measures& measures);
 
-/// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23) about the mean of the control points.
+/// Number of integrals per block: area, volume, and integrals of x_i and x_i x_j (11, 22, 33, 12, 13, 23), with x relative to the mean of the control
+/// points.
 constexpr int n_moments = 11;
 
 // Smallest and largest value of a quantity on a closed surface: a coordinate, or the distance of a plane section of the surface from a point. The
@@ -86,14 +87,14 @@ struct Deformation {
 };
 
 /// Computes measures of any number of control nets on one space; everything that depends only on the space is computed once. Every sum runs over the
-/// elements in one fixed order, so rows computed from a subset of the elements are bitwise equal to rows computed from all elements.
+/// elements in one fixed order, so a complete row computed from a subset of the elements is bitwise equal to the row computed from all elements.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);
 
   const BezierMap& bezier() const { return map_; }
 
-  /// Returns V(x) = 1/3 oint x.n dG (P-43), exact for polynomial elements, as x.(dV/dx)/3, because V is a cubic form in x.
+  /// Returns the volume V = 1/3 oint x.n dG (P-43), exactly. V is a homogeneous cubic function of the control points x, so V = x.(dV/dx)/3.
   double volume(const Net& net) const;
 
   /// Computes the flux vector b_A = int N_A n dG = dV/dx_A (2.8), exactly, summed over the given elements in ascending order. The row of a control

@@ -52,11 +52,12 @@ FieldAt field_of_net(const spline::Space& space, const Net& net);
 ///   e(x) = |D4 x - F D4 X| / 384,   e(phi) = |D4 phi| / 384,   phi the load per current area                       (1.5)
 ///   e(q) = |D4 q - G D4 x| / 384,   q the fields on the surface
 ///
-/// with D4 the fourth difference of values one element apart, averaged over both edges of the element in this direction. 1/384 is the constant of
-/// cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to the tangents of the current surface, and the
-/// unstressed normal to the current normal times the square root of the area stretch. So variations of X itself, largest at extraordinary points, do
-/// not count as errors where the particle has kept its shape. G is the gradient of q along the surface, so that a field that varies like x has no
-/// error for the same reason. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by about 8.
+/// with x the current and X the unstressed surface, and D4 the fourth difference of values one element apart, averaged over both edges of the element
+/// in this direction. 1/384 is the constant of cubic spline interpolation. F maps the tangents of the unstressed surface at the element's centre to
+/// the tangents of the current surface, and the unstressed normal to the current normal times the square root of the area stretch. So variations of X
+/// itself, largest at extraordinary points, do not count as errors where the particle has kept its shape. G is the gradient of q along the surface.
+/// So a field that is linear in x has no error. On smooth surfaces, halving an element divides all errors by 16; next to an extraordinary point by
+/// about 8.
 struct Errors {
   double surface = 0;  ///< error e(x) of the surface (1.5), length
   double load = 0;     ///< error e(phi) of the load phi (1.5), in the unit of phi; 0 without a load

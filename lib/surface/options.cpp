@@ -130,14 +130,13 @@ void InitialShape::declare(deck::Section& section) {
               "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle and at the "
               "position that it is to have. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("run", run, deck::Choice{},
-              "path of the results of an earlier run on the same mesh, the last shape of which becomes the initial shape, at its "
-              "position. It is a results directory, from which the newest checkpoint is read, or one snapshot of it; if the mesh of that "
-              "run was refined, the refined mesh is used. A relative path is looked up in the working directory, then in the directory "
-              "of the deck");
+              "path of the results of an earlier run on the same mesh; the last shape of that run becomes the initial shape, at the same "
+              "position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that run "
+              "was refined, the refined mesh is used. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("mode", mode, deck::at_least(1), "1",
-              "number of an eigenmode, from 1, among those that the earlier run Particle/initial shape/run computed by its section "
-              "Spectrum. The mode, scaled by `mode amplitude`, is added to the shape of that run, to see how a disturbance grows; of a "
-              "complex mode the real part is added");
+              "number, from 1, of an eigenmode that the earlier run (Particle/initial shape/run) computed with its section Spectrum. The mode, "
+              "scaled by `mode amplitude`, is added to the shape of that run, to see how a disturbance grows; of a complex mode the real part "
+              "is added");
   section.key("mode amplitude", mode_amplitude, deck::any(), "R_C",
               "largest displacement by the eigenmode Particle/initial shape/mode that is added to the shape of the earlier run, divided "
               "by R_C, the radius of the sphere with the particle's volume");
@@ -268,12 +267,12 @@ void TubeOptions::declare(deck::Section& list) {
            "volume of the smallest particle. If a gap is smaller, the run ends with a checkpoint. Integrals keep their accuracy down to a "
            "gap of 0.02");
   list.key("repulsion", repulsion, deck::positive(), "force/length^2",
-           "strength p of a force that pushes membranes away from the wall, so that the film of fluid between them stops thinning. The "
-           "force per unstressed area is p exp(-g/d) at the gap g, with the decay length d = `repulsion range` (3.22); no repulsion if "
-           "not given. Only in straight ducts whose cross-sections are all circles");
+           "strength p of a force that pushes membranes away from the wall, so that the film of fluid between them stops thinning. The force "
+           "per unstressed area is p exp(-g/d) at the gap g, with the decay length d = `repulsion range` (3.22); no repulsion if not given. "
+           "Available only in straight ducts with circular cross-sections");
   list.key("repulsion range", repulsion_range, deck::positive(), "length",
-           "decay length d of the force per area p exp(-g/d), with p = `repulsion`, by which the wall repels membranes at a gap g. It "
-           "keeps a film open whose width is a few times d; both keys are given together");
+           "decay length d of the force per area p exp(-g/d), with p = `repulsion`, by which the wall repels membranes at a gap g. The film "
+           "that stays open is a few times d wide. Give both keys or none");
   list.key(
       "flow", flow, deck::Choice{"exact", "boundary elements"},
       "method of computing the flow in an empty straight duct of this cross-section. `exact`: by a formula or series if one exists for "
@@ -287,8 +286,8 @@ void ChannelOptions::declare(deck::Section& list) {
   list.key(
       "profile", profile, deck::Choice{"straight", "constriction", "expansion", "step", "file"},
       "shape of the channel along its centre line: factor f by which the cross-section is scaled at the arc length s of the centre line. "
-      "`straight`: f = 1. `constriction`: f = 1 - d (1 + cos(pi s/w))/2 for |s| < w. `expansion`: f = 1 + d (1 + cos(pi s/w))/2 for |s| < "
-      "w. `step`: f = 1 - d for |s| < w with rounded edges. Outside f = 1. `file`: f from the file `points`. d: `depth`, w: `half length`");
+      "`straight`: f = 1. `constriction`: f = 1 - d (1 + cos(pi s/w))/2 for |s| < w. `expansion`: f = 1 + d (1 + cos(pi s/w))/2 for |s| < w. "
+      "`step`: f = 1 - d for |s| < w with rounded edges. Elsewhere f = 1. `file`: f from the file `points`. d: `depth`, w: `half length`");
   if (profile == "constriction") depth = 0.5;
   list.key("depth", depth, deck::any(), "1",
            "relative depth d by which `profile` narrows the cross-section of the channel in a constriction or step, or widens it in an "

@@ -30,7 +30,7 @@ std::vector<double> chord_ends(const PlaneCurve& curve) {
   return out;
 }
 
-/// Returns an upper bound of |x''| over part of a cubic piece of a curve, on which x'' is linear.
+/// Returns an upper bound of |x''| over a part of an ellipse, or of one piece of a cubic curve, on which x'' is linear.
 double bend(const PlaneCurve& curve, double begin, double end) {
   if (const auto* ellipse = std::get_if<Ellipse>(&curve)) return ellipse->semi_axes.maxCoeff();
   const double inside = 1e-9 * (end - begin);

@@ -39,9 +39,9 @@ bool closed(const PlaneCurve& curve);
 std::array<double, 2> range(const PlaneCurve& curve);  ///< first and last parameter u; a closed curve is periodic and accepts any u
 PlaneJet jet(const PlaneCurve& curve, double u);
 
-/// Return the cubic spline with these knots that interpolates the points. Closed: points.size() = breaks.size() - 1, breaks.size() >= 4. Open:
-/// points.size() = breaks.size() >= 2; the third derivative is continuous at the first and last inner knot (not-a-knot). Two points give a straight
-/// line, three a parabola.
+/// Return the cubic spline with the knots `breaks` that interpolates the points. A closed spline requires points.size() = breaks.size() - 1 and
+/// breaks.size() >= 4. An open spline requires points.size() = breaks.size() >= 2; its third derivative is continuous at the first and last inner
+/// knot (not-a-knot). Two points give a straight line, three a parabola.
 CubicCurve interpolate_closed(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 CubicCurve interpolate_open(const std::vector<double>& breaks, const std::vector<Vec2>& points);
 
@@ -84,18 +84,18 @@ class Outline {
   double area() const { return area_; }
   Vec2 centroid() const { return centroid_; }
   double radius() const;                            ///< returns R_T = sqrt(area/pi)
-  std::array<Vec2, 2> box() const { return box_; }  ///< smallest and largest coordinates
+  std::array<Vec2, 2> box() const { return box_; }  ///< lower and upper bounds of the coordinates, almost exact
 
   Nearest nearest(const Vec2& p) const;
   double distance(const Vec2& p) const { return nearest(p).distance; }  ///< positive inside
   bool inside(const Vec2& p) const { return distance(p) > 0; }
 
-  /// Returns the point of the outline nearest to p, which must be within the distance r of x. The point `its` of the outline nearest to x limits the
-  /// search. The distance in the result has no sign.
+  /// Returns the point of the outline nearest to p. p must be within the distance r of x. `its`: the point of the outline nearest to x, which limits
+  /// the search. The distance in the result has no sign.
   Nearest nearest_around(const Vec2& x, const Nearest& its, double r, const Vec2& p) const;
 
   /// Returns the number of elements of each side when `elements` are distributed by length, with at least `least` per side and equally many on sides
-  /// of equal length. Their sum may exceed `elements` slightly.
+  /// of equal length. The sum of these numbers may exceed `elements` slightly.
   std::vector<int> shares(int elements, int least = 1) const;
 
   /// Returns the m + 1 knots of m elements on side k, evenly spaced in the parameter of the side.

@@ -15,8 +15,8 @@
 namespace tanktread::surface {
 namespace {
 
-/// Rows of control points on circles about the axis. Control point A is at the distance profile[2 row] from the axis in the direction `across`, and
-/// at the height profile[2 row + 1]. `across` has length 1, except at a C1 pole.
+/// Rows of control points on circles about the axis. Control point A is at across[A] times profile[2 k] in the plane normal to the axis, and at the
+/// height profile[2 k + 1], with k = row[A]. across[A] has length 1, except at a C1 pole.
 struct Circles {
   std::vector<int> row;
   std::vector<Eigen::Vector2d> across;
@@ -83,7 +83,7 @@ class Sector {
     const Net net = circles_.net(profile);
     for (const Node& node : nodes_) add(node, net, m);
     if (!c1_)
-      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // fixes the radius 0 of the control point at a pole
+      for (const Eigen::Index k : {Eigen::Index(0), n - 2}) {  // keeps the control points at the poles on the axis
         m.matrix.row(k).setZero(), m.matrix.col(k).setZero();
         m.matrix(k, k) = 1, m.gradient[k] = 0;
       }
@@ -150,7 +150,7 @@ Net unit_sphere(const spline::PolarMesh& mesh, const spline::Space& space, int a
   // Each row of control points is a circle about the axis. Moving rows along the meridian hardly changes the misfit, so the damping of the
   // Gauss-Newton steps must be nearly zero to find the best distribution of rows. Long steps along the tangents move rows off the sphere, by the
   // square of the step; the next step corrects this. But if rows are closer together than the points within a row, a long step may fold the surface.
-  // Its length is then limited.
+  // In this case, the length of the step is limited.
   const double longest = mesh.meridional > mesh.azimuthal ? 0.2 : std::numeric_limits<double>::infinity();
   double damping = 1e-12;
   for (int k = 0; k < 30; ++k) {

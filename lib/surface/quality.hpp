@@ -10,8 +10,9 @@ namespace tanktread::surface {
 
 /// The worst elements of a surface, from 4 x 4 Gauss points of each Bezier element.
 struct Quality {
-  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with a1, a2 the tangents and m the direction of the sum
-  /// of a1 x a2: near 1 on an even element, zero or less on a folded one. The next two members are the element and the position where it occurs.
+  /// Smallest ratio of (a1 x a2).m to the mean of |a1 x a2| over the points of an element, with a1, a2 the tangents and m the direction of the sum of
+  /// a1 x a2: near 1 on an undistorted element, zero or less on a folded one. The next two members are the element and the position of the smallest
+  /// ratio.
   double jacobian_ratio = 1;
   int folded_element = 0;
   Vec3 folded_place = Vec3::Zero();

@@ -20,7 +20,7 @@ int subdivisions(const spline::TMesh& mesh, int n_points) {
   return 6 * n * n + 2 == n_points && mesh.lattice->units % n == 0 ? level : -1;
 }
 
-/// Returns the vertices of the initial net of 3 x 3 elements per face, one row per lattice vertex. Other rows are not used.
+/// Returns the initial net of 3 x 3 elements per face, one row per lattice vertex. Only the rows of vertices of this net are used.
 Net coarse_net(const spline::Lattice& l) {
   constexpr double edge = 1. / 3, inner = 0.26;
   Net net(l.vertices(), 3);
@@ -60,7 +60,7 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
 
 /// Returns points of the limit surface of the initial net at vertices of a lattice.
 Net limit_points(const spline::Lattice& l, const std::vector<int>& vertices) {
-  const spline::TMesh coarse = spline::cube(3, 5);  // five levels: exact except within 1/32 of an element from a corner of the cube
+  const spline::TMesh coarse = spline::cube(3, 5);  // five levels: the surface is exact except within 1/32 of an element from a corner of the cube
   const spline::Space space = spline::space(coarse, spline::ExtraordinaryRule::catmull_clark);
   const Net net = coarse_net(*coarse.lattice)(spline::anchors(coarse), Eigen::all);
   const spline::Locator locator(space);

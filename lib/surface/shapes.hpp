@@ -21,9 +21,9 @@ namespace tanktread::surface {
 /// points of the limit surface.
 Net smooth_sphere(const spline::TMesh& mesh);
 
-/// Returns the control points of the unit sphere. Starts with smooth_sphere(), and `fits` times fits the surface to its radial projection x/|x| by
-/// least squares. The error in the radius falls with h^4, the error in the normal with h^2.7, where h is the element size. Both errors are 10 to 40
-/// per cent smaller than if the fits start with the cube projected onto the sphere.
+/// Returns the control points of the unit sphere. Starts with smooth_sphere(), and repeats `fits` times: fit the surface to its radial projection
+/// x/|x| by least squares. The error in the radius falls with h^4, the error in the normal with h^2.7, where h is the element size. Both errors are
+/// 10 to 40 per cent smaller than if the fits start with the cube projected onto the sphere.
 Net unit_sphere(const spline::TMesh& mesh, const LeastSquaresFit& fit, int fits = 6);
 
 /// Returns the control net of the unit sphere with its poles on the axis x_{axis+1}; the pole at -1 comes first. `space` is the space of the mesh.

@@ -89,7 +89,7 @@ RepeatingLine repeating(const std::vector<double>& knots, const std::array<doubl
                                                                                  // ends[1]
   line.open_from_periodic = Eigen::MatrixXd::Zero(open.n, closed.n);
   for (int piece = 0; piece <= last + 1; ++piece) {
-    const bool first_part = piece == last + 1;  // of the last element
+    const bool first_part = piece == last + 1;  // the part before the seam of the last periodic element
     const Line::Piece& here = open.pieces[static_cast<std::size_t>(piece)];
     const Line::Piece& there = closed.pieces[static_cast<std::size_t>(piece == 0 ? last : piece - 1)];
     const Eigen::Matrix4d values = there.extraction * spline::restriction(3, piece == 0 ? seam : 0, first_part ? seam : 1).transpose();

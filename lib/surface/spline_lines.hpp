@@ -28,8 +28,8 @@ struct Line {
   void add_site(double u, const std::vector<double>& knots, int first, bool closed);
 };
 
-/// Adds the splines with the given knots. If `closed`, they are periodic, and the middle knot of function i is knots[i]. Otherwise the end knots
-/// have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
+/// Adds the splines with the given knots to `line`. If `closed`, they are periodic, and the middle knot of function i is knots[i]. Otherwise the end
+/// knots have multiplicity four. If `inwards`, the collocation points at the two ends are moved halfway to their neighbours.
 void add(Line& line, const std::vector<double>& knots, bool closed, bool inwards);
 
 /// Splines over one period: open splines for the geometry, and periodic splines for densities. `open` has the open splines and the collocation points
@@ -41,8 +41,8 @@ struct RepeatingLine {
 };
 
 /// Returns the splines over the period from `ends[0]` to `ends[1]`. `knots`: knots of the periodic splines, all between the ends. The two ends are
-/// the same point of the period, the seam. It divides the periodic element that reaches from the last knot to the first knot of the next period. The
-/// part of this element before the seam is the last piece of `open`, and the part after the seam is piece 0.
+/// the same point of the period, the seam. The seam divides the periodic element that reaches from the last knot to the first knot of the next
+/// period. The part of this element before the seam is the last piece of `open`, and the part after the seam is piece 0.
 RepeatingLine repeating(const std::vector<double>& knots, const std::array<double, 2>& ends);
 
 /// Returns the collocation points of a product of two lines; the index on the second line runs fastest.

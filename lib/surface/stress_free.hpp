@@ -12,7 +12,7 @@ namespace tanktread::surface {
 /// parallel that encloses the same area with the equator. So every part of the membrane has the same area in both shapes, and only its form
 /// differs.
 ///
-/// The reduced volume v = 6 sqrt(pi) V/A^(3/2) is above 0 and at most 1. The shape must have an axis of revolution: a sphere (its own x3), a
+/// The reduced volume v = 6 sqrt(pi) V/A^(3/2) is above 0 and at most 1. The shape must have an axis of revolution: a sphere (axis: body-fixed x3), a
 /// spheroid, a red cell. Otherwise throws UserError.
 Net stress_free_spheroid(const LeastSquaresFit& fit, const Net& unit_sphere, const ParticleShape& shape, double reduced_volume);
 

@@ -46,7 +46,7 @@ struct Circuit {
       unstressed[n++] = from.unstressed + share * (to.unstressed - from.unstressed);
     }
     const Vec3 normal = (b.x - a.x).cross(c.x - a.x), along = x[1] - x[0];
-    // the plane meets only a corner of the triangle, so that round-off determines the direction
+    // skips the triangle if the plane meets only one of its corners, because round-off would determine the direction
     if (along.norm() < 1e-9 * (b.x - a.x).norm()) return;
     const double sense = along.dot(Vec3::UnitY().cross(normal)) > 0 ? 1 : -1;
     const double treads = sense * along.dot(v[0] + v[1]) / 2;
@@ -84,7 +84,7 @@ struct Sums {
 
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre) {
   Circuit circuit{centre, of_centre, unstressed != nullptr};
-  // points closer than this to the plane x2 = centre_2 count as lying in it
+  // points are treated as points of the plane x2 = centre_2 if their distance from it is below this tolerance
   const double in_plane = 1e-9 * (x.rowwise() - centre.transpose()).cwiseAbs().maxCoeff();
   const Patches places(map, x);
   for (int e = 0; e < map.n_elements(); ++e) {

@@ -16,10 +16,10 @@ struct Treading {
 };
 
 /// Returns the mean tank-treading velocity and frequency over the section curve. The centroid of the surface is `centre` and moves with velocity
-/// `of_centre`. The section curve lies in the plane x2 = centre_2. Velocity and frequency are zero if the plane does not intersect the surface. The
-/// frequency is a mean over the section curve. For an elastic membrane, the mean is weighted by length on the net `unstressed`. If `unstressed` is
-/// null, the weight of a part of the section curve is the time that a material point needs to pass it, and the frequency is zero if some point is at
-/// rest. The section curve is computed on a grid of flat triangles with six intervals per element and direction; the error is 1e-4 on coarse meshes.
+/// `of_centre`. The section curve lies in the plane x2 = centre_2. Velocity and frequency are zero if the plane does not intersect the surface. For
+/// an elastic membrane, the mean frequency is weighted by length on the net `unstressed`. If `unstressed` is null, the weight of a part of the
+/// section curve is the time that a material point needs to pass it, and the frequency is zero if some point is at rest. The section curve is
+/// computed on a grid of flat triangles with six intervals per element and direction; the error is 1e-4 on coarse meshes.
 Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const Net* unstressed, const Vec3& centre, const Vec3& of_centre);
 
 /// Returns the sums over the given elements of the integrals that shape_velocity() needs, for a surface with control net x that moves with velocity

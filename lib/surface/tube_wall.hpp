@@ -18,8 +18,8 @@ namespace tanktread::surface {
 /// point with other sides. Along x1 the knots are open and denser around x1 = 0. The normal x_,s x x_,t points into the fluid (s along x1, t around).
 ///
 /// Control point i n_around + k is point k of ring i. A ring is the row of control points around one cross-section. Rings ascend along x1.
-/// Collocation points are Greville points; the points of the first and last ring lie on the rims. Collocation points at a corner, where two sides
-/// meet, are moved away from the corner by half of the distance to the next point.
+/// Collocation points are Greville points; the points of the first and last ring lie on the ends of the wall. Collocation points at a corner, where
+/// two sides meet, are moved away from the corner by half of the distance to the next point.
 struct TubeWall {
   spline::Space space;
   Net net;

@@ -11,7 +11,7 @@
 
 namespace tanktread::coupling {
 
-/// Duplicates the communicator for the calls below, which must not interfere with calls of other communicators. Collective; called by Session.
+/// Duplicates the MPI communicator, so that the calls below do not interfere with calls on other communicators. Collective; called by Session.
 void begin_agreements();
 
 /// Returns the largest `mine` of all ranks. If this rank has an `error` that other ranks do not share, they may be waiting in a call that this rank
@@ -38,8 +38,8 @@ bool finite(const Net& net);
 /// Returns whether any rank has received a stop signal, so that all ranks stop together. Collective.
 bool any_told_to_stop(bool told);
 
-/// Returns the values that `choose` returns on the first rank. It is not called on other ranks, so that the decision is unique even if the data of
-/// the ranks differ by round-off. If `choose` throws, every rank throws RunFailure. Collective.
+/// Returns the values that `choose` returns on the first rank. `choose` is not called on other ranks, so that the decision is unique even if the data
+/// of the ranks differ by round-off. If `choose` throws, every rank throws RunFailure. Collective.
 std::vector<double> decided(const std::function<std::vector<double>()>& choose);
 
 /// Replaces the values on every rank by the values of the first rank, so that all ranks make the same decisions even if their data are not bitwise

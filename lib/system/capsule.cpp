@@ -60,8 +60,8 @@ void Capsule::push_bodies(const Net& x) {
   bodies_.rigid.push(push);
 }
 
-/// Returns the load of the membranes at x. This is the shape of `e`; on a lattice, each of its particles has been moved into the cell. If `other` is
-/// given, replaces `*other` by M0^-1 times `*other`, with the mass matrix M0.
+/// Returns the load of the membranes at x. `x`: shape of `e`, with each particle moved into the cell if there is a lattice. If `other` is given,
+/// replaces `*other` by M0^-1 times `*other`, with the mass matrix M0.
 Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   const auto clock = phases_.time("membrane");
   if (parameters_.strong_load) {
@@ -72,7 +72,7 @@ Net Capsule::membrane_load(Evaluation& e, const Net& x, Net* other) {
   return membranes_.load(x, e.work_, other);
 }
 
-/// Returns velocity fields that rotate the meshes of drops on their surfaces, and have the symmetry of the scene. The shape does not change.
+/// Returns velocity fields, with the symmetry of the scene, that do not change the shape: rotations of the meshes of drops and of membranes (4.22).
 std::vector<Net> Capsule::relabellings(const Net& x) {
   std::vector<int> axes;
   for (int k = 0; k < 3; ++k) {
@@ -198,7 +198,7 @@ Net Capsule::defect(const Net& x, const Net& u) {
 }
 
 /// Returns the defect P (w - B P u) - (1 - P) u of a velocity u (3.14). P is the volume projection (2.8). B v = w is the linear system for the
-/// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that a single sum over the surface is enough.
+/// velocity v at x (see solve_velocity). Adds the viscous load due to u to the elastic load, so that one evaluation of the single layer is enough.
 Net Capsule::defect_here(const Net& x, const Net& u) {
   if (!x.allFinite() || (duct_.tube && !enter_tube(x)) || !in_front_of_wall(x))
     return Net::Constant(x.rows(), 3, std::numeric_limits<double>::quiet_NaN());

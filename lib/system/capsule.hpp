@@ -54,15 +54,15 @@ class RigidTractions;
 /// Lattice and plane wall: the layers include all images (ParticleLayers). On a lattice each particle is replaced by its image in the cell around the
 /// origin. The velocity of the particle is the velocity of this image, plus the difference of the ambient velocities at the two positions.
 ///
-/// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. It is linear in the load and, for lambda != 1, in v. Its
-/// parts are added to the right-hand side and to B. Alternatively v, the wall traction and the pressure drop are solved for in one linear system
-/// (BlockSystem).
+/// Tube: the velocity caused by the wall and by the pressure drop (2.5)-(2.7) is added. This velocity is linear in the load and, for lambda != 1,
+/// in v. The part due to known loads is added to the right-hand side, and the part due to v to B. Alternatively v, the wall traction and the
+/// pressure drop are solved for in one linear system (BlockSystem).
 ///
 /// Plates and posts: the velocity (2.47) caused by them is added to the right-hand side and to B in the same way.
 class Capsule : public Dynamics {
  public:
-  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is kept, unless the particle sets
-  /// `kept_volume`.
+  /// `unstressed` and `initial`: control nets of shape (N, 3) on `space`. The volume of each particle of `initial` is conserved, unless the particle
+  /// sets `kept_volume`.
   Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
           const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube = nullptr);
   ~Capsule() override;

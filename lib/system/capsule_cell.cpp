@@ -8,13 +8,13 @@
 
 namespace tanktread::coupling {
 
-/// Deforms the cell to this time (2.51). Returns whether it has changed. The cell of a duct is constant.
+/// Sets the cell as deformed by the flow until `time` (2.51). Returns whether the cell has changed. The cell of a duct is constant.
 bool Capsule::deform_cell(double time) {
   if (duct_.tube) {
     around_.cell = duct_.tube->cell();
     return false;
   }
-  const Mat3 deformation = around_.solids ? Mat3(Mat3::Identity()) : around_.flow.deformation(time);  // no flow deforms a cell with walls or posts
+  const Mat3 deformation = around_.solids ? Mat3(Mat3::Identity()) : around_.flow.deformation(time);  // a cell with walls or posts is not deformed
   const stokes::PeriodicCell now(deformation * parameters_.cell->vectors(), parameters_.cell->n());
   if (around_.cell && *around_.cell == now) return false;
   around_.cell = now;

@@ -15,9 +15,9 @@
 
 namespace tanktread::coupling {
 
-/// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation, with frozen layers (4.3). B denotes the operator of (4.2)
-/// with frozen layers. J and B include the response of a tube, and omit plates and posts. The rows of rigid bodies in J are 0, because their motion
-/// is not stiff. Calls are collective.
+/// The Jacobian J = dv/dx of the velocity (4.2) at the shape of the last linearisation. Its layers are frozen: they are kept from an earlier shape
+/// (4.3). B denotes the operator of (4.2) with frozen layers. J and B include the response of a tube, and omit plates and posts. The rows of rigid
+/// bodies in J are 0, because their motion is not stiff. Calls are collective.
 class CapsuleJacobian {
  public:
   /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: change of the velocity of the control points, or
@@ -28,7 +28,7 @@ class CapsuleJacobian {
   };
 
   /// `by_sites`: whether the ambient velocity is evaluated at the collocation sites. `tube`, `interface`: null if there is no tube or if no control
-  /// points slide. `work`: counts of operations, to which this object adds. References must outlive this object.
+  /// points slide. `work`: counters of operations, which this object increases. References must outlive this object.
   CapsuleJacobian(const CapsuleParameters& parameters, const stokes::AmbientFlow& flow, bool by_sites, const Targets& targets, Membranes& membranes,
                   const Volumes& volumes, FrozenLayers& frozen, Tube* tube, InterfaceMotion* interface, Work& work);
 

@@ -21,9 +21,9 @@ struct Work {
   long assemblies = 0;         ///< assemblies of the frozen layer operators (4.3)
   long tangents = 0;           ///< evaluations of the membrane tangent
   long solves = 0;             ///< linear solves of the implicit step
-  long solver_iterations = 0;  ///< iterations of these solves
+  long solver_iterations = 0;  ///< iterations of linear solves with the Jacobian, including inner solves with B (4.3)
   long velocity_iterations = 0;  ///< iterations of the linear systems for velocities or tractions
-  long velocity_solves = 0;      ///< solves of these systems
+  long velocity_solves = 0;      ///< solves of the linear systems for velocities or tractions
   long most_velocity_iterations = 0;  ///< largest number of iterations of one velocity or traction solve
 };
 
@@ -44,8 +44,8 @@ struct CapsuleParameters {
   VolumeOptions volume;
   SolverOptions solvers;
   quadrature::Options quadrature;
-  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero; empty if the scene is not periodic. The flow deforms the cell, but not
-                                             ///< the cell of a duct
+  std::optional<stokes::PeriodicCell> cell;  ///< periodic cell at time zero; not set if the scene is not periodic. The flow deforms the cell,
+                                             ///< except the cell of a duct
   std::optional<stokes::PlaneWall> wall;     ///< plane wall in front of which all particles are; not set in unbounded space, a lattice or a tube
   std::optional<SolidScene> solids;          ///< plates and posts in the cell
   surface::Symmetry symmetry;  ///< common symmetry of the flow, the space and all shapes to be evaluated; Symmetry() if there is none

@@ -109,7 +109,7 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   };
   const auto product = [this, x, b, c, parts](const Net& y, const Net& caused) {
     const auto [v, load] = parts(y);
-    Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose velocity is not yet contained in `caused`
+    Net other = viscous() || caused.size() == 0 ? load : Net();  // load whose induced velocity is not contained in `caused`
     if (viscous() && caused.size() > 0) clear_rigid(particles(), other);
     layers_.place_double(x);
     Net u = layers_.apply(x, v, other);

@@ -12,12 +12,12 @@
 
 namespace tanktread::coupling {
 
-/// Returns the values N_A, or with another member of Basis their derivatives, at sites. Shape (sites, N).
+/// Returns the matrix of the basis functions N_A at the sites, shape (sites, N). `which` selects their values or derivatives.
 Eigen::SparseMatrix<double> value_matrix(const spline::Space& space, const stokes::Sites& sites,
                                          Eigen::VectorXd spline::Basis::* which = &spline::Basis::value);
 
 /// Gauss points q on a surface, to integrate the residual of collocation. The residual is zero only at the collocation sites. On an element of size h
-/// it is about h^4 times a quartic polynomial. To integrate this, as many Gauss points per direction as the spline degree suffice.
+/// it is about h^4 times a quartic polynomial. The number of Gauss points per direction is the spline degree, which suffices for this polynomial.
 struct BetweenSites {
   stokes::Sites places;
   Eigen::SparseMatrix<double> values;   ///< N_A at the points, shape (points, N)

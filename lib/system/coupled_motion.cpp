@@ -126,7 +126,7 @@ void CoupledMotion::linearise(const Net& y) {
   capsule_.linearise(shape(y));
 }
 
-/// Multiplies the change of shape in delta by the operator B of (4.2). Changes of the fields are unchanged.
+/// Multiplies the change of shape in delta by the operator B of (4.2). Does not modify the changes of the fields.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.jacobian().left(shape(delta))); }
 
 /// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the rate of change

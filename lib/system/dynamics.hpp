@@ -50,7 +50,7 @@ class Dynamics {
   virtual bool defect_spares_system() const { return false; }
 
   /// Returns the result of `solve` for r = shift (v - u), where v is the velocity at the current shape and u a given velocity. `defect`: B (v - u),
-  /// as returned by defect(), which explains B. Often it can be computed without v.
+  /// as returned by defect(), with the operator B explained there. The defect can often be computed without v.
   virtual Net correction(double shift, const Net& defect, double tolerance, const Secants& secants) {
     return solve(shift, shift * defect, tolerance, secants);
   }
@@ -68,14 +68,14 @@ class Dynamics {
   /// no mesh relaxes.
   virtual Net mesh_motion(const Net& /*delta*/) { return {}; }
 
-  /// Moves x onto the prescribed volume if the constraint is `exact`, and otherwise does nothing. If the iteration fails, x is not finite afterwards.
+  /// Displaces x to restore the prescribed volumes if the constraint is `exact`; otherwise does nothing. If the iteration fails, x becomes NaN.
   virtual void restore_volume(Net& x) = 0;
 
-  /// Improves the initial guess y of a stage with the shift gamma dt: membranes that nearly conserve area get the tensions that they had in the shape
-  /// `before` the stage.
+  /// Improves the initial guess y of a stage with the shift gamma dt: displaces membranes that nearly conserve area, so that their local area is the
+  /// same as in the shape `before` the stage.
   virtual void improve_start(Net& /*y*/, const Net& /*before*/, double /*shift*/) {}
 
-  /// Returns fields that move points along surfaces without changing the shape: rotations of the mesh of each drop whose mesh slides.
+  /// Returns fields that move points along surfaces without changing the shape: rotations of the meshes of drops and of membranes (4.22).
   virtual std::vector<Net> relabellings(const Net& /*x*/) { return {}; }
 
   /// Returns the velocity of a rigid motion about the origin at the state x.

@@ -1,5 +1,5 @@
 #pragma once
-// Results that one shape determines.
+// Loads, unknowns and velocities at one shape.
 
 #include <memory>
 #include <optional>
@@ -14,10 +14,10 @@ namespace tanktread::coupling {
 
 class Capsule;
 
-/// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). Capsule::evaluate returns an evaluation with all of them. An
-/// evaluation constructed from a shape and its velocity computes the other quantities at their first use, and solves the linear system for the
-/// unknowns only if these do not follow from the velocity. Computed results are kept. Nets have one row per control point of all particles. The
-/// Capsule must outlive this object. Calls are collective.
+/// Loads, unknowns and velocities of a shape under the forces that act on it (4.2). The Evaluation returned by Capsule::evaluate contains all of
+/// them. An Evaluation constructed from a shape and its velocity computes the other quantities at first use and caches them. It solves the linear
+/// system for the unknowns only if they do not follow from the velocity. Nets have one row per control point of all particles. The Capsule must
+/// outlive this object. Calls are collective.
 class Evaluation {
  public:
   /// `velocity`: velocity of the control points if it is already known, for example from the equations of an implicit step; no rows if unknown.
@@ -30,7 +30,7 @@ class Evaluation {
   const Net& fluid_velocity();                           ///< velocity of the fluids on the surface; equals `velocity` unless control points slide
   const Net& work();                                     ///< virtual work dE/dx of all loads, minus the work of forces (Capsule::set_forces); 0 for
                                                          ///< rigid bodies
-  const std::vector<Net>& load_sums();                   ///< complete sums of the loads
+  const std::vector<Net>& load_sums();                   ///< surface integrals on which the loads depend (see Loads), summed over all ranks
 
   /// Returns the control values of the load of the fluids on the membranes, per unstressed or per current area, depending on the particle. For a
   /// rigid body, this is the load df of (2.23), a rigid-motion field with the force and torque on the fluid. It is not the traction.
@@ -48,7 +48,7 @@ class Evaluation {
   };
   SolidFlow solid_flow();  ///< returns the flow caused by the solids. First sets SolidResponse to the shape of this evaluation
 
-  Tube::Checks checks();                                 ///< returns by how much the tube's response violates the conditions (2.14)
+  Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
   /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
   void solve();

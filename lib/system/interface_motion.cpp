@@ -90,8 +90,9 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
 /// volume gradient b = dV/dx of its control point.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // regularisation of `moments`, divided by `inertia`. If the shape deviates from a sphere by less than 3 %, noise
-                                 // would dominate the result. The regularised result tends to 0, and the mesh rotates with the fluid
+  constexpr double hold = 1e-3;  // number added to the diagonal of `moments`, divided by `inertia`. Without it, noise would dominate the result if
+                                 // the shape deviates from a sphere by less than 3 %. With it, the result tends to 0, and the mesh rotates
+                                 // with the fluid
   Mat3 moments = Mat3::Zero();
   Vec3 across = Vec3::Zero();
   double inertia = 0;

@@ -23,9 +23,9 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 /// W (4.14) is the rigid motion of the drop. The mesh moves with W: the mesh of a drop that is convected or rotated as a whole moves rigidly, and the
 /// mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed
 /// shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape, and the rotation Q turns the initial
-/// shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tensions drag through the fluid. Elements
-/// therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The system is no stiffer than that of a
-/// capsule with Ca = mu rate R_C / (mu speed). On all other particles u = v.
+/// shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tension pulls through the fluid. Elements
+/// therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The equations of motion are no stiffer than
+/// for a capsule with the capillary number Ca = mu rate R_C / (mu speed). On all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this
@@ -37,8 +37,8 @@ class InterfaceMotion {
   /// Collective.
   Net velocity(const Net& x, const Net& b, const Net& v);
 
-  /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y starts at the mean of the drop's control points.
-  /// These fields rotate the mesh on an interface that does not move. Collective.
+  /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y is the position relative to the mean of the drop's
+  /// control points. These fields rotate the mesh along an interface that does not move. Collective.
   std::vector<Net> rotations(const Net& x, std::span<const int> axes) const;
 
   /// Stores x, b = dV/dx, the normals, and the Hessian of the mesh energy E1 (4.6) at x, which `derivative` needs. Collective.
@@ -59,8 +59,8 @@ class InterfaceMotion {
     double speed;
     std::vector<int> points;      // rank-owned control points
     std::vector<int> places;      // indices of this drop's sites among the sites of VelocityProjection
-    stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision makes the mesh motion independent of
-                                  // units and axes
+    stokes::Rows<double> layer;   // rows of the initial single layer A0 (4.6) at `points`. Double precision is needed for a mesh motion that is
+                                  // independent of the units and of the axes
   };
   void slide(const Net& x, const Net& f, Net& w) const;
   Net combined(const Net& x, const Net& b, const Net& normals, const Net& v, const Net& f, Net& rest) const;
@@ -81,8 +81,8 @@ class InterfaceMotion {
     Net x, rest, density;  // rest: fluid velocity minus rigid motion and relaxation velocity, v - W - w of (4.6), at the sites where u is evaluated;
                            // density: force density M0^{-1} dE1/dx at the collocation sites, with the mesh energy E1 of (4.6)
   };
-  Latest latest_, known_;  // latest_: data of the latest velocity. known_: copy of latest_, made when the system was linearised; empty if the latest
-                           // velocity then belonged to another shape
+  Latest latest_, known_;  // latest_: data of the last call of `velocity`. known_: copy of latest_ made by `linearise`; empty if the last call of
+                           // `velocity` was at another shape
   Net x_, flux_, normals_;  // shape, b = dV/dx and normals at which the system was linearised
 };
 

@@ -21,20 +21,20 @@ class Layout {
   const std::vector<int>& points() const { return share_.points; }      ///< rank-owned control points, ascending
   const std::vector<int>& touching() const { return share_.elements; }  ///< elements that touch the rank-owned points, ascending
 
-  /// Returns the elements, ascending, over which this rank integrates the sums of replicate_sums(). If the scene is symmetric, these are the
-  /// elements, one per symmetry orbit, that touch points() or their images. If an image other than the identity maps such an element onto itself,
-  /// these are the elements touching().
+  /// Returns the elements, ascending, over which this rank integrates before it calls replicate_sums(). These are the elements that touch points()
+  /// or their symmetry images, but only one element of each symmetry orbit. If a symmetry other than the identity maps such an element onto itself,
+  /// touching() is returned instead.
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Fills in the rows of other ranks and of symmetry images.
+  /// Sets the rows that other ranks own, and the rows of symmetry images.
   void replicate(Net& net) const { ranks_.replicate(net); }
 
   /// Completes integrals over elements() on all ranks. If only one element of each symmetry orbit contributes, first adds the integrals at image
   /// points to the fundamental points.
   void replicate_sums(Net& net) const;
 
-  /// Gathers the result of an operator. If the ranks shared its far sums (`shared`), adds up the results of all ranks. Otherwise copies each row from
-  /// the rank that owns it.
+  /// Gathers the result of an operator. If every rank computed a part of each far-field sum (`shared`), adds up the results of all ranks. Otherwise
+  /// copies each row from the rank that owns it.
   void gather(bool shared, Net& net) const;
 
   void add(std::span<double> numbers) const { ranks_.add(numbers); }  ///< sums numbers over all ranks in place

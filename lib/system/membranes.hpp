@@ -30,8 +30,8 @@ class Membranes {
   /// Returns the net whose area defines the loads (force per area): for each particle, its rows of x or of the unstressed net.
   Net measured_net(const Net& x) const { return coupling::measured_net(particles_, unstressed(), x); }
 
-  /// Returns dE/dx of elasticity, bending and all loads. Sets `sums` to the surface integrals that the loads need in their global phase
-  /// (membrane::Load).
+  /// Returns dE/dx of elasticity, bending and all loads. Sets `sums` to the surface integrals on which some loads depend (`sums` of
+  /// membrane::Load::add_work), summed over all ranks.
   Net work(const Net& x, std::vector<Net>& sums) const;
 
   /// Adds dE/dx of loads() to `work`. On entry, `work` contains this rank's contributions to other terms (elasticity and bending), or zero. On
@@ -50,7 +50,7 @@ class Membranes {
   Net viscous_work(const Net& v) const;                  ///< C v, the virtual work of the viscous stresses (3.10) at the velocity v
   Net viscous_load(const Net& x, const Net& v) { return load(x, viscous_work(v)); }
 
-  /// Sets the shape x of the next two functions. `sums`: surface integrals that work() computed at x.
+  /// Sets the shape x for work_change() and viscous_work_change(). `sums`: surface integrals that work() computed at x.
   void linearise(const Net& x, const std::vector<Net>& sums);
   Net work_change(const Net& dx) const;         ///< H dx (4.3), the change of dE/dx due to the displacement dx; 0 for rigid bodies
   Net viscous_work_change(const Net& v) const;  ///< C v
@@ -66,8 +66,8 @@ class Membranes {
   membrane::Membrane membrane_;
   Loads loads_;
   membrane::Tangent tangent_;
-  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // ViscousLoad C at the shapes of place_viscous() and linearise(); set if
-                                                                       // viscous
+  std::optional<membrane::ViscousLoad> viscous_, linearised_viscous_;  // ViscousLoad C at the shapes of place_viscous() and linearise(); set
+                                                                       // only if a membrane or interface is viscous
 };
 
 }  // namespace tanktread::coupling

@@ -24,7 +24,7 @@ struct Rigid {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  ///< given force and torque if the motion is not prescribed
 };
 
-/// Material and discretisation of a particle. Its rows in the stacked nets are given by `block`.
+/// Material and discretisation of a particle. `block` gives its rows in the control nets that stack the points of all particles.
 struct Particle {
   const spline::Space* space = nullptr;  ///< space of this particle; outlives the system
   spline::Block block;
@@ -36,7 +36,7 @@ struct Particle {
   bool by_traction = false;  ///< whether the unknown on a rigid body is its traction (2.40) rather than the density w of a double layer (2.23)
   std::string interface_motion = "material";  ///< motion of the control points of a drop along its interface
   double interface_speed = 0;                 ///< speed of the mesh relaxation of a drop, length/time
-  std::optional<double> kept_volume;  ///< volume V0 to be kept, if it is not the volume of the initial net, for example after a change of mesh
+  std::optional<double> kept_volume;  ///< volume V0 to be conserved, for example after a change of mesh; if not set, the volume of the initial net
 
   /// Loads in addition to elasticity and bending, on `space`. For a rigid body the work of the loads gives the force and torque on it.
   std::vector<std::shared_ptr<membrane::Load>> loads;
@@ -57,8 +57,8 @@ stokes::Measure measure(std::span<const Particle> particles);
 /// Returns, for each element, whether its load is per current area rather than per unstressed area.
 std::vector<bool> measured_on_present(std::span<const Particle> particles);
 
-/// Returns the net on which areas are measured in loads (force per area): for each particle, its rows of `x` if its loads are per current area,
-/// otherwise its rows of `unstressed`.
+/// Returns the net of the surface to whose area the loads (force per area) refer: for each particle, its rows of `x` if its loads are per current
+/// area, otherwise its rows of `unstressed`.
 Net measured_net(std::span<const Particle> particles, const Net& unstressed, const Net& x);
 
 /// Returns the factor of the particle's double layer: 1 - lambda for a deformable particle. For a rigid body: -1 if the unknown is the double-layer
@@ -78,9 +78,9 @@ Blocks velocity_blocks(std::span<const Particle> particles);
 void clear_rigid(std::span<const Particle> particles, Net& net);
 
 /// The loads of all particles in addition to elasticity and bending, combined into one load on the stacked nets of shape (N, 3). A load may depend on
-/// integrals over the whole surface (such as the area). It then returns the contribution of this rank to the integrals in nets (sum nets). The caller
-/// sums these nets over ranks and symmetry images and passes them back. Several loads of one particle use consecutive sum nets. Loads of different
-/// particles use different rows of the same sum nets. Uses no MPI.
+/// integrals over the whole surface (such as the area). Such a load returns this rank's contribution to these integrals in nets, called sum nets. The
+/// caller sums the sum nets over ranks and symmetry images and passes them back. Several loads of one particle use consecutive sum nets. Loads of
+/// different particles share a sum net, in which each particle uses its own rows. Uses no MPI.
 class Loads {
  public:
   Loads() = default;

@@ -81,7 +81,7 @@ void ParticleLayers::assemble(const Net& x, bool single) {
     if (!repeats_ && parameters_.solvers.assembled(by_clusters)) layer.assemble(targets_.own(), rows);
     else rows.resize(0, 0);
   };
-  // If there are thin films between rigid bodies, the solver takes many iterations. Assembling the matrix (72 n^2 bytes) is then faster.
+  // With rigid bodies, the solver may take many iterations, because films between them are thin. Assembling the matrix (72 n^2 bytes) is then faster.
   const bool many_iterations = parameters_.any_rigid() && 72 * n * n < most_bytes;
   if (double_) double_->place(x), assemble(*double_, double_->by_clusters() && !many_iterations, double_rows_);
   if (single) single_.place(x, measure(parameters_.particles)), assemble(single_, single_.by_clusters(), single_rows_);

@@ -1,5 +1,5 @@
 #pragma once
-// Points on the particles at which velocities are evaluated, and the layers of the particles there.
+// Target points on the particles at which velocities are evaluated, and the single and double layers of all particles at these targets.
 
 #include <optional>
 #include <span>
@@ -34,11 +34,11 @@ class Targets {
   /// Gathers the velocity at the targets on all ranks. `shared`: see Layout::gather. Collective.
   void gather(bool shared, Net& at_targets) const;
 
-  /// Return the control values of the velocity that has the values `at_targets`. `control_values` divides the work among the ranks and is collective.
+  /// Return the control values of the velocity whose values at the targets are `at_targets`. `control_values` is collective: ranks share the work.
   Net control_values(Net at_targets) const;
   Net serial_control_values(const Net& at_targets) const;
 
-  /// Returns the control values of the field that has the values `at_sites` at the collocation sites. Collective.
+  /// Returns the control values of the field whose values at the collocation sites are `at_sites`. Collective.
   Net collocated(Net at_sites) const { return layout_.solved(collocation_, std::move(at_sites)); }
 
  private:
@@ -50,14 +50,15 @@ class Targets {
 };
 
 /// The single layer A and the double layer D of (4.2) of all particles at the targets. D includes the factor 1 - lambda of each particle, or -1 for a
-/// rigid body. The layers include the images on a lattice and in a plane wall. Results are equal on all ranks; calls are collective.
+/// rigid body. The layers include the periodic images of the particles and their images in a plane wall. Results are equal on all ranks; calls are
+/// collective.
 class ParticleLayers {
  public:
   /// References, except `unstressed`, must outlive this object.
   ParticleLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout,
                  const Targets& targets, Phases& phases);
 
-  void repeat(const stokes::PeriodicCell& cell);  ///< sets the lattice on which the particles repeat
+  void repeat(const stokes::PeriodicCell& cell);  ///< sets the cell whose periodic images the layers include
   bool repeats() const { return repeats_; }
 
   stokes::Layer& single_layer() { return single_; }
@@ -77,7 +78,7 @@ class ParticleLayers {
   /// Returns D v - (1/mu) A f, with the double layer D and the single layer A on the surface that assemble() set. An empty f is treated as zero.
   Net apply(const Net& x, const Net& v, const Net& f);
 
-  /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The rank that owns a site provides its row.
+  /// Returns the rows of D at these collocation sites on every rank, for the surface that assemble() set. The owner of a site computes its rows.
   stokes::Rows<double> double_rows(std::span<const int> sites);
 
   stokes::Evaluations evaluations() const;  ///< kernel evaluations of this rank

@@ -34,12 +34,12 @@ double turnover(double flow, double forces, double fluids) {
 void Powers::add_columns(Columns& to) const {
   const double all = turnover(flow, forces, fluids);
   to.add(flow, {"flow_power", "force length/time",
-                "power input by the ambient flow that is due to the particles, in addition to that of the flow without particles (6.11)"});
+                "power input by the ambient flow due to the particles, in addition to its power input without particles (6.11)"});
   to.add(forces, {"force_power", "force length/time",
                   "power input by the weight of particles, by forces on membranes and rigid bodies, and by contact forces"});
   to.add(fluids,
          {"fluid_dissipation", "force length/time",
-          "viscous dissipation in the fluids that is due to the particles, in addition to that of the flow without particles (6.12)"});
+          "viscous dissipation in the fluids due to the particles, in addition to the dissipation without particles (6.12)"});
   to.add(all > 0 ? left_over / all : 0,
          {"power_residual", "1", "residual of the power balance (6.13), divided by half the sum of the magnitudes of its terms"});
 }
@@ -75,7 +75,7 @@ Powers PowerBalance::operator()(const Net& x, const Net& slope) {
     powers.membranes += e->membrane_dissipation(p);
     powers.storing += product(particle.block.rows(v), particle.block.rows(stored));
   }
-  const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the remainder of the power `flow`
+  const double done = product(work, v);  // power that the fluids transfer to all surfaces; the fluids dissipate the power `flow` minus this power
   powers.fluids = powers.flow - done;
   powers.forces = powers.storing + powers.membranes - done;
   powers.left_over = left_over(load, missed(*e, v, inside, load), x, measured);
@@ -102,7 +102,7 @@ double PowerBalance::of_flow(Evaluation& e, const Net& work, const Net& inside) 
   const Targets& targets = capsule_.targets();
   const Net flux = capsule_.geometry().volume_gradient(x), at = targets.at_sites() * x;
   const std::vector<Mat3> gradients = flow.gradients(at);
-  Net stressed = targets.at_sites() * inside;  // becomes the product of stress and `inside`
+  Net stressed = targets.at_sites() * inside;  // `inside` at the sites; multiplied by the stress of the flow below
   for (Eigen::Index i = 0; i < at.rows(); ++i) {
     const double pressure = 2 * flow.curvature().trace() * flow.direction().dot(at.row(i));  // divided by the viscosity
     const Mat3& gradient = gradients[static_cast<std::size_t>(i)];

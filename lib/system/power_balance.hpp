@@ -1,5 +1,5 @@
 #pragma once
-// Balance of the power that the flow and forces put into the particles, and that is stored or dissipated.
+// Power balance: power input by the flow and by forces, rate of change of stored energy, and dissipation.
 
 #include <optional>
 

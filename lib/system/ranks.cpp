@@ -26,8 +26,8 @@ using MultiVector = Tpetra::MultiVector<>;
 
 namespace {
 
-/// Returns whether an MPI launcher (of Open MPI, or one that uses PMIx or PMI) started this process. MPI is not started without a launcher, because
-/// its devices, plugins and threads would take longer to start than a small run.
+/// Returns whether an MPI launcher (of Open MPI, or one that uses PMIx or PMI) started this process. Without a launcher, MPI is not
+/// started, because the start of its devices, plugins and threads would take longer than a small run.
 bool launched() {
   return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}, [](const char* name) { return std::getenv(name); });
 }

@@ -30,9 +30,9 @@ class Session {
 };
 
 /// The ranks of the run. Control nets are replicated, and the work is divided by their rows. A rank computes the rows of its rank-owned control
-/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only far sums by clusters are divided in another way: every rank
-/// computes some terms of each row, and the results are summed over the ranks (see Layer::share). These sums therefore depend on the number of ranks
-/// by round-off.
+/// points, and `replicate` distributes them to all ranks by a Tpetra import. Only treecode sums (TreeSum) are divided in another way: every rank
+/// computes some terms of each row, and the results are summed over the ranks (see Layer::share). Treecode sums on different numbers of ranks
+/// therefore differ by round-off.
 class Ranks {
  public:
   Ranks();
@@ -40,8 +40,8 @@ class Ranks {
   int rank() const;
   int size() const;
 
-  /// Adds the time of all exchanges from now on, including the time spent waiting for other ranks, to the phase `exchange`. `phases` must outlive
-  /// this object.
+  /// Records the time of all later exchanges, including the time spent waiting for other ranks, in the phase `exchange` of `phases`, which must
+  /// outlive this object.
   void measure(Phases& phases);
 
   /// Sets the rows that this rank computes in nets of n rows. Each row has one owner. Collective.
@@ -56,7 +56,7 @@ class Ranks {
   std::vector<int> divide_in_order(const surface::Symmetry& symmetry);  ///< divides the fundamental points into equal parts in their order,
                                                                         ///< regardless of neighbourhood
 
-  /// Fills in the rows of other ranks and of symmetry images. Collective.
+  /// Sets the rows that other ranks own, and the rows of symmetry images. Collective.
   void replicate(Net& net) const;
 
   /// Returns a net of n rows on every rank. `fill` sets the rank-owned rows in a net of zeros. Collective.
@@ -77,7 +77,7 @@ class Ranks {
     return matrix;
   }
 
-  /// Returns a matrix of n rows on every rank. `evaluate(items, rows)` sets the rows of this rank's share of items in a matrix of zeros. Collective.
+  /// Returns a matrix of n rows on every rank. `evaluate(items, rows)` sets the rows `items`, this rank's share, in a matrix of zeros. Collective.
   template <class Matrix, class Evaluate>
   Matrix divided(int n, Eigen::Index width, const Evaluate& evaluate) const {
     return assembled<Matrix>(n, width, [&](Matrix& rows) { evaluate(share(n), rows); });
@@ -113,13 +113,13 @@ class Ranks {
   /// Sums values over all ranks in place. If all ranks but one add zero, the result is exact. Collective.
   void add(std::span<double> numbers) const;
 
-  /// Returns those of the items 0 .. n - 1 that this rank processes, in ascending order: the items k with owner(k, n) equal to this rank.
+  /// Returns, in ascending order, the items k among 0 .. n - 1 that this rank processes, for which owner(k, n) is this rank.
   std::vector<int> share(int n) const;
 
-  /// Returns true if `mine` is true on any rank (a stop signal, a limit). Collective.
+  /// Returns true if `mine` (for example a stop signal) is true on any rank. Collective.
   bool any(bool mine) const;
 
-  /// Returns the value of rank 0 on every rank (used for positions in a file). Collective.
+  /// Returns the value of rank 0 on every rank, for example a position in a file. Collective.
   double first(double mine) const;
   void first(std::span<std::int64_t> numbers) const;
 

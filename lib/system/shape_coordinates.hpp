@@ -36,11 +36,11 @@ namespace tanktread::coupling {
 ///   d = R^{-1} (n_i y_i + t_i),   (1 - n n).w'(d) = 0                                                              (4.26)
 ///
 /// Symmetry: if the scene is symmetric, only coordinates at fundamental sites are used, without the components that symmetry forces to zero there.
-/// They represent only the symmetric fields or, if `parity` is given, only the fields of this parity (surface/symmetry.hpp). If `parity` is not
+/// They represent only symmetric displacements or, if `parity` is given, only displacements of this parity (surface/symmetry.hpp). If `parity` is not
 /// (1, 1, 1), all other parts of the system must be constructed without the symmetry.
 ///
-/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y also contains coordinates y_q. They are the change dq of the field
-/// coefficients q, minus the change of q due to the tangential part of d:
+/// Fields on the surfaces (CoupledMotion): after `add_fields` has been called, y also contains coordinates y_q of the fields. y_q is the change dq of
+/// the field coefficients q, minus the change of q due to the tangential part of d:
 ///
 ///   y_q = dq - q'(d - R^{-1} (n_i y_i)),   q'(t) the change of q if control points only slide along the surface by t      (4.34)
 class ShapeCoordinates {

@@ -26,8 +26,8 @@ struct SymmetryOptions {
   void declare(deck::Section& section);
 };
 
-/// Returns whether the flow has the symmetry: v(c + S y) = S v(c + y) and its gradient, evaluated at the control points, where S = diag(signs) and c
-/// is the centre of the net.
+/// Returns whether the flow has the symmetry v(c + S y) = S v(c + y), where S = diag(signs) and c is the centre of the net. Compares the velocities
+/// and their gradients at the control points.
 bool keeps(const stokes::AmbientFlow& flow, const surface::Image& image, const Net& net);
 
 using LoadList = std::vector<std::shared_ptr<membrane::Load>>;

@@ -21,7 +21,7 @@ quadrature::TensorRule at_zeros() {
   return quadrature::tensor(rule, rule);
 }
 
-/// Values of the basis functions N_A and their derivatives with respect to s and t, at all points of some elements. Shapes (points, N).
+/// Values of the basis functions N_A and their derivatives with respect to s and t, at a set of points. Shapes (points, N).
 struct Functions {
   Eigen::SparseMatrix<double> value, s, t;
 };

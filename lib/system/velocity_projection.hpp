@@ -31,10 +31,10 @@ class VelocityProjection {
 
   const stokes::Sites& sites() const { return sites_; }
   const std::vector<int>& own() const { return own_; }                         ///< sites of this rank, ascending; each site belongs to one rank
-  const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< returns the values of the basis functions N_A at the sites, shape
+  const Eigen::SparseMatrix<double>& values() const { return values_; }        ///< matrix of the basis functions N_A at the sites, shape
                                                                                ///< (sites, N)
   Net normals(const Net& x) const;                                             ///< unit normals of the surface x at the sites
-  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), made symmetric if the scene is
+  Net control_values(const Net& at_sites) const;                               ///< control values of v (4.21), symmetric if the scene is symmetric
   Eigen::VectorXd scalar_values(const Eigen::VectorXd& at_sites) const;  ///< control values of a scalar that is equal at all symmetry images, such as
                                                                          ///< a normal component
 

@@ -10,7 +10,7 @@
 
 namespace tanktread::coupling {
 
-/// The volumes V of all particles and the volumes V0 to be kept. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
+/// The volumes V of all particles and their prescribed volumes V0. Rigid bodies are excluded from all corrections. Calls with a shape are collective.
 class Volumes {
  public:
   /// Keeps the volume V0 = Particle::kept_volume of each particle if it is set, and otherwise the volume of the particle in the net `initial`.

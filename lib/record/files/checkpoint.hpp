@@ -21,8 +21,8 @@ struct Checkpoint {
   std::map<std::string, std::string> texts;
 };
 
-/// Returns a checksum of sixteen digits. Checkpoints that differ by a bit have different checksums, except by an improbable collision. It is an
-/// attribute of `/checkpoint`.
+/// Returns a checksum of sixteen digits. Checkpoints that differ by a bit have different checksums, except by an improbable collision. The checksum
+/// is stored as an attribute of `/checkpoint`.
 std::string checksum(const Checkpoint& checkpoint);
 
 /// Returns the file name of a snapshot: `snapshot_000123.hdf` for step 123.

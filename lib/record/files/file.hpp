@@ -1,5 +1,5 @@
 #pragma once
-// Files that are complete at any time: each is written under another name and then renamed. Also the directory of a run.
+// Files that are complete at any time: each is written under another name and then renamed. Functions for the directory of a run.
 
 #include <bit>
 #include <cinttypes>

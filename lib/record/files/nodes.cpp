@@ -145,8 +145,8 @@ Nodes::Points Nodes::jets(int element, const Net& net, std::vector<surface::Jet>
   return points;
 }
 
-/// Calls use(patch, nodes, jets) for every element, in reverse order. If `use` sets values at nodes, a node shared by several elements thus has the
-/// value from the first of them.
+/// Calls use(patch, nodes, jets) for every element, in reverse order. If `use` sets values at nodes, a node shared by several elements thus keeps the
+/// value from the element with the lowest index.
 template <class Use>
 void Nodes::each_cell(const Net& net, Use use) const {
   std::vector<surface::Jet> here;

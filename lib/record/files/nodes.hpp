@@ -22,8 +22,8 @@ namespace tanktread::output {
 struct LagrangeMesh {
   std::vector<std::int64_t> connectivity;  ///< node numbers, cell after cell
   std::vector<std::int64_t> offsets;       ///< index in `connectivity` of the first node of each cell, and the total number at the end
-  std::vector<spline::Site> sites;         ///< parametric point of every node on the first element that has it, for sampling quantities that are not
-                                           ///< spline fields
+  std::vector<spline::Site> sites;         ///< parametric point of every node on the first element that contains it, for sampling quantities that
+                                           ///< are not spline fields
 };
 
 /// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it

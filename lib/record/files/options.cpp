@@ -13,8 +13,8 @@ void Options::declare(deck::Section& section) {
               "the mesh adapts, and otherwise `land`");
   section.key("wall-clock limit", wall_clock_limit, deck::positive(), "seconds",
               "real (wall-clock) time in seconds, from the start of the program, after which the run stops with a checkpoint, from which "
-              "--resume continues it; no limit if not given. Steady, Periodic, Spectrum and Continuation cannot be resumed: only the points of "
-              "a branch that are complete are kept");
+              "--resume continues it; no limit if not given. Steady, Periodic, Spectrum and Continuation cannot be resumed: of a branch, only "
+              "the completed points are kept");
   section.key("power balance", power_balance,
               "whether the series contain the power input by flow and forces, the dissipation in the fluids (6.12), and the residual of "
               "the power balance, which measures the error of the velocities (6.13). Each row of the series then costs an evaluation of "

@@ -19,8 +19,8 @@ struct Moment {
   double deformation = 0;  ///< Taylor parameter D (taylor_inertia)
 };
 
-/// Progress display. On a terminal it is a bar that is drawn over itself. Otherwise it is one plain line at most every 3 seconds, and only after
-/// another 5 % of the run or a minute. If `quiet`, nothing is shown.
+/// Progress display. On a terminal it is a bar that is redrawn in place. Otherwise a plain line is printed when a minute has passed since the last
+/// line, or when at least 3 seconds and 5 % of the run have passed. If `quiet`, nothing is shown.
 class Progress {
  public:
   Progress(double begin, double end, bool quiet, std::FILE* out = stderr);

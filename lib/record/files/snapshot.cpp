@@ -24,7 +24,7 @@ void write(hid_t file, const std::string& name, const Rows& rows, std::size_t di
 void write(hid_t file, const Checkpoint& checkpoint) {
   hdf::write_group(file, "checkpoint");
   for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
-  std::string names;  // names of the entries of checkpoint.numbers, one per line; one dataset per entry would take longer than all fields of a mesh
+  std::string names;  // names of the entries of checkpoint.numbers, one per line; one dataset per entry would take longer to write than all fields
   std::vector<double> numbers;
   for (const auto& [name, number] : checkpoint.numbers) names += name + "\n", numbers.push_back(number);
   hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});

@@ -1,5 +1,5 @@
 #pragma once
-// Snapshot: one file per saved step that is both an exact checkpoint and a mesh with fields for ParaView. Also the list of all snapshots of a run.
+// Snapshot: one file per saved step that is both an exact checkpoint and a mesh with fields for ParaView. List of all snapshots of a run.
 
 #include <filesystem>
 #include <span>

@@ -198,8 +198,8 @@ Adapted refined(const Subject& of, const Findings& found) {
   return result;
 }
 
-/// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and tries the
-/// others again.
+/// Merges elements. If the surfaces on some of the merged elements would move by more than the tolerance, leaves these elements out and merges only
+/// the remaining ones.
 Adapted coarsened(const Subject& of, std::vector<spline::Merge> merges) {
   const auto& [scene, body, block, state, x, films] = of;
   for (int trial = 0; trial < 4 && !merges.empty(); ++trial) {

@@ -231,8 +231,8 @@ class Deforming : public ParticleSystem {
     capsule_->set_forces(coupling::Capsule::Forces::contacts, coupling::work(capsule_->particles(), contacts_, body().space.n_points));
   }
 
-  /// Returns the stresslet of two opposite contact forces that act at the centroids of the two particles. It is added because the stresslet of each
-  /// particle is computed about the centroid of this particle.
+  /// Returns the stresslet of two opposite contact forces that act at the centroids of the two particles. It is needed for the total stresslet,
+  /// because the stresslet of each particle is computed about the particle's own centroid.
   Mat3 stresslet_between(const coupling::Contact& contact, const Net& x) const {
     const auto centroid = [&](std::size_t k) {
       const Member& member = members_[contact.particle[k]];
@@ -263,7 +263,7 @@ class Deforming : public ParticleSystem {
     return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
   }
 
-  /// Returns the data of particle p for a row of the results, except tank-treading. Adds the columns of the particle's surface fields to `to`.
+  /// Returns the data of particle p for a row, except what add_treading() sets. Adds the columns of the particle's surface fields to `to`.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
     const Member& member = members_[p];
     if (member.scene.particle.rigid()) return std::make_unique<RigidRow>(rigid_row(p, here));

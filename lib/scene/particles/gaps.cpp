@@ -67,7 +67,7 @@ class Pairs {
 
   const std::vector<Pair>& all() const { return all_; }
 
-  /// Error of the gaps by which the closest points are searched.
+  /// Returns the error of the gap that is allowed in the search for the closest points.
   double tolerance() const { return gap_accuracy * radius_; }
 
   /// Returns the closest points of one pair if its gap is smaller than `reach`. A final Newton iteration makes the points independent of the order in

@@ -29,7 +29,7 @@ class Limiter {
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate) {}
 
   /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or if no forces
-  /// restore the limit. The caller must then repeat the step with a smaller size. The call then has changed only cached data of the system.
+  /// restore the limit. In this case the call has changed only cached data of the system, and the caller must repeat the step with a smaller size.
   /// Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 

@@ -55,7 +55,7 @@ struct Together {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Add one group of columns each. Rows of several kinds contain these columns.
+/// Each of these functions adds one group of columns. Rows of several kinds contain these columns.
 void add_points(int n_points, Columns& to);
 void add_size(const surface::Measures& measures, Columns& to);
 void add_stresslet(const Mat3& stresslet, Columns& to);
@@ -97,8 +97,8 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 /// Returns the parametric point at which the ray from `from` along the first in-plane direction (a in FlowPlane) meets the surface.
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
-/// Returns the largest normal velocity |v.n| at the collocation sites `sites` divided by Scene::rate() R_C, with v = `slope`. It is zero if the shape
-/// is steady. In a tube, v is relative to the axial velocity of the centroid, and |v.n| is divided by the mean velocity of the flow.
+/// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by Scene::speed(), or by R_C per unit time
+/// if this speed is 0. It is zero if the shape is steady. In a tube or a flow that is not affine, v is relative to the centroid's velocity along x1.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 

@@ -48,10 +48,11 @@ void each_count(Some& totals, const Act& act) {
   act("assemblies", moving, "number of times that the boundary-integral operator in the Jacobian was assembled (4.3)",
       totals.work.assemblies);
   act("tangents", moving, "number of times that the tangent stiffness of the membrane was evaluated", totals.work.tangents);
-  act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, for its motion",
+  act("linear_solves", moving, "number of linear systems solved in implicit time steps; for a free body, linear systems for its motion",
       totals.work.solves);
   act("solver_iterations", all,
-      "number of iterations of the linear solver in `linear_solves`; for a prescribed body, for its traction and that of unit motions",
+      "number of iterations of the linear solver in `linear_solves`; for a prescribed body, in the solutions for its traction and the "
+      "tractions of unit motions",
       totals.work.solver_iterations);
   act("velocity_iterations", moving, "number of iterations of the linear solver for velocities", totals.work.velocity_iterations);
   act("velocity_solves", moving, "number of linear systems solved for velocities", totals.work.velocity_solves);

@@ -40,8 +40,8 @@ AmbientFlow::Field AmbientFlow::field(const FlowOptions& options) {
   return field;
 }
 
-/// Adds the uniform or linear flow (2.48) that makes the velocity of the field at each plate equal to the given velocity of the plate. At a plate
-/// without a given velocity, the added flow is 0.
+/// Adds the uniform or linear flow (2.48) that makes the velocity at each plate equal to the given velocity of the plate. At a plate without a given
+/// velocity, the added flow is 0. Between two plates, also adds the flow that the pressure gradient drives.
 void AmbientFlow::fit_to_plates(const FlowOptions& options, Field& field) {
   const Plates& plates = *options.plates;
   const Vec3& n = plates.normal;

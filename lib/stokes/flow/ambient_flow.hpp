@@ -25,7 +25,7 @@ namespace tanktread::stokes {
 ///
 ///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d = V - v on each plate                               (2.48)
 ///
-/// Amplitude and, except for a duct, direction of any of these may change in time (FlowHistory).
+/// The amplitude of every flow may change in time, and so may its direction, except in a duct (FlowHistory).
 class AmbientFlow {
  public:
   AmbientFlow() = default;  ///< quiescent
@@ -65,12 +65,12 @@ class AmbientFlow {
   const Vec3& direction() const { return field_.direction; }
   const Mat3& curvature() const { return field_.curvature; }
 
-  /// Returns the rate in the capillary number, units 1/time: FlowOptions::rate(), or in a duct the mean velocity divided by the radius R_T.
+  /// Returns the rate that defines the capillary number, units 1/time: FlowOptions::rate(), or in a duct the mean velocity divided by the radius R_T.
   double rate() const { return duct_ ? duct_->mean_velocity() / duct_->radius() : rate_; }
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// Returns a Q, the amplitude times the rotation at the time set last. Velocities of walls and pressure gradients are multiplied by this matrix.
+  /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by it.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
   /// Returns the duct flow; null if there is none.
@@ -88,7 +88,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to it, and is 0 except between plates
+  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to it, and is 0 without plates
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;

@@ -41,9 +41,8 @@ Vec3 distance_times_normal(const surface::PlaneJet& at, const Vec2& p, double) {
   return {0, nu[0], nu[1]};
 }
 
-/// Returns the integral of f over the part begin <= u <= end of one side of the outline, for a point at the position p in the plane and at the height
-/// h above the plane. Bisects the part into intervals. The chord of each interval is at most as long as its distance from the point, or at most
-/// `smallest`.
+/// Returns the integral of f over the part begin <= u <= end of one side of the outline, for a point with the projection p onto the plane and with h
+/// as in Cap. Bisects the part until the chord of each interval is no longer than its distance from the point, or no longer than `smallest`.
 template <class Integrand>
 Vec3 stretch(const Integrand& f, const surface::Outline& outline, int side, double begin, double end, const Vec2& p, double h,
              double smallest) {

@@ -8,7 +8,7 @@
 
 namespace tanktread::stokes {
 
-/// A plane cap across a tube at x1 = `place`, on which the traction is -p e1 with a constant p:
+/// A plane cap across a tube at x1 = `place`. The traction on it is -p e1 with a constant p, and its single layer (2.1) is -p c with the integral
 ///
 ///   c(x0) = (1 / 8 pi) int G(x, x0) e1 dS                                                                        (2.13)
 ///
@@ -17,7 +17,7 @@ namespace tanktread::stokes {
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
 ///
-/// By reciprocity c_j(y) times mu is also the flow rate along x1 through the cap due to a point force e_j at y.
+/// By reciprocity, c_j(y)/mu is also the flow rate along x1 through the cap due to a unit point force e_j at y.
 class Cap {
  public:
   /// `tolerance`: error of the integrals relative to their largest value.

@@ -68,8 +68,8 @@ std::vector<int> shares(const Outline& outline, int elements) {
   return out;
 }
 
-/// Returns the knots with every interval divided evenly into elements of about the length (last knot - first knot)/elements, and at most 1.25 times
-/// this length.
+/// Divides every interval between two knots evenly, and returns the ends of the elements. The length of an element is about (last knot - first
+/// knot)/elements, and at most 1.25 times this value.
 std::vector<double> divided(const std::vector<double>& knots, int elements) {
   const double most = 1.25 * (knots.back() - knots.front()) / elements;
   std::vector<double> out;

@@ -67,8 +67,8 @@ class OutlineSpace {
 };
 
 /// Velocity u = v_c - r^2/4: r is the distance from the centroid of the section; v_c is harmonic with v_c = r^2/4 on the outline     (P-34, P-35)
-/// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They are found by collocation, at points x0 of
-/// the outline, of
+/// The unknowns are the cubic spline sigma = q dl/dt with the flux q = dv_c/dn, and a constant kappa. They satisfy these equations at collocation
+/// points x0 on the outline:
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
 /// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
 /// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is

@@ -60,9 +60,9 @@ void FlowHistory::declare(deck::Section& section) {
   section.key("angles", angles, deck::any(), "degree",
               "angles, in degrees, by which the ambient flow is rotated about `axis`, one for each of `times`; not rotated if not given");
   section.key("file", file, deck::Choice{},
-              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A "
-              "row holds, separated by commas, the time in the deck's unit, the factor of the velocity, and in all rows or in none the "
-              "angle in degrees; a header row that begins with `time` is allowed. A relative path is looked up in the working directory, "
+              "path of a file with the time dependence of the ambient flow, instead of the keys `times`, `amplitudes` and `angles`. A row "
+              "holds, separated by commas, the time in the deck's unit, the factor of the velocity and, optionally (but then in every row), "
+              "the angle in degrees; a header row that begins with `time` is allowed. A relative path is looked up in the working directory, "
               "then in the directory of the deck");
   if (angles || section.given("angles")) axis = "x2";
   section.key("axis", axis, deck::Choice{"x1", "x2", "x3"},
@@ -155,7 +155,7 @@ FlowHistory::Moment FlowHistory::at(double time, double start) const {
 /// amplitude a is linear in time and L is the gradient at amplitude 1.
 Mat3 FlowHistory::deformation(const Mat3& gradient, double time) const {
   if (type == "sine") {
-    const double half = std::numbers::pi * *frequency * time;  // the integral of the sine, without the cancellation of two cosines
+    const double half = std::numbers::pi * *frequency * time;  // avoids the cancellation of two cosines in the integral of the sine
     return exponential((*mean * time + *amplitude / (std::numbers::pi * *frequency) * std::sin(half) * std::sin(half + *phase * degree)) * gradient);
   }
   std::vector<double> ends{0};

@@ -24,7 +24,7 @@ void FlowOptions::declare(deck::Section& section) {
               "flow along x1 through a Tube or Channel, with Flow/mean velocity. `quiescent`: fluid at rest");
   section.key("shear rate", shear_rate, deck::positive(), "1/time",
               "shear rate or extension rate of the ambient flow of Flow/type `simple shear`, `planar hyperbolic`, `uniaxial extension` or "
-              "`four-roll`. For other types it must stay 1, because they have no rate or other keys set it");
+              "`four-roll`. Leave it out for all other types: they have no rate, or other keys define it");
   section.key("viscosity", viscosity, deck::positive(), "stress x time",
               "dynamic viscosity of the outer fluid, which surrounds the particles");
   section.key("roll parameter", roll_parameter, deck::between(-1.0, 1.0), "1",
@@ -43,8 +43,8 @@ void FlowOptions::declare(deck::Section& section) {
               "mean velocity of Flow/type `duct` in the empty tube or channel: flow rate divided by the area of the cross-section, in a "
               "channel at its inlet; 1 if not given");
   section.key("held", held, deck::Choice{"flow rate", "pressure drop"},
-              "quantity that stays constant in Flow/type `duct` when particles enter: the `flow rate`, or the `pressure drop` between "
-              "the ends of the computed part of the duct. Its value is that of the empty tube or channel with Flow/mean velocity");
+              "quantity that stays constant in Flow/type `duct` when particles enter: the `flow rate`, or the `pressure drop` between the ends "
+              "of the computed part of the duct. It keeps the value that it has in the empty tube or channel with Flow/mean velocity");
   if (type == "parabolic") profile = "round", maximum_velocity = 1;
   section.key("pressure gradient", pressure_gradient, deck::any(), "force/length^3",
               "gradient of the mean pressure, three numbers, in a periodic Domain with two plane walls or with posts (fixed cylinders). "

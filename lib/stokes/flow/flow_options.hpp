@@ -15,7 +15,7 @@ namespace tanktread::stokes {
 struct Plates {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();  ///< point on the first plate; unit normal into the fluid
   std::optional<double> distance;                     ///< distance of the second plate; none if not set
-  std::optional<Vec3> velocity, second_velocity;      ///< velocities of the plates; if not set, a plate moves with the flow of the deck
+  std::optional<Vec3> velocity, second_velocity;      ///< velocities of the plates; if not set, a plate moves with the ambient flow
 };
 
 /// Options `Flow/*` of the deck: the ambient flow and the outer fluid. The plane of the flow is the x1 x3 plane.
@@ -32,7 +32,7 @@ struct FlowOptions {
   std::string held = "flow rate";        ///< quantity of `duct` that is held constant when particles disturb the flow: flow rate, pressure drop
   std::optional<std::string> profile;      ///< round, plane; set for `parabolic`
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
-  std::optional<double> half_width;        ///< distance at which the velocity of `parabolic` vanishes, units length
+  std::optional<double> half_width;        ///< distance from the axis or mid-plane at which the velocity of `parabolic` vanishes, length
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
   std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
@@ -47,15 +47,15 @@ struct FlowOptions {
   void check() const;
   void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
 
-  /// Returns the rate in the capillary number Ca, units 1/time. For a flow that changes in time it is the rate at amplitude 1. By type:
+  /// Returns the rate that defines the capillary number Ca, units 1/time, at amplitude 1 if the flow changes in time. By type:
   /// - `linear`: largest singular value of the gradient; `parabolic`: maximum velocity divided by the half width;
   /// - `quiescent` between two plates: difference of the plates' velocities divided by the plates' distance; if the velocities do not differ, half
   ///   of the shear rate on the plates due to the pressure gradient;
-  /// - 0 for `uniform`, `quiescent` without two plates, and `duct`, because the speed is used instead;
+  /// - `uniform`, and `quiescent` without two plates: 0; `duct`: 0, because Ca is defined with the mean velocity;
   /// - a user-defined type: its own rate; any other type: the shear rate.
   double rate() const;
 
-  /// Returns the velocity in Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.
+  /// Returns the velocity that defines Ca = mu speed/G_s: rate times the particle's radius R_C, or in a duct the mean velocity. Units length/time.
   double speed(double radius) const;
 
  private:

@@ -23,8 +23,8 @@ struct ChebyshevBox {
 /// Computes the positions of the nodes.
 void chebyshev_nodes(const ChebyshevBox& box, double* x, double* y, double* z);
 
-/// Replaces points in the box by Chebyshev nodes with the same far field: adds source strengths to node_q. Component i at node (a, b, c) gets sum_k
-/// L_abc(x_k) q_k, i < n, with the Lagrange polynomials L_abc of the nodes. node_q[i]: component i at all nodes. `scratch`: n n_nodes packs.
+/// Replaces points in the box by Chebyshev nodes with the same far field: adds sum_k L_abc(x_k) q_ik to the source strength node_q[i] of node
+/// (a, b, c), for the components i < n. q_ik is component i of point k, and L_abc the Lagrange polynomial of the node. `scratch`: n n_nodes packs.
 void spread(int n, const ChebyshevBox& box, const Charges& points, Pack* scratch, const std::array<double*, 6>& node_q);
 
 /// Interpolates n fields from the nodes to points x of the box: u += sum_abc L_abc(x) u_abc, where u_abc is the value at node (a, b, c). All arrays

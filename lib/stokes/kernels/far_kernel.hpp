@@ -110,7 +110,7 @@ struct StressletKernel {  ///< kernel for TreeSum: maps symmetric stresslet stre
 };
 struct NormalStressKernel {  ///< kernel for TreeSum: maps normals n to T_ijk n_k, with the components ij ordered as in `stresses`
   static constexpr int in = 3, out = 6;
-  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // evaluated only once per shape
+  static constexpr auto *sum = normal_stress_sum, *single = normal_stress_sum;  // double precision, as it is evaluated once per shape
 };
 
 }  // namespace tanktread::stokes

@@ -29,8 +29,8 @@ class ImageSum {
   /// Sets the positions of the nodes.
   void place(const std::vector<double> (&node)[3]);
 
-  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns whether these, or the nodes set by place(), have changed since
-  /// the last call.
+  /// Sets all targets, and the indices of the targets whose sums are wanted. Returns true if the targets, the indices or the nodes set by place()
+  /// have changed since the last call.
   bool want(std::vector<Vec3> targets, std::vector<int> wanted);
 
   /// Returns the sums at the selected targets, one row per target, in the order of their selection. Source strengths of the nodes have 3 components

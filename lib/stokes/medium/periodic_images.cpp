@@ -49,7 +49,8 @@ struct Smooth {
       for (int m = 0; m < 16; ++m) {
         phi += power / (2 * m + 1);
         first += power * 2 / (2 * m + 3);
-        second -= power * 4 / (2 * m + 5);  // terms of `first`, `second`: term m + 1 of a power series, divided by x^2; (m + 1)/(m + 1)! = 1/m!
+        second -= power * 4 / (2 * m + 5);  // `first`, `second`: term 0 of their power series is 0. This adds term m + 1 divided by x^2, where
+                                            // (m + 1)/(m + 1)! = 1/m!
         power *= -square / (m + 1);
       }
       const double scale = 2 * xi / std::sqrt(pi);

@@ -185,7 +185,7 @@ Vec3 PeriodicSum::in_box(const Vec3& wrapped) const {
   return (cell_.coordinates(wrapped) - low_).cwiseQuotient(length_) - Vec3::Constant(0.5);
 }
 
-/// Computes the velocities at the nodes from the source strengths at the nodes, in blocks.
+/// Computes the velocities u at the nodes, stored in blocks of far_block nodes, from the source strengths q at the nodes.
 void PeriodicSum::apply(const std::vector<double> (&q)[6], std::vector<double>& u) const {
   const int n = box_.n_nodes();
   const std::size_t in = static_cast<std::size_t>(components_) / 4;

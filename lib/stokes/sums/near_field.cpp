@@ -83,7 +83,7 @@ void NearField::view(int e) {
   for (int b = 0; b < t.n_bernstein; ++b) square = std::max(square, (point(points, t.n_bernstein, b) - centre).squaredNorm());
   view.radius = std::sqrt(square);
   view.normal = u.cross(v).normalized();
-  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // equal at all corners
+  view.bulge = (point(points, t.n_bernstein, 0) - centre + u + v).norm();  // distance of each corner from the corner of the planar approximation
   for (int j = 1; j < t.degree; ++j)  // includes all inner Bezier points, so that the result does not depend on the directions of s and t
     for (int i = 1; i < t.degree; ++i)
       view.bulge = std::max(view.bulge, std::abs((point(points, t.n_bernstein, j * (t.degree + 1) + i) - centre).dot(view.normal)));

@@ -36,8 +36,8 @@ Vec3 product(const double* bs, const double* bt, int n, const double* bezier) {
   return sum;
 }
 
-/// Evaluates the Bernstein polynomials for a pair of site and panel if that has not been done yet. For the first panel of a site, this is done at
-/// construction, for the others at first use, because only the rank that owns the target needs them.
+/// Evaluates the Bernstein polynomials for a pair of site and panel if they are not yet stored. For the first panel of a site they are evaluated at
+/// construction. For all other panels they are evaluated at first use, because only the rank that owns the target needs them.
 void fill(SelfPair& pair, int degree) {
   if (!pair.bernstein.empty()) return;
   const int n = degree + 1;

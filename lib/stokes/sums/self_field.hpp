@@ -15,7 +15,7 @@
 
 namespace tanktread::stokes {
 
-/// Points of spline surfaces, each given on every element whose closure contains it. Values are evaluated on the first element.
+/// Points of spline surfaces, each given on every element whose closure contains it. Values are evaluated on the first of these elements.
 using Sites = std::vector<std::vector<spline::Site>>;
 
 /// A site on one of the panels that contain it.

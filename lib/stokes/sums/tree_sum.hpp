@@ -13,7 +13,7 @@
 
 namespace tanktread::stokes {
 
-/// Evaluates sum_k K(x_k, x0_i) q_k for a kernel K. Clusters of nodes and of targets are replaced by Chebyshev interpolation on whichever side saves
+/// Evaluates sum_k K(x_k, x0_i) q_k for a kernel K. Chebyshev interpolation replaces a distant cluster of nodes, of targets, or both if this saves
 /// work; close clusters are summed directly. Every partial sum evaluates the kernel itself, at nodes or Chebyshev nodes as sources, and at targets or
 /// Chebyshev nodes as targets. After Wang, Krasny & Vaughn, *A kernel-independent treecode based on barycentric Lagrange interpolation*, Commun.
 /// Comput. Phys. 28, 2020, in its form with cluster-cluster interactions; boxes aligned with the surface are our addition.

@@ -9,8 +9,8 @@
 namespace tanktread::coupling {
 
 namespace {
-constexpr Eigen::Index few = 64;    // largest number of points for which each rank evaluates all points instead of a share
-constexpr double sharpness = 1e-2;  // tolerance relative to other layers
+constexpr Eigen::Index few = 64;    // number of points from which on the ranks share the points; with fewer points, each rank evaluates all of them
+constexpr double sharpness = 1e-2;  // tolerance of `layer_` divided by the tolerance of all other layers
 
 /// Returns the fully developed flow in the cross-section at the start of the channel.
 stokes::DuctFlow at_inlet(const surface::Channel& channel, double viscosity, double mean_velocity) {

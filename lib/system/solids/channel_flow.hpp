@@ -59,7 +59,7 @@ class ChannelFlow : public stokes::DuctFlow {
 
  private:
   struct Solved {
-    double pressure_drop = 0, driving = 1;  // factor of `ends`
+    double pressure_drop = 0, driving = 1;  // driving: factor of ends() in the velocity
     Net traction;
   };
   const Solved& solved() const;

@@ -16,7 +16,7 @@ struct Congruence {
 };
 
 /// Returns the maps found, with the identity first. For a circle with n points around, these are 2 n maps, for a rectangle 4, and for the section of
-/// a bent channel 2. A map is accepted if it moves all control points and collocation points of the wall to others within 1e-10 of the tube radius.
+/// a bent channel 2. A map is accepted if it moves each control point and collocation point of the wall to one of them, up to 1e-10 tube radii.
 ///
 /// The kernels do not change if source, target and force are rotated or reflected together, so that the blocks of an operator A on the wall satisfy
 /// A(Q i, Q p) = Q A(i, p) Q^T.
@@ -25,8 +25,8 @@ std::vector<Congruence> congruences(const surface::TubeWall& wall, const Net& si
 /// Orbit representative of a point of a cross-section (ring): the point of the ring from which a map leads to the given point. Matrix rows are
 /// assembled only for representatives.
 struct Original {
-  int point;               ///< index in the ring of this other point: the smallest index of all points that maps move to the given point
-  const Congruence* from;  ///< this map; it points into the list given to originals()
+  int point;               ///< index of the representative in the ring: the smallest index of all points that maps move to the given point
+  const Congruence* from;  ///< map that moves the representative to the given point; an element of the list given to originals()
 };
 
 /// Returns the orbit representative of each of the n_around points of a ring.

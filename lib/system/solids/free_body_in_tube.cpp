@@ -18,7 +18,7 @@ const FreeBodyInTube::Solution& FreeBodyInTube::solution(const Net& place) const
   if (place_.size() > 0 && place == place_) return solution_;
   const Net x = surface(place);
   if (body_.tube()) body_.tube()->place(x);
-  place_ = {};  // also if the solve throws
+  place_ = {};  // invalidates the cached solution, also if the solve throws
   if (!body_.inside(x))
     solution_.motion = {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
   else

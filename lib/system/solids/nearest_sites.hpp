@@ -9,8 +9,8 @@
 
 namespace tanktread::coupling {
 
-/// Returns, for these rows of `targets`, the row of `sites` that is nearest; 0 for other rows. With a cell, images of the sites count too. `sites`
-/// and `targets`: positions of shape (n, 3) and (m, 3), units length.
+/// Returns, for each target in `rows`, the index of the nearest site; 0 for all other targets. If a cell is given, periodic images of the sites are
+/// included. `sites` and `targets`: positions of shape (n, 3) and (m, 3), units length.
 std::vector<int> nearest_sites(const Net& sites, const Net& targets, std::span<const int> rows, const stokes::PeriodicCell* cell);
 
 }  // namespace tanktread::coupling

@@ -71,7 +71,7 @@ class OneBodyInverses {
 /// result is the same.
 class FilmInverses {
  public:
-  /// Returns the rows of the double layer H for the sites `targets`, three per site, in their order; shape (3 targets, 3 N).
+  /// Returns the rows of the double layer H for the sites `targets`, three rows per site, in the order of `targets`; shape (3 targets, 3 N).
   using RowsOf = std::function<stokes::Rows<double>(std::span<const int> targets)>;
 
   /// `x`: net of all particles. Films (thin layers of fluid between two bodies) are set up only for pairs of bodies that both have an inverse in

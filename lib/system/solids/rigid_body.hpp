@@ -19,9 +19,9 @@ Mat3 unit_strain(int k);
 /// Returns the strain E with the given products E : unit_strain(k).
 Mat3 strain_of_products(const Eigen::Matrix<double, 5, 1>& products);
 
-/// Solutions for the six rigid motions, the five unit strains and, if `quadratic`, the fields y_j y_k e_i with y = x - centre, in the axes of
-/// `surface`. The response to any affine flow is a combination of the first eleven solutions. The response to a flow (2.20) is a combination of all
-/// twenty-nine.
+/// Solutions for velocities on the body equal to the six unit rigid motions, the five unit strains and, if `quadratic`, the fields y_j y_k e_i with
+/// y = x - centre, in the axes of `surface`. The response to any affine flow is a combination of the first eleven solutions. The response to a
+/// quadratic flow (2.20) is a combination of all twenty-nine.
 struct RigidModes {
   RigidModes(RigidTractions& body, const Net& surface, const Vec3& centre, bool quadratic);
 
@@ -143,7 +143,7 @@ class FreeBodyInTube : public LoneRigidBody {
   double viscosity_;
   std::optional<RigidModes> modes_;  // force densities for unit motions and unit flows, without the response of the tube
   mutable Net place_;                 // position of the latest solve
-  mutable Solution solution_;         // solution at this position
+  mutable Solution solution_;         // solution at the position `place_`
   mutable Eigen::VectorXd unknowns_;  // traction and rigid motion found by the latest solve, from which the next solve starts
   mutable long iterations_ = 0;
 };

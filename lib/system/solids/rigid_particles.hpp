@@ -18,8 +18,8 @@ namespace tanktread::coupling {
 
 /// Correction of the collocation error of the velocity u that a single or double layer on a body induces on the body itself, for unit viscosity. It
 /// is the control net of u by least-squares projection minus the control net of u by collocation, M^-1 int N_A u dG - R^-1 u (M: mass matrix, R:
-/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4. Across the
-/// surface the velocity of a double layer and the velocity gradient of a single layer jump. Therefore the velocity at the sites has a systematic
+/// collocation matrix). A spline surface of n elements per side is farther out at its collocation sites than between them by about 1/n^4. The
+/// velocity of a double layer and the velocity gradient of a single layer jump across a surface. Therefore the velocity at the sites has a systematic
 /// error. Without this correction, the angular velocity of a sphere with a prescribed torque is too small by the fraction 0.035/n^4, and its
 /// stresslet in a straining flow has a similar error.
 struct OwnLacking {
@@ -45,7 +45,7 @@ struct OwnLacking {
 /// fluid. If the motion V is given, df = (mu/R_C) <w>, and the force follows. This is the completed double layer: Power & Miranda 1987; Kim & Karrila
 /// 1991, chapter 15.
 ///
-/// Nets are stacked nets of all particles. A body's rows of a net x stand for the position of the rigid body that fits these rows best.
+/// Nets stack the control points of all particles. The rows of a body in a net x represent the position of the rigid body that fits them best.
 class RigidParticles {
  public:
   /// `rest`: net of all particles; only rows of rigid bodies are stored. `viscosity`: mu of the outer fluid.

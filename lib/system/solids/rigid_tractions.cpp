@@ -166,7 +166,7 @@ void RigidTractions::place(const Net& x, std::span<const Vec3> centres, std::opt
 }
 
 /// Returns the collocation-error corrections (2.11) for the unknowns y and the densities z, one per column of z: the work of the density in the
-/// residual velocity, from `left_`. In a channel the residual on the wall is included (2.42).
+/// residual velocity, computed from `left_`. In a channel the residual on the wall is included (2.42).
 Eigen::VectorXd RigidTractions::lacks(const Net& y, const Eigen::MatrixXd& z) {
   Eigen::VectorXd work = z.transpose() * left_;
   if (!walls_.tube || !walls_.tube->fixed() || !alone_) return work;

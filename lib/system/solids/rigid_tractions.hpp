@@ -35,16 +35,16 @@ namespace tanktread::coupling {
 ///
 /// The collocation error of the force or torque that belongs to z_k is corrected by the reciprocal theorem (2.11): int z_k.(v - (1/mu) A f) dG over
 /// all bodies is added, with v the right-hand side. The error of a stresslet is corrected in the same way with the densities of unit strains of its
-/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. In (2.23) they are linear in the error of one
-/// density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the number of control points to a few
+/// body, except in a tube. The remaining errors of forces are products of the errors of f and z_k. With (2.23), they are linear in the error of
+/// one density. In a channel the residual on the wall is included (2.42). The matrix is dense, which limits the number of control points to a few
 /// thousand.
 ///
 /// If the fluid has other boundaries, A includes the velocity that f causes through them: images on a lattice, the wall of a tube and its pressure
 /// drop, plates and posts (2.47), and deformable particles. v_inf then includes the flow that these boundaries cause without bodies. The additions to
 /// A are smooth, and A remains self-adjoint. The densities are found by GMRES, together with the velocity of deformable particles (2.52), and the
-/// preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 do not respond. The
-/// pressure drop of a duct flow is corrected like a force, unless there are deformable particles; this correction includes the interpolation error of
-/// v_inf (2.41).
+/// preconditioner is the factored operator of the bodies without these additions. Drops and capsules of viscosity ratio 1 without
+/// surface viscosity do not change A. The pressure drop of a duct flow is corrected like a force, unless there are deformable particles; this
+/// correction includes the interpolation error of v_inf (2.41).
 class RigidTractions {
  public:
   /// `space`: common space of all particles. `unstressed`, `rest`: control nets of their unstressed and resting shapes. `own`: collocation points
@@ -57,7 +57,7 @@ class RigidTractions {
   RigidTractions(const spline::Space& space, const Net& surface, double radius, double viscosity, const quadrature::Options& quadrature,
                  const SolverOptions& solvers, Ranks& ranks, Tube* tube = nullptr, const std::optional<stokes::PlaneWall>& wall = {});
 
-  /// Sets the lattice on which the particles repeat, for all later calls.
+  /// Sets the periodic cell of the particles, for all later calls.
   void repeat(const stokes::PeriodicCell& cell);
 
   /// Sets the solids in the lattice, which must outlive this object.

@@ -1,5 +1,5 @@
 #pragma once
-// Response of fixed solids to particles between them. The force of the solids on the fluid is eliminated.
+// Velocity that plates and posts cause in response to the particles between them. The force of these solids on the fluid is eliminated.
 
 #include <memory>
 #include <optional>

@@ -62,7 +62,7 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   });
   if (only_plates) {
     const auto [n1, n2] = solids.front().surface.grid;
-    std::vector<int> middle;  // points far from the seam
+    std::vector<int> middle;  // one point of each plate, far from the plate's edges
     for (std::size_t s = 0; s + 1 < first_.size(); ++s) middle.push_back(first_[s] + n1 / 2 * n2 + n2 / 2);
     Eigen::MatrixXd regular = Eigen::MatrixXd::Zero(3 * static_cast<Eigen::Index>(middle.size()), 3 * static_cast<Eigen::Index>(middle.size()));
     for (std::size_t s = 0; s < middle.size(); ++s) {

@@ -34,7 +34,7 @@ struct Rod {
 /// directions are free because the mean velocity follows from the pressure gradient. At a single plate with unbounded fluid on its other side,
 /// directions along the plate are free. In these cases, the balance of forces determines U. Otherwise there is no free direction, and U = 0.
 ///
-/// Control values of f are those of periodic splines, one per collocation point. If all solids are plates, the operator is inverted by Fourier series
+/// f is a periodic spline, with one control value per collocation point. If all solids are plates, the operator is inverted by Fourier series
 /// (PlateFactors). Otherwise it is dense. Nets are replicated on all ranks. All calls except queries are
 /// collective.
 class Solids {

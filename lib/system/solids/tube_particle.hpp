@@ -76,9 +76,9 @@ struct Tube::Particle {
   Eigen::VectorXd contrasts;          ///< 1 - lambda of each control point
 
   Net shape;                                   ///< net of the particle in the frame of the wall
-  double centroid = 0;                         ///< position along x1 of the wall's origin; the particle's centroid in a straight open tube
+  double centroid = 0;                         ///< x1 of the origin of the wall's frame, which is the particle's centroid in a straight open tube
   Net sites;                                   ///< collocation points, in the wall's frame
-  Net inlet;                                   ///< (1/mu) c at the sites
+  Net inlet;                                   ///< velocity c (2.5) per unit pressure drop, at the sites
   Net ambient, interpolated_ambient;           ///< ambient: duct flow v_inf at the sites. interpolated_ambient: control values of v_inf (in a channel
                                                ///< only)
   Net pressure_of_load, pressure_of_velocity;  ///< weights of the load f and of the velocity v in the pressure drop (2.7); pressure_of_velocity is

@@ -132,8 +132,8 @@ void Wall::find_pressure() {
 
 /// Returns, on every rank, the matrix of the wall's operator A. Its rows and columns are the components at fundamental points that symmetry does not
 /// make zero (4.12). Many rows are assembled at a time, because each row is a mean over a collocation point and adjacent element midpoints (2.39),
-/// and neighbouring collocation points share these midpoints. Of collocation points that rotations and reflections of the wall map to each other,
-/// the rows of only one are assembled, and mapped to the others.
+/// and neighbouring collocation points share these midpoints. If rotations or reflections of the wall map collocation points to each other, only the
+/// rows of one of these points are assembled. The rows of the other points follow from them by the maps.
 Eigen::MatrixXd Wall::assembled() {
   constexpr std::size_t at_a_time = 240;
   const Net& signs = symmetry_.signs();

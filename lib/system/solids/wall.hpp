@@ -41,7 +41,7 @@ class WallPatches {
   std::vector<Patch> patches_;
 };
 
-/// How the linear system of a wall is solved.
+/// Solver options of the linear system for the traction on a wall.
 struct WallSolver {
   std::string method = "factored";  ///< "factored", "iterative", or "auto", which is iterative if the factors take more than most_bytes
   double tolerance = 1e-8;          ///< relative residual of the iterative solver
@@ -56,8 +56,8 @@ struct WallSolver {
 /// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
 /// those of their fundamental points (4.12).
 ///
-/// If the factors would be too large, each system is solved by GMRES, with products by clusters. The preconditioners are small patches and data
-/// recycled from earlier solves (2.24).
+/// If the factors would be too large, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner combines WallPatches
+/// and data recycled from earlier solves (2.24).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.
@@ -98,7 +98,7 @@ class Wall {
   /// Available only if the operator is factored.
   Net solve_transposed(const Net& weights) const;
 
-  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet's velocity c (2.13); 0 for a periodic wall
+  const Net& inlet_column() const { return inlet_column_; }  ///< right-hand side for the inlet integral c (2.13); 0 for a periodic wall
   const Net& pumped() const { return pumped_; }              ///< wall traction in the open, empty tube per unit pressure drop: A^-1 c (2.13), with
                                                              ///< the operator A
 

@@ -14,9 +14,9 @@ namespace tanktread::coupling {
 using Space = Thyra::VectorSpaceBase<double>;
 using ThyraVector = Thyra::VectorBase<double>;
 
-/// Returns the product of one vector space per block, or the space itself if there is a single block. Every rank holds all rows of each block:
-/// operators need all rows, dot products need no communication, and iteration counts cannot differ between ranks. The vectors are Thyra's own,
-/// because Tpetra vectors would add maps and imports that are not needed and that take a fifth of the time of a run of 0.1 s.
+/// Returns the product of one vector space per block, or the space itself if there is a single block. Every rank holds all rows of each block,
+/// because operators need all rows. Dot products then need no communication, and iteration counts cannot differ between ranks. The vectors are
+/// Thyra's own, because Tpetra vectors would add maps and imports that are not needed and that take a fifth of the time of a run of 0.1 s.
 Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 
 /// Returns the entries of all blocks of a vector, one block after another.
@@ -25,8 +25,8 @@ Eigen::VectorXd numbers_of(const ThyraVector& vector);
 /// Returns a vector of this space, equal on all ranks. Its entries are `numbers` of the first rank.
 Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers);
 
-/// Linear operator on all blocks, one after another, defined by a function. A zero vector is mapped to zero without calling the function. Every rank
-/// uses the result of the first rank.
+/// Linear operator on a vector of all blocks, defined by a function. A zero vector is mapped to zero without calling the function. Every rank uses
+/// the result of the first rank.
 class FunctionOperator : public Thyra::LinearOpBase<double> {
  public:
   explicit FunctionOperator(Teuchos::RCP<const Space> space) : space_(std::move(space)) {}

@@ -11,9 +11,9 @@
 
 namespace tanktread::coupling {
 
-/// Preconditioner from the products y = A z of earlier solves, latest first. The stored z are the columns of Z, and the stored y, which are
-/// orthonormal, the columns of Y. Applies Z Y^T to the part of a vector in the span of Y, and another preconditioner to the rest of the vector
-/// (2.24).
+/// Preconditioner from the products y = A z of earlier solves, latest first. The columns of Z are the stored vectors z. The columns of Y are the
+/// stored vectors y, which are orthonormal. Applies Z Y^T to the part of a vector in the span of Y, and another preconditioner to the rest of the
+/// vector (2.24).
 class RecycledProducts {
  public:
   /// Records a product y = A z of the current solve. It is used from the next solve on.
@@ -36,7 +36,7 @@ class RecycledProducts {
 
   static constexpr std::size_t most = 10;
   std::vector<Product> present_, kept_;
-  double scale_ = 1;  // estimate of 1/|A|: the factor s that minimises |z - s y| for the latest product y = A z
+  double scale_ = 1;  // estimate of 1/|A|: the factor s that minimises the sum of |z - s y|^2 over the products y = A z of the last solve
 };
 
 /// Preconditioner `Solvers/<system>/preconditioner` of the deck, with its data from earlier solves.

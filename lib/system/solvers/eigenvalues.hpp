@@ -20,8 +20,8 @@ struct Eigenpair {
 std::vector<Eigenpair> eigenpairs(Eigen::MatrixXd a);
 
 /// Returns the `number` eigenpairs largest in magnitude of a linear map on n unknowns, by block Krylov-Schur, until the residual |A v - value v| is
-/// below `tolerance` times the value. `block` is the block size, up to which multiplicities are found reliably. Collective. Throws RunFailure if the
-/// iteration does not converge.
+/// below `tolerance` times the value. `block`: block size; eigenvalues up to this multiplicity are found reliably. Collective. Throws RunFailure if
+/// the iteration does not converge.
 std::vector<Eigenpair> largest_eigenpairs(const Apply& a, Eigen::Index n, int number, int block, double tolerance);
 
 }  // namespace tanktread::coupling

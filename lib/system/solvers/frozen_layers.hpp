@@ -1,5 +1,5 @@
 #pragma once
-// Layers of all particles that the Jacobian keeps frozen.
+// Single and double layer of all particles in the Jacobian, kept from an earlier shape (frozen).
 
 #include <optional>
 
@@ -15,8 +15,8 @@ namespace tanktread::coupling {
 /// on a lattice are omitted, and NodalOperator also omits images in a plane wall. Calls are collective.
 class FrozenLayers {
  public:
-  /// `layers`: the layers at `targets`. They are the assembled layers if `targets` are the collocation sites. Otherwise this object creates other
-  /// layers, at the collocation sites, and assembles those. `mass`: mass matrix of all particles. References must outlive this object.
+  /// `layers`: the layers at `targets`. If `targets` are the collocation sites, this object assembles `layers`. Otherwise it creates and assembles
+  /// other layers, at the collocation sites. `mass`: mass matrix of all particles. References must outlive this object.
   FrozenLayers(const spline::Space& space, const Net& unstressed, const CapsuleParameters& parameters, const Layout& layout, const Targets& targets,
                const membrane::MassMatrix& mass, ParticleLayers& layers);
 
@@ -44,7 +44,7 @@ class FrozenLayers {
   const Targets& targets_;
   const membrane::MassMatrix& mass_;
   ParticleLayers& layers_;
-  std::optional<stokes::Layer> site_single_, site_double_;  // layers at the collocation sites; set if these are not the targets
+  std::optional<stokes::Layer> site_single_, site_double_;  // layers at the collocation sites; not set if the targets are these sites
   NodalOperator nodal_;                                     // A; the options select either nodal_ or single_
   FrozenOperator single_, double_;
   Net at_;                 // shape at which the layers were assembled

@@ -1,5 +1,5 @@
 #pragma once
-// The assembled layer operator that the Jacobian keeps frozen, row-distributed, in reduced precision.
+// Dense layer operator of the Jacobian, kept from an earlier shape (frozen). Its rows are divided among the ranks and stored in reduced precision.
 
 #include <cstdint>
 #include <functional>
@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 
 /// Rows of a dense operator whose 3 x 3 blocks are symmetric, such as the Stokeslet and the stresslet. Each block has six entries, each rounded to 16
 /// bits (the upper half of a float, relative error 2^-9). The rounding has no visible effect, because the quasi-Newton iteration omits (dA/dx) f and
-/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision: rounded to floats, they
-/// would turn differences of 1e-16 between numbers of ranks into differences of 1e-10, because each iteration of GMRES enlarges them.
+/// therefore reduces its error by a factor of only about ten per iteration in any case. Vectors are in double precision. With float vectors, runs on
+/// different numbers of ranks would differ by 1e-10 instead of 1e-16, because each iteration of GMRES enlarges the differences.
 class FrozenOperator {
  public:
   static constexpr double bytes_a_pair = 12;  ///< bytes per pair of control points
@@ -41,8 +41,8 @@ class FrozenOperator {
 /// Adds to u the sum over n points of the symmetric block (six consecutive arrays of n entries) times (f1, f2, f3).
 void symmetric_block_row(int n, const std::uint16_t* entries, const double* f1, const double* f2, const double* f3, double* u);
 
-/// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p of
-/// each particle p that fits its control points best (least squares; Kabsch 1976),
+/// Approximates a layer operator A at a shape x, given A at an earlier shape x0, if x is x0 rotated and slightly deformed. With the rotation Q_p that
+/// best maps the control points of particle p from x0 to x (least squares; Kabsch 1976),
 ///
 ///   (A f)_p ~ Q_p sum_q A_pq Q_q^T f_q                                                                                            (4.29)
 ///

@@ -26,7 +26,7 @@ constexpr const char* block_gmres = "Block GMRES";
 
 constexpr double least_recursive_residual = 1e-12;  // relative residual below which the recursively computed residual is only round-off
 
-/// Returns the names that Stratimikos uses for the solvers of Belos' factory. "GMRES" is mapped to flexible GMRES, which detects convergence without
+/// Returns a map from the names of Belos' factory to the names of Stratimikos. "GMRES" is mapped to flexible GMRES, which detects convergence without
 /// an additional product.
 const std::map<std::string, std::string>& solver_types() {
   static const std::map<std::string, std::string> types = {{"GMRES", block_gmres},
@@ -55,7 +55,7 @@ struct Timers : Teuchos::TimeMonitor {
   }
 };
 
-/// Returns |b - A x| of each block divided by |b|.
+/// Returns, for each block, the norm of its part of b - A x, divided by |b|.
 std::vector<std::pair<std::string, double>> residuals_of(const LinearSystem& system, const Eigen::VectorXd& b, const Eigen::VectorXd& x) {
   Eigen::VectorXd ax(x.size());
   system.product(x.data(), ax.data());

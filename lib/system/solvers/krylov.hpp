@@ -38,7 +38,7 @@ struct SolveReport {
   std::vector<std::pair<std::string, double>> residuals;
 };
 
-/// Throws RunFailure with the residuals if the solve of `system` reported by `report` did not reach `tolerance`.
+/// Throws RunFailure with the residuals if `report` says that the solve did not reach `tolerance`. `system`: name of the system in the message.
 void require_convergence(const SolveReport& report, const std::string& system, double tolerance);
 
 /// A Belos solver with its parameter list, called through Thyra (block_system.hpp).

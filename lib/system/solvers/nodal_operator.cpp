@@ -11,9 +11,9 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Tolerance of the sum by clusters: a tenth of the error of the trapezoidal rule. Chosen from measurements on capsules in shear flow.
+/// Tolerance of the treecode: a tenth of the error of the trapezoidal rule. Chosen from measurements on capsules in shear flow.
 constexpr double cluster_tolerance = 1e-3;
-/// Number of nodes above which the sum by clusters is faster than the direct sum. Chosen from measurements on capsules in shear flow.
+/// Number of nodes above which the treecode is faster than the direct sum. Chosen from measurements on capsules in shear flow.
 constexpr Eigen::Index nodes_worth_a_tree = 4000;
 
 using ByRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;

@@ -21,9 +21,9 @@ namespace tanktread::coupling {
 ///   (A f)_i = sum_B G(x_B, x_i) w_B (R f)_B / 8 pi  +  sum over near C of K_iC f_C,   w_B = int N_B dG0                         (4.11)
 ///   K_iC = A_iC - sum_B G(x_B, x_i) w_B R_BC / 8 pi
 ///
-/// The node at the target itself is omitted. Only the near blocks are stored, about thirty per target. The sum is evaluated in every product, on a
-/// large surface by clusters. It is evaluated in double precision because rounding errors of single precision would grow from step to step. Runs with
-/// and without symmetry, which agree to 1e-8 in the deformation D, would then differ by more.
+/// The node at the target itself is omitted. Only the near blocks K_iC are stored, about thirty per target. The sum over B is evaluated in every
+/// product, on large surfaces by a treecode. Double precision is used, because rounding errors of single precision would grow from step to step: runs
+/// with and without symmetry, which agree to 1e-8 in the deformation D, would then differ by more.
 ///
 /// The error of this operator is the error of the trapezoidal rule for nodes a few elements away. This error slows the quasi-Newton iteration
 /// slightly and does not affect accuracy.
@@ -44,8 +44,8 @@ class NodalOperator {
   /// `far_sum`: as in quadrature::Options.
   void assemble(const std::vector<int>& targets, const Surface& surface, double reach, const std::string& far_sum, const Assemble& assemble);
 
-  /// Lets ranks share the sums by clusters. This rank computes the share number `part` of `parts` equal shares of the work. `everybody`: the targets
-  /// of all ranks.
+  /// Divides the work of the treecode into `parts` equal parts, one per rank. This rank computes part number `part`. `everybody`: the targets of all
+  /// ranks.
   void share(int part, int parts, std::vector<int> everybody);
 
   /// Computes the rows of u = A f at the rank-owned targets; other rows are unchanged. If ranks share the sums, computes this rank's contribution to
@@ -71,7 +71,7 @@ class NodalOperator {
   std::vector<int> row_;                                 // for each site, the index in symmetry_.fundamental() of the fundamental site of its orbit
   Eigen::VectorXd weights_;
   std::vector<double> node_[3], force_[3];
-  std::optional<stokes::TreeSum> tree_;                  // set if clusters are faster
+  std::optional<stokes::TreeSum> tree_;                  // treecode; set if it is faster than the direct sum
   stokes::NearPoints near_;
   std::vector<double> entries_;                          // entries 11, 12, 13, 22, 23, 33 of the near-field blocks K_iC (4.11) of each target
 };

@@ -25,8 +25,8 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Unit in which positions and residuals are passed to NOX. The numbers are large because the unit is small. NOX would treat differences of residuals
-/// below 1e-16 as singular. Near the solution, such differences would occur in units of order 1.
+/// Unit in which positions and residuals are passed to NOX. The unit is small, so that the numbers are large. With a unit of order 1, differences of
+/// residuals near the solution could be below 1e-16. NOX treats such differences as singular.
 constexpr double unit = 0x1p-20;
 
 Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
@@ -96,7 +96,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   mutable ChosenPreconditioner chosen_;
   Teuchos::RCP<FunctionOperator> preconditioner_;
   mutable LinearSystem newton_;
-  mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: its value
+  mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: residual F(x_)
 };
 
 Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
@@ -149,8 +149,8 @@ std::string unread_path(const Teuchos::ParameterList& given, const Teuchos::Para
 
 Teuchos::ParameterList defaults(const std::string& method, int depth) {
   Teuchos::ParameterList list("NOX");
-  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // discards output: a failed step is repeated with a
-                                                                                           // shorter step
+  const Teuchos::RCP<std::ostream> nowhere = Teuchos::rcp(new Teuchos::oblackholestream);  // discards error messages, because a time step that
+                                                                                           // fails is repeated with a shorter step
   list.sublist("Printing").set("Output Information", 0).set("Output Stream", nowhere).set("Error Stream", nowhere);
   if (method == "anderson") {
     list.set("Nonlinear Solver", "Anderson Accelerated Fixed-Point");

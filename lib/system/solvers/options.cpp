@@ -68,34 +68,34 @@ void SolverOptions::declare(deck::Section& section) {
               "relative residual to which the linear systems for velocities (viscosity ratio other than 1) and for tractions (rigid "
               "particles, Solvers/wall `iterative`) are solved. Keep it well below Quadrature/tolerance");
   section.key("double layer", double_layer, deck::Choice{"auto", "assembled", "matrix-free"},
-              "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. "
-              "`assembled`: a matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs "
-              "less memory. `auto`: `matrix-free` if Quadrature/far sum is by `tree`, unless there are rigid bodies and the matrix takes "
-              "less than 1 GB");
+              "treatment of the double-layer operator in the linear systems for velocities with a viscosity ratio other than 1. `assembled`: a "
+              "matrix, assembled once per velocity. `matrix-free`: summed in every iteration of the solver, which needs less memory. `auto`: "
+              "`matrix-free` if far sums are evaluated by `tree` (Quadrature/far sum), unless there are rigid bodies and the matrix takes less "
+              "than 1 GB");
   section.key("tube", tube, deck::Choice{"schur", "block triangular", "block diagonal", "block"},
-              "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction "
-              "and pressure drop are eliminated with the LU factors of the wall, so that no system is left at viscosity ratio 1. `block "
-              "triangular`, `block diagonal`, `block`: all blocks (2.5)-(2.8) are unknown; the LU factors of the wall are the "
+              "form of the linear system for the velocity in a tube. `schur`: only the particle's velocity is unknown; the wall traction and "
+              "pressure drop are eliminated with the LU factors of the wall, so that no system remains to be solved at viscosity ratio 1. "
+              "`block triangular`, `block diagonal`, `block`: all blocks (2.5)-(2.8) are unknown; the LU factors of the wall are the "
               "preconditioner, except for `block`, which has none");
   section.key("wall", wall, deck::Choice{"auto", "factored", "iterative"},
               "solver of the linear system for the traction on the wall of a Channel. `factored`: LU factors, computed once. `iterative`: "
-              "GMRES with sums by clusters for each velocity; the wall is then neglected in the Jacobian. `auto`: `iterative` if the "
-              "factors would take more than 4 GB");
+              "GMRES for each velocity, with sums over clusters of nodes; the wall is then neglected in the Jacobian. `auto`: `iterative` if "
+              "the factors would take more than 4 GB");
   section.key(
       "rigid bodies", rigid_bodies, deck::Choice{"auto", "second kind", "first kind"},
-      "boundary integral equation for rigid bodies. `second kind`: double layer (2.23), solved iteratively, for many bodies. "
-      "`first kind`: the tractions are the unknowns (2.40) of a dense matrix, which is factored for every configuration; far more "
-      "accurate if gaps are small. `auto`: `first kind` in runs in time with at most 1500 control points of rigid bodies at the start, in "
-      "two cases: at least two rigid bodies, all with Adaptation/enabled; or one rigid body as the only particle in a Tube or Channel, with "
-      "Solvers/tube `schur`. Otherwise `second kind`");
+      "boundary integral equation for rigid bodies. `second kind`: double-layer equation (2.23), solved iteratively, for many bodies. `first "
+      "kind`: dense system for the tractions (2.40), whose matrix is factored for every configuration; far more accurate if gaps are small. "
+      "`auto`: `first kind` in time-dependent runs with at most 1500 control points of rigid bodies at the start, in two cases: at least two "
+      "rigid bodies, all with Adaptation/enabled; or one rigid body as the only particle in a Tube or Channel, with Solvers/tube `schur`. "
+      "Otherwise `second kind`");
   section.key("projection", projection, deck::Choice{"collocation", "least squares"},
               "projection of velocities onto the splines of the surface. `collocation`: one site per control point, error O(h^4) with the "
               "element length h. `least squares`: best fit at four sites per element, error O(h^6), four times the kernel evaluations; not "
               "in a tube, at a wall or with rigid bodies");
   section.key("frozen operator", frozen_operator, deck::Choice{"nodal", "assembled"},
               "storage of the single-layer operator in the approximate Jacobian of implicit time steps, which is kept over several steps "
-              "(4.3). `nodal`: one quadrature node per control point, summed in every product, with near-field corrections. `assembled`: "
-              "a full matrix, 12 bytes per pair of points");
+              "(4.3). `nodal`: matrix-free sums over one quadrature node per control point, with near-field corrections. `assembled`: a full "
+              "matrix, 12 bytes per pair of points");
   direct.declare(section);
 }
 

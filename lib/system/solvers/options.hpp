@@ -42,14 +42,14 @@ struct IterativeOptions {
 /// Options `Solvers/*` of the deck: the solvers of the linear systems.
 struct SolverOptions {
   std::string krylov = "GMRES";                   ///< Belos' name of the iterative solver of all systems that do not set their own
-  std::shared_ptr<Teuchos::ParameterList> belos;  ///< its parameter list, passed unchanged
+  std::shared_ptr<Teuchos::ParameterList> belos;  ///< parameter list of the solver `krylov`, passed unchanged to Belos
   IterativeOptions velocity, traction;
   IterativeOptions implicit_step{.restart = 30};  ///< three iterations are typical
   IterativeOptions spectrum{.restart = 30}, steady{.restart = 30};
-  std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver of crank-nicolson, passed unchanged
+  std::shared_ptr<Teuchos::ParameterList> nox;    ///< parameter list of the nonlinear solver (Steady, Time/scheme), passed unchanged to NOX
   double tolerance = 1e-8;                        ///< relative residual of the systems for velocities or tractions
-  std::string double_layer = "auto";  ///< double layer. assembled: assembled once per velocity evaluation, for all iterations; matrix-free: summed in
-                                      ///< each iteration; auto: matrix-free if far sums use clusters
+  std::string double_layer = "auto";  ///< double layer. assembled: once per velocity evaluation. matrix-free: summed in each iteration. auto:
+                                      ///< matrix-free if far sums use a treecode, unless there are rigid bodies and the matrix is small
   std::string tube = "schur";                     ///< unknowns in a tube. schur: velocity, with the wall tractions eliminated. Other values: all
                                                   ///< unknowns in one system (BlockSystem), with this preconditioner
   std::string wall = "auto";                      ///< solver for the wall of a channel: factored, iterative, or auto (iterative if the
@@ -61,7 +61,7 @@ struct SolverOptions {
                                                   ///< (FrozenOperator)
   membrane::DirectSolverOptions direct;
 
-  /// Returns whether the double layer is assembled. `by_clusters`: true if far sums use clusters.
+  /// Returns whether the double layer is assembled. `by_clusters`: true if a treecode (sums by clusters) evaluates the far-field sums.
   bool assembled(bool by_clusters) const { return double_layer == "assembled" || (double_layer == "auto" && !by_clusters); }
 
   /// Returns `system`; its solver and parameter list, if not set, are replaced by the solver and list for all systems.

@@ -9,12 +9,13 @@
 
 namespace tanktread::coupling {
 
-/// The last few quasi-Newton corrections d_i, and the errors e_i = B (dv_i - J d_i) of the Jacobian J (4.3) if d_i changes the velocity by dv_i:
+/// Correction E of the Jacobian J (4.3) from the last few quasi-Newton corrections d_i and the errors e_i = B (dv_i - J d_i) of J along them:
 ///
 ///   E w = sum_i c_i e_i,   c the coefficients of the least-squares fit of w by the d_i                                          (4.13)
 ///
-/// w is a displacement, and B the operator of the velocity system (2.8). The part of the Jacobian that (4.3) omits is bounded and changes only as the
-/// shape changes, so that pairs remain useful for a few steps. This is a multisecant update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
+/// w is a displacement, dv_i the change of the velocity due to d_i, and B the operator of the velocity system (2.8). The part of the Jacobian that
+/// (4.3) omits is bounded and changes only as the shape changes, so that pairs (d_i, e_i) remain useful for a few steps. This is a multisecant
+/// update: Fang & Saad, Numer. Linear Algebra Appl. 16 (2009).
 class Secants {
  public:
   /// `pairs`: each correction d_i, followed by its error e_i, in the order d_1, e_1, d_2, e_2, ..., oldest first.
