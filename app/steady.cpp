@@ -150,6 +150,9 @@ class SteadyRun {
   /// Computes all shapes of a branch.
   void follow() {
     const Parameters first = first_parameters(scene_, request_.deck_text);
+    const auto check = [&](const Parameters& parameters) { request_.changed(settings_of(scene_.continuation, parameters)); };
+    check({scene_.continuation.to, first[1]});
+    for (const double second : scene_.continuation.second_values.value_or(std::vector<double>())) check({first[0], second});
     systems_.emplace_front(first, system_);
     motion::Branch branch([this](double parameter, double second) { return equations_at({parameter, second}); },
                           [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
@@ -184,8 +187,9 @@ class SteadyRun {
     results_.remesh(system_->particle->body(), system_->particle->bezier());
   }
 
-  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front.
-  std::shared_ptr<System> system_at(const Parameters& parameters) {
+  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front. Throws
+  /// RunFailure if the deck does not allow the parameters, so that the computed points of the branch are kept.
+  std::shared_ptr<System> system_at(const Parameters& parameters) try {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {
       std::rotate(systems_.begin(), known, known + 1);
@@ -200,6 +204,8 @@ class SteadyRun {
     systems_.emplace_front(parameters, made);
     if (systems_.size() > 3) drop_oldest();
     return made;
+  } catch (const UserError& error) {
+    throw RunFailure(formatted("%s cannot be computed (%s)", at(parameters).c_str(), error.what()));
   }
 
   /// Transfers a system to the mesh of the checkpoint `mesh`, with the current shape.
@@ -250,12 +256,9 @@ class SteadyRun {
     const Net x = state_.x.topRows(capsule.n_points());
     coupling::ShapeCoordinates shapes(body.space, capsule.particles(), options.parity ? shape : body.symmetry, x, capsule.projection(),
                                       options.parity.value_or(Vec3::Ones()));
-    std::vector<Net> kept{capsule.geometry().volume_gradient(x)};
-    if (coupling::CoupledMotion* fields = system->particle->fields()) {
-      shapes.add_fields(*fields, state_.x);
-      for (std::size_t k = 0; k < fields->fields().size(); ++k)
-        if (Net of_field = fields->conserved(k); of_field.rows() > 0) kept.push_back(std::move(of_field));
-    }
+    coupling::CoupledMotion* fields = system->particle->fields();
+    if (fields) shapes.add_fields(*fields, state_.x);
+    const std::vector<motion::Conserved> kept = conserved_quantities(capsule, fields, x);
     if (options.number > shapes.size())
       throw UserError(formatted("Spectrum/number must be at most %ld, the number of unknowns, but is %d.", static_cast<long>(shapes.size()),
                                 options.number));

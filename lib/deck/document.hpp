@@ -29,7 +29,7 @@ class Document {
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // throws errors of wrong values instead, if any: such keys keep their defaults, which may have caused this error
+      refuse_wrong_values();  // if values were refused, throws their errors instead: their keys keep the defaults, which may have caused this error
       throw;
     }
     finish();

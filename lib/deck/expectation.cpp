@@ -45,8 +45,8 @@ void Expectations::declare(Section& section) {
 
 namespace {
 
-/// Returns the difference up to which two times count as equal.
-double slack(double time) { return 1e-9 * std::max(1.0, std::abs(time)); }
+/// Returns the difference up to which two times count as equal in a run that ends at the time `end`.
+double slack(double time, double end) { return 1e-9 * std::max(std::abs(time), std::abs(end)); }
 
 Verdict verdict(const Expectation& e, const SeriesTable& series, const UndefinedSeries& undefined) {
   Verdict out{e.name,       std::numeric_limits<double>::quiet_NaN(), e.value, std::numeric_limits<double>::quiet_NaN(), false, {},
@@ -58,7 +58,8 @@ Verdict verdict(const Expectation& e, const SeriesTable& series, const Undefined
   }
   if (e.at) {
     const bool usable = times != series.end() && times->second.size() == values->second.size();
-    if (!usable || *e.at < times->second.front() - slack(*e.at) || *e.at > times->second.back() + slack(*e.at)) {
+    const double near = usable ? slack(*e.at, times->second.back()) : 0;
+    if (!usable || *e.at < times->second.front() - near || *e.at > times->second.back() + near) {
       out.reason = "the results do not reach the time " + number_text(*e.at);
       return out;
     }
@@ -90,7 +91,7 @@ void check_series(const std::vector<Expectation>& expectations, const std::vecto
 std::vector<std::string> too_late(const std::vector<Expectation>& expectations, double end) {
   std::vector<std::string> sentences;
   for (const Expectation& e : expectations)
-    if (e.not_binding.empty() && e.at && *e.at > end + slack(*e.at))
+    if (e.not_binding.empty() && e.at && *e.at > end + slack(*e.at, end))
       sentences.push_back("Expect/" + e.name + " will be missed: it is for the time " + number_text(*e.at) + ", and the run ends at " +
                           number_text(end));
   return sentences;

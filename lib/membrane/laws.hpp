@@ -218,7 +218,7 @@ std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, con
 /// The law that the deck selects, as a variant. It is visited once per batch of elements, outside the innermost loops.
 using Law = std::variant<NeoHookean, Skalak, MooneyRivlin, EvansSkalak, UserLaw, SurfaceTension, AreaElasticity, MaxwellSpring>;
 
-/// A law as a sum of two terms: the area elasticity, which is integrated by another Gauss rule, and the energy of shear.
+/// A law as the sum of a shear energy and an area elasticity, so that the two can be integrated with different Gauss rules (3.13).
 struct SplitLaw {
   Law shear;
   AreaElasticity area;

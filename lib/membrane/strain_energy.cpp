@@ -32,7 +32,7 @@ class ExpressionParser {
 
  private:
   using Kind = StrainEnergy::Kind;
-  /// Value of a part of the text: a constant, or the result of an operation.
+  /// Value of a subexpression: the result with the index `slot` (see StrainEnergy::Operation), or the constant `number` if `slot` is not set.
   struct Term {
     double number = 0;
     std::optional<std::size_t> slot = {};

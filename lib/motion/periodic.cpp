@@ -14,6 +14,7 @@
 #include "base/formatted.hpp"
 #include "deck/section.hpp"
 #include "motion/integrator.hpp"
+#include "system/solids/rigid_motion.hpp"
 #include "system/solvers/eigenvalues.hpp"
 #include "system/solvers/nonlinear.hpp"
 
@@ -59,7 +60,7 @@ State run(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shar
     throw RunFailure("the evaluation of the velocity failed in the search for a periodic motion");
   TimeOptions until_most = time;
   until_most.final_time = most;
-  state.step = time.initial_step.value_or(first_step(dynamics, state, until_most));
+  state.step = time.initial_step ? *time.initial_step : first_step(dynamics, state, until_most);
   const std::unique_ptr<Integrator> scheme = integrator(until_most, nox);
   while (state.time < most * (1 - 1e-12)) {
     const State before = state;
@@ -132,9 +133,9 @@ PeriodicReport find_periodic(ReturnMap& map, const std::shared_ptr<Teuchos::Para
 
 std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number) {
   constexpr double exhausted = 1e-8;
+  const double largest = map.options().difference / map.dynamics().norm(map.dynamics().moved(x, coupling::unit_motion(1)));  // a length
   const auto product = [&](const Net& d) -> Net {
-    const double mean = d.norm() / std::sqrt(static_cast<double>(d.rows())), radius = mean / map.dynamics().norm(d);
-    const double e = map.options().difference * radius / d.rowwise().norm().maxCoeff();
+    const double e = largest / d.rowwise().norm().maxCoeff();
     // `admitted` removes errors that break the symmetry; they would appear as an eigenvalue 1 of the return map
     return admitted((map(x + e * d) - map(x - e * d)) / (2 * e));
   };

@@ -45,7 +45,7 @@ struct Verdict {
 /// Decides on an attempted step that ended with the stage `last`. `error`: local error of the step divided by the tolerance; it is proportional to
 /// the step size to the power `power`. Restores the volume at the end of an accepted step; if this fails, the step is rejected. If the iteration
 /// failed or contracted too slowly, and the shape has changed since the layer operators were last assembled, assembles them again at state.x and
-/// deletes the secants. Throws RunFailure if a step of fixed size was not solved.
+/// deletes the secants. Throws RunFailure if a step of fixed size was not solved or its volume not restored.
 Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& state, coupling::Secants& secants, Stage& last, double error,
               int power, const Memory& memory);
 

@@ -69,17 +69,18 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }
 
-Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                        double difference)
     : dynamics_(dynamics), shapes_(shapes), x_(x), difference_(difference / dynamics.norm(dynamics.moved(x, coupling::unit_motion(1)))),
       kept_(shapes.size(), static_cast<Eigen::Index>(kept.size())) {
   Eigen::Index n = 0;
-  for (const Net& gradient : kept) {
+  for (const Conserved& one : kept) {
+    const Net& gradient = one.gradient;
     Eigen::VectorXd by_y(shapes.size());
     for (Eigen::Index k = 0; k < by_y.size(); ++k)
       by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
-    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // the modes have another parity
     by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
+    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // the modes have another parity, or the quantity belongs to a mirror image
     kept_.col(n++) = by_y.normalized();
   }
   kept_.conservativeResize(Eigen::NoChange, n);
@@ -182,7 +183,7 @@ namespace {
 using Pairs = std::vector<coupling::Eigenpair>;
 
 /// Computes all eigenpairs of the Jacobian J of the velocity in shape coordinates, which is assembled column by column.
-Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
             const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();
   Eigen::MatrixXd jacobian(n, n);
@@ -194,7 +195,7 @@ Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shap
 
 /// Computes the eigenpairs of the Jacobian J with the largest |1/(1 - rate/shift)| by shift-and-invert. Applies (I - J/shift)^-1 by GMRES with the
 /// preconditioner of an implicit step.
-Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
               const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   constexpr double tolerance = 1e-6;
   const double step = 1 / options.shift.value();
@@ -226,7 +227,7 @@ Pairs shifted(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& sh
 
 }  // namespace
 
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver) {
   Pairs pairs = options.method == "dense" ? dense(dynamics, shapes, x, kept, options) : shifted(dynamics, shapes, x, kept, options, solver);
   const auto rank = [&](const coupling::Eigenpair& pair) { return options.near ? std::abs(pair.value - *options.near) : -pair.value.real(); };
@@ -235,20 +236,20 @@ std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCo
   return recognised(dynamics, shapes, x, kept, pairs);
 }
 
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                              const std::vector<coupling::Eigenpair>& pairs) {
   const Recognition recognition(dynamics, shapes, x);
   std::vector<Mode> modes;
   for (const coupling::Eigenpair& pair : pairs) modes.push_back(mode(shapes, recognition, pair.value, pair.vector));
   std::vector<bool> told(modes.size(), false);
-  for (std::size_t k = 0; k < kept.size(); ++k) {
+  for (const auto& [gradient, kind] : kept) {
     std::vector<double> gains;
-    for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : gain(kept[k], modes[i]));
+    for (std::size_t i = 0; i < modes.size(); ++i) gains.push_back(told[i] ? 0 : gain(gradient, modes[i]));
     const auto most = std::ranges::max_element(gains);
     if (most == gains.end() || *most <= 1e-3) continue;
     const std::size_t i = static_cast<std::size_t>(most - gains.begin());
     // This mode changes the conserved quantity most. Its shape does not identify it, because near a fold another mode has nearly this shape.
-    modes[i].kind = k == 0 ? ModeKind::volume : ModeKind::mass, told[i] = true;
+    modes[i].kind = kind, told[i] = true;
   }
   return modes;
 }

@@ -38,6 +38,12 @@ struct SpectrumOptions {
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
+/// Gradient of a quantity that the motion conserves, with respect to the state. `kind`: kind of the mode that has rate 0 because of the conservation.
+struct Conserved {
+  Net gradient;
+  ModeKind kind;
+};
+
 /// Mode Re(mode e^{rate t}) of the linearised motion: a displacement of the control points, or if there are surface fields, a change of positions and
 /// fields. It is scaled to a largest displacement of 1. If no control point moves, it is scaled to a largest component of 1.
 struct Mode {
@@ -57,12 +63,13 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 ///
 /// Modes are changes of the shape, not motions of the control points along it. On a steady shape the velocity v is a sum of relabellings
 /// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
-/// quantities: the volume and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a fold, and an
+/// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a fold, and an
 /// error of J would change their rates by the square root of the error.
 class Linearised {
  public:
-  /// Linearises the motion about x. `kept`: gradients of the conserved quantities. The arguments must outlive this object. Collective.
-  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept, double difference);
+  /// Linearises the motion about x. `kept`: conserved quantities. The arguments must outlive this object. Collective.
+  Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
+             double difference);
 
   /// Returns J y. Throws RunFailure if a velocity cannot be evaluated. Collective.
   Eigen::VectorXd operator()(const Eigen::VectorXd& y) const;
@@ -79,14 +86,14 @@ class Linearised {
   Eigen::MatrixXd kept_;         // orthonormal gradients of the conserved quantities with respect to the coordinates y, one per column
 };
 
-/// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: gradients of the conserved
-/// quantities, first the gradient of the volume. The gradients identify the modes that have rate 0 only because of conservation. Collective.
-std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+/// Converts eigenpairs in shape coordinates to fields on the surface, and determines the kind of each mode. `kept`: conserved quantities, whose
+/// gradients identify the modes that have rate 0 only because of conservation. Collective.
+std::vector<Mode> recognised(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                              const std::vector<coupling::Eigenpair>& pairs);
 
 /// Returns the leading modes of the motion about x that `options` ask for; `options.shift` must be set for krylov. `solver`: options for the
 /// shift-and-invert systems. Collective. Throws RunFailure if a velocity or the eigenvalues cannot be computed.
-std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Net>& kept,
+std::vector<Mode> spectrum(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
                            const SpectrumOptions& options, const coupling::IterativeOptions& solver);
 
 }  // namespace tanktread::motion

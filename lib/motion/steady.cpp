@@ -57,6 +57,7 @@ Net SteadyEquations::residual(const Net& x) {
   Net volume = x;
   dynamics_.restore_volume(volume);
   const Net v = dynamics_.velocity(x);
+  if (!v.allFinite()) return v;  // the neutral directions of such a shape may not exist
   Net r = step_ * v + (volume - x);
   for (const Net& field : neutral(x)) r -= (step_ * field.cwiseProduct(v).sum() + field.cwiseProduct(x - start_).sum()) * field;
   return r;
@@ -77,7 +78,8 @@ double SteadyEquations::unit_length() const {
 namespace {
 
 /// Makes implicit time steps, each so short that it changes x by less than `little`, until a step of the full length equations.step() would do so.
-void approach(SteadyEquations& equations, Net& x) {
+/// Returns whether x has changed.
+bool approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
   const double full = equations.step();
@@ -90,11 +92,12 @@ void approach(SteadyEquations& equations, Net& x) {
       return equations.dynamics().norm(delta) < little;
     };
     while (!moves_little() && step > 1e-6 * full) step *= 0.5;
-    if (step == full || !delta.allFinite()) return;
+    if (step == full || !delta.allFinite()) return k > 0;
     x += delta;
     equations.dynamics().restore_volume(x);
     step = std::min(full, 4 * step);
   }
+  return true;
 }
 
 /// Largest value of (velocity times step)/R_C for which only the correction measures the error. A larger value counts as the error itself. On a
@@ -106,8 +109,7 @@ constexpr double largest_motion = 0.1;
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x) {
   coupling::Dynamics& dynamics = equations.dynamics();
   dynamics.freeze(x);
-  approach(equations, x);
-  dynamics.freeze(x);
+  if (approach(equations, x)) dynamics.freeze(x);
   Net best = x;
   double rest = std::numeric_limits<double>::infinity(), latest = rest;
   const bool bare = options.method == "newton-krylov" && solvers.steady.preconditioner == "none";

@@ -62,12 +62,13 @@ Net shape_of(const output::Checkpoint& run) {
   return x.topRows(alone == run.arrays.end() ? x.rows() : std::min(x.rows(), alone->second.rows()));
 }
 
-/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the control points.
-Net mode_of_run(const output::Checkpoint& run, int number) {
+/// Returns an eigenmode from the section Spectrum of a run, as a displacement of the `n_points` control points. The rows of the mode after the
+/// displacement, if any, are changes of surface fields.
+Net mode_of_run(const output::Checkpoint& run, int number, Eigen::Index n_points) {
   const auto found = run.arrays.find("mode " + std::to_string(number));
   if (found == run.arrays.end())
     throw UserError(key + formatted("mode must be one of the modes of the run's Spectrum, and there is no mode %d.", number));
-  return found->second;
+  return found->second.topRows(n_points);
 }
 
 }  // namespace
@@ -104,7 +105,7 @@ Net initial_shape(const Scene& scene, const Body& body, const output::Checkpoint
   if (x.rows() != body.space.n_points)
     throw UserError(key + formatted("run: its surface has %d control points; it must have the particle's %d.", static_cast<int>(x.rows()),
                                     body.space.n_points));
-  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode);
+  if (initial.mode) x += initial.mode_amplitude * body.radius * mode_of_run(*before, *initial.mode, x.rows());
   x = (x * initial.turn.transpose()).rowwise() + initial.shift.transpose();
   const surface::Measures measures = surface::measures(body.space, x);
   const double scale = own ? 1 : std::cbrt(surface::volume(body.space, body.rest) / measures.volume);

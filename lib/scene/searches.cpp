@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SVD>
@@ -28,7 +29,7 @@ membrane::RigidConditions conditions(std::span<const coupling::Particle> particl
   return all;
 }
 
-/// Returns the lattice vectors of a periodic scene; none if it is not periodic, or in a duct.
+/// Returns the lattice vectors of a periodic scene. Returns none if the scene is not periodic, or if it has a tube or channel.
 std::vector<Vec3> lattice_vectors(const Scene& scene) {
   std::vector<Vec3> all;
   if (!scene.domain.present || scene.tube.present) return all;
@@ -133,6 +134,20 @@ void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geome
   for (motion::Place& earlier : state.places) {
     earlier.x.rowwise() -= (exponential(gradient * (earlier.time - state.time)) * off).transpose();
   }
+}
+
+std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& capsule, const coupling::CoupledMotion* fields, const Net& x) {
+  const Net of_all = capsule.geometry().volume_gradient(x);
+  std::vector<motion::Conserved> kept;
+  for (const coupling::Particle& particle : capsule.particles()) {
+    if (particle.rigid) continue;
+    Net gradient = Net::Zero(of_all.rows(), 3);
+    particle.block.rows(gradient) = particle.block.rows(of_all);
+    kept.push_back({std::move(gradient), motion::ModeKind::volume});
+  }
+  for (std::size_t k = 0; fields && k < fields->fields().size(); ++k)
+    if (Net gradient = fields->conserved(k); gradient.rows() > 0) kept.push_back({std::move(gradient), motion::ModeKind::mass});
+  return kept;
 }
 
 namespace {

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "motion/integrator.hpp"
+#include "motion/spectrum.hpp"
 #include "scene/scene.hpp"
 #include "stokes/flow/ambient_flow.hpp"
 #include "surface/geometry.hpp"
+#include "system/coupled_motion.hpp"
 #include "system/particle.hpp"
 #include "system/solids/rigid_motion.hpp"
 
@@ -39,6 +41,10 @@ bool holds_centre(const Scene& scene);
 /// affine flow with gradient L, v(x + c) = v(x) + L c for any shape x. If x(t) is a motion, x(t) + c(t) with dc/dt = L c is therefore also a motion.
 /// So slopes change by L c, and the position at a time s earlier is displaced by exp(-L s) c.
 void hold_centre(const stokes::AmbientFlow& flow, const surface::Geometry& geometry, const Vec3& place, motion::State& state);
+
+/// Returns the conserved quantities of a motion at the shape x: the volume of each deformable particle, and the sums that the fields conserve.
+/// `fields`: motion of the fields on the surfaces; null if there are none.
+std::vector<motion::Conserved> conserved_quantities(const coupling::Capsule& capsule, const coupling::CoupledMotion* fields, const Net& x);
 
 /// Values of the parameters Continuation/parameter and Continuation/second parameter; the second is 0 if there is none.
 using Parameters = std::array<double, 2>;

@@ -201,7 +201,7 @@ TMesh coarsen(const TMesh& mesh, const std::vector<Merge>& merges, const RepairR
       if (line % std::min(limit[before][!vertical], limit[after][!vertical]) == 0) continue;
       const Ray edge = l.side(c, k);
       l.set(removable, edge, true);
-      if (!vertical || !l.pad) continue;  // the next lines mark the edge that continues a vertical line in the row of zero height (end knot) at poles
+      if (!vertical || !l.pad) continue;  // at a pole, the line has one more edge, in the adjacent row of zero height; the next lines mark it
       if (l.height(row) == 0) l.set(removable, {edge.vertex, 3}, true);
       if (l.height(row) != 0 && l.height(row + 1) == l.rows - 2 * l.pad) l.set(removable, {l.neighbour[edge.vertex][1], 1}, true);
     }

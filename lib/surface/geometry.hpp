@@ -55,8 +55,8 @@ PrincipalAxes principal_axes(const Measures& measures);
 /// points.
 constexpr int n_moments = 11;
 
-// Smallest and largest value of a quantity on a closed surface: a coordinate, or the distance of a plane section of the surface from a point. The
-// functions below compute them by Newton's method for the exact polynomials of the surface.
+// Smallest and largest value of a quantity on a closed surface: a coordinate, or the distance between a given point and the points of a plane
+// section. coordinate_range(), lowest() and section_distances() find the extrema of the spline surface itself by Newton's method.
 
 struct Range {
   double smallest = std::numeric_limits<double>::infinity(), largest = -std::numeric_limits<double>::infinity();  ///< empty range
@@ -87,7 +87,8 @@ struct Deformation {
 };
 
 /// Computes measures of any number of control nets on one space; everything that depends only on the space is computed once. Every sum runs over the
-/// elements in one fixed order, so a complete row computed from a subset of the elements is bitwise equal to the row computed from all elements.
+/// elements in one fixed order. The row of a control point in a gradient is therefore bitwise equal for all subsets of elements for which it is
+/// complete.
 class Geometry {
  public:
   explicit Geometry(const spline::Space& space);

@@ -114,7 +114,7 @@ class Sector {
     const Eigen::Matrix2d root = metric.inverse().llt().matrixL().transpose();
 
     // `residual`: eps = (|x|^2 - 1)/2, then the gradient of eps in an orthonormal frame of the tangent plane. `slope`: derivatives of `residual` with
-    // respect to the profile, which are the radii and heights of the circles of control points first .. last.
+    // respect to the radii and heights of the circles first .. last of control points.
     Vec3 residual;
     residual << (x.squaredNorm() - 1) / 2, root * Eigen::Vector2d(x.dot(xs), x.dot(xt));
     const int width = 2 * (last - first + 1);

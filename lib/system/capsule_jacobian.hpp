@@ -41,7 +41,7 @@ class CapsuleJacobian {
 
   /// Returns B v, or v if control points slide along an interface.
   Net left(const Net& v) { return interface_ ? v : viscous_product(v); }
-  RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if points slide
+  RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if control points slide along an interface
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt

@@ -285,6 +285,15 @@ Tanktread:
     check(series("true", "n_control_points")[-1] > series("false", "n_control_points")[-1], "nothing is refined")
 
 
+def the_end_of_a_branch_must_be_allowed_before_its_first_point_is_computed():
+    branch = ["--set", "Continuation/parameter=Membrane/capillary number", "--output", "none", "--overwrite", "--quiet"]
+    fold = ["--set", "Continuation/to=0.1", "--set", "Continuation/second parameter=Particle/viscosity ratio", "--set",
+            "Continuation/second values=[2, -1]"]
+    for way, key in (["--set", "Continuation/to=0"], "Membrane/capillary number"), (fold, "Particle/viscosity ratio"):
+        said = run(deck(DECK), *branch, *way, code=2).stderr
+        check(len(said.splitlines()) == 1 and key in said and not list(pathlib.Path("none").glob("snapshot_*")), said)
+
+
 def a_parameter_must_be_a_number_of_the_deck():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.1", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--output", "no", "--quiet", code=2).stderr

@@ -83,7 +83,7 @@ def modes_of_a_membrane_with_a_memory_are_those_of_linear_theory():
     for exact in _linear_rates(0.5, 2.0, 0.25):
         coarse, fine = errors(3, exact, *projected), errors(4, exact, *projected)
         check(fine[1] < min(1e-3, coarse[1] / 2), exact, coarse, fine)  # by the order 4 a third is left
-    for parity, n in ("[1, 1, 1]", 2), ("[-1, 1, -1]", 1), ("[1, -1, -1]", 1), ("[1, 1, -1]", 0), ("[-1, -1, -1]", 0):
+    for parity, n in ("[1, 1, 1]", 2), ("[-1, 1, -1]", 1), ("[1, 1, -1]", 0):
         found = errors(3, exact, "--set", f"Spectrum/parity={parity}")
         check((found < 1e-2).sum() == n, parity, exact, found)
 

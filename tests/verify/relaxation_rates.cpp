@@ -52,7 +52,8 @@ struct Sphere {
     shapes.follow(*scene.capsule, x);
     motion::SpectrumOptions options;
     options.number = static_cast<int>(shapes.size());
-    modes = motion::spectrum(*scene.capsule, shapes, x, {scene.capsule->geometry().volume_gradient(x)}, options, {});
+    const Net flux = scene.capsule->geometry().volume_gradient(x);
+    modes = motion::spectrum(*scene.capsule, shapes, x, {{flux, motion::ModeKind::volume}}, options, {});
   }
 
   /// Returns, among the modes with rates within 5 % of `near`, the rate of the mode closest to a displacement by the second harmonic, Y r and grad Y.
@@ -152,10 +153,10 @@ TEST(RelaxationRates, ByKrylovSchurAreThoseOfTheWholeJacobian) {
   const coupling::ShapeCoordinates shapes(run.body().space, run.capsule->particles(), run.body().symmetry, x);
   motion::SpectrumOptions options;
   options.number = 6, options.shift = 1;
-  const Net flux = run.capsule->geometry().volume_gradient(x);
-  const auto all = motion::spectrum(*run.capsule, shapes, x, {flux}, options, {"GMRES"});
+  const std::vector<motion::Conserved> kept{{run.capsule->geometry().volume_gradient(x), motion::ModeKind::volume}};
+  const auto all = motion::spectrum(*run.capsule, shapes, x, kept, options, {"GMRES"});
   options.method = "krylov";
-  const auto some = motion::spectrum(*run.capsule, shapes, x, {flux}, options, {"GMRES"});
+  const auto some = motion::spectrum(*run.capsule, shapes, x, kept, options, {"GMRES"});
   ASSERT_EQ(some.size(), 6u);
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(std::abs(some[k].rate - all[k].rate), 0, 1e-5) << k;
 }

@@ -63,8 +63,8 @@ class RigidTractions {
   /// Sets the solids in the lattice, which must outlive this object.
   void put_among(SolidResponse& solids) { walls_.solids = &solids; }
 
-  /// Velocities and loads due to deformable particles and to images on a lattice. Nets have one row per control point of all particles. The unknowns
-  /// y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
+  /// Interactions of the bodies with deformable particles and with images on a lattice. Nets have one row per control point of all particles. The
+  /// unknowns y are the force densities f in rows of bodies, and the velocity v in rows of deformable particles.
   struct Surroundings {
     Net flow;       ///< control values of the velocity (4.2) due to the ambient flow and known loads
     bool responds;  ///< true if the velocity on the bodies depends on y through more than their single layers
@@ -76,8 +76,8 @@ class RigidTractions {
     std::function<Net(const Net& y)> load;  ///< returns the load of the fluids on all particles. Collective
   };
 
-  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: velocities and
-  /// loads due to deformable particles and images on a lattice; not set if there are neither. Collective.
+  /// Sets the control net x of all particles, and the centres of the bodies. If there is a tube, it must have been set to x. `around`: interactions
+  /// with deformable particles and with images on a lattice; not set if there are neither. Collective.
   void place(const Net& x, std::span<const Vec3> centres, std::optional<Surroundings> around = {});
 
   /// Solves for the force densities and motions of the bodies and the velocity of the deformable particles at the net x. `driven`: prescribed force

@@ -1,6 +1,5 @@
 #include "system/solids/tube.hpp"
 
-#include "system/collocation.hpp"
 #include "system/solids/tube_particle.hpp"
 
 namespace tanktread::coupling {
@@ -38,7 +37,8 @@ const Net& Tube::ambient() const { return particle_->ambient; }
 const std::optional<stokes::PeriodicCell>& Tube::cell() const { return wall_->cell(); }
 
 stokes::Evaluations Tube::kernel_evaluations() const {
-  return wall_->evaluations() + particle_->evaluations();
+  stokes::Evaluations all = wall_->evaluations() + particle_->evaluations();
+  return between_ ? all + between_->layer.evaluations() : all;
 }
 
 void Tube::set_contrasts(const Eigen::VectorXd& contrasts) { particle_->set_contrasts(contrasts); }

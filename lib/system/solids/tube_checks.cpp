@@ -90,25 +90,38 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
   return checks;
 }
 
-Tube::Leak Tube::leak(const Net& f) {
-  const surface::TubeWall& wall = wall_->surface();
-  const auto [places, values, weights] = between_sites(wall.space, wall.net);
-  const Net at = values * wall.net;
-  const Response response = respond(f);
-  quadrature::Options options = particle_->parameters.quadrature;
+namespace {
+
+quadrature::Options sharper(quadrature::Options options) {
   options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
-  stokes::Layer layer(stokes::Layer::Kernel::single_layer, wall.space, places, options);
-  if (cell()) layer.repeat(*cell());
+  return options;
+}
+
+}  // namespace
+
+Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell,
+                                             const BetweenSites& between, const quadrature::Options& options)
+    : at(between.values * wall.net),
+      weights(between.weights),
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.places, sharper(options)) {
+  if (cell) layer.repeat(*cell);
   layer.place(wall.net);
+}
+
+Tube::Leak Tube::leak(const Net& f) {
+  const Response response = respond(f);
+  const surface::TubeWall& wall = wall_->surface();
+  if (!between_)
+    between_ = std::make_unique<BetweenSitesOfWall>(wall, cell(), between_sites(wall.space, wall.net), particle_->parameters.quadrature);
+  const Net &at = between_->at, by_pressure = response.pressure_drop * driven(at);
   const Net u = wall_->points().ranks().divided<Net>(static_cast<int>(at.rows()), 3, [&](std::span<const int> own, Net& velocity) {
     Net of_wall(at.rows(), 3), of_load = of_wall;
-    layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
+    between_->layer.apply(wall_->on_space(response.wall_traction), own, of_wall);
     particle_->single.see_images_only(everything);
     particle_->single.apply(f, at, own, of_load);
-    for (const int i : own)
-      velocity.row(i) = (response.pressure_drop * driven(Net(at.row(i))).row(0) - of_wall.row(i) - of_load.row(i)) / viscosity();
+    for (const int i : own) velocity.row(i) = (by_pressure.row(i) - of_wall.row(i) - of_load.row(i)) / viscosity();
   });
-  return {wall_->from_space(Net(weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
+  return {wall_->from_space(Net(between_->weights * u)), checks(f, {}, response).flux * flow_->flow_rate()};
 }
 
 double Tube::work(const Leak& leak, const Response& of) const {

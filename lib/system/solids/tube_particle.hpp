@@ -11,6 +11,7 @@
 #include "membrane/direct_solver.hpp"
 #include "stokes/layer.hpp"
 #include "surface/geometry.hpp"
+#include "system/collocation.hpp"
 #include "system/solids/tube.hpp"
 #include "system/solids/wall.hpp"
 #include "system/solvers/frozen_operator.hpp"
@@ -99,6 +100,16 @@ struct Tube::Particle {
   Net ambient_of(const stokes::DuctFlow& flow) const;
 
   Net flow_of_strength_;
+};
+
+/// Points of the wall between its collocation points, at which leak() evaluates the velocity, and the layer that evaluates it.
+struct Tube::BetweenSitesOfWall {
+  BetweenSitesOfWall(const surface::TubeWall& wall, const std::optional<stokes::PeriodicCell>& cell, const BetweenSites& between,
+                     const quadrature::Options& options);
+
+  Net at;                               ///< positions
+  Eigen::SparseMatrix<double> weights;  ///< see BetweenSites
+  stokes::Layer layer;                  ///< single layer of the wall at the points
 };
 
 }  // namespace tanktread::coupling

@@ -154,7 +154,7 @@ Eigen::MatrixXd Wall::assembled() {
   const std::vector<Congruence> maps = congruences(surface_, points_.sites());
   const std::vector<Original> original = originals(maps, m);
   const auto original_of = [&](int site) { return original[static_cast<std::size_t>(site % m)]; };
-  std::vector<int> own = points_.own();  // rank-owned sites, sorted by Original::point (congruence.hpp), so that sites with equal originals are adjacent
+  std::vector<int> own = points_.own();  // rank-owned sites, sorted by Original::point (congruence.hpp): equal originals are adjacent
   std::ranges::stable_sort(own, {}, [&](int site) { return site - site % m + original_of(site).point; });
   Eigen::MatrixXd complete = points_.ranks().assembled<Eigen::MatrixXd>(n, n, [&](Eigen::MatrixXd& all) {
     for (std::size_t first = 0, last = 0; first < own.size(); first = last) {

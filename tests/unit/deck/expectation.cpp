@@ -72,6 +72,7 @@ TEST(Expectations, AfterTheEndAreSaidToBeMissed) {
   };
   EXPECT_TRUE(late(0.3).empty());
   EXPECT_TRUE(late(0.1 + 0.2).empty());
+  EXPECT_EQ(too_late(expectations("    volume: {value: 1, tolerance: 1, at: 2.0e-10}\n"), 1e-10).size(), 1u) << "a small unit of time";
   EXPECT_EQ(late(0.25), std::vector<std::string>{"Expect/volume will be missed: it is for the time 0.3, and the run ends at 0.25"});
 }
 

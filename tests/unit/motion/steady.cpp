@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/errors.hpp"
 #include "explicit_motion.hpp"
 #include "motion/fixed_point_error.hpp"
 #include "motion/steady.hpp"
@@ -113,6 +114,25 @@ TEST_P(Steady, DoesNotTakeAShapeThatMovesForASteadyOne) {
   const SteadyReport report = find_steady(equations, options, {}, x);
   EXPECT_FALSE(report.converged);
   EXPECT_GT(report.rest, 1e5);  // half of the velocity, not the correction of 1e-9
+}
+
+/// A model whose velocity cannot be evaluated, and whose relabellings fail for that reason. It counts assemblies.
+class Unknown : public Slow {
+ public:
+  Net velocity(const Net& x) override { return coupling::not_a_number(x); }
+  std::vector<Net> relabellings(const Net&) override { throw RunFailure("there is no velocity"); }
+  void freeze(const Net&) override { ++assemblies; }
+  int assemblies = 0;
+};
+
+TEST_P(Steady, RejectsAShapeWhoseVelocityCannotBeEvaluated) {
+  Unknown motion;
+  SteadyEquations equations(motion, {}, 0.5, start());
+  SteadyOptions options;
+  options.method = GetParam();
+  Net x = start();
+  EXPECT_FALSE(find_steady(equations, options, {}, x).converged);
+  EXPECT_EQ(motion.assemblies, 1);  // the shape did not change after the first assembly
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Steady, testing::Values("anderson", "newton-krylov"),
