@@ -26,8 +26,8 @@ void Expectation::declare(Section& section) {
   section.key("source", source, Choice{}, "source of the expected value, for example a publication");
   section.key("not binding", not_binding, Choice{},
               "reason why a missed expected value does not fail the run. If the text is empty (the default), a missed value fails the "
-              "run. Otherwise it is only reported, with this text. The text may be set in the deck. If it is not, the program sets it when "
-              "a later deck or --set changes a key that results depend on, without stating the expectation again");
+              "run; otherwise it is only reported, with this text. If the deck does not give this key, the program sets the text when a "
+              "later deck or --set changes a key that results depend on but does not give the expected value again");
   if (kind == "relative" && value == 0.0)
     throw UserError(section.path("kind") +
                     " `relative` and the value 0 contradict each other: an error cannot be divided by 0. Give `absolute`.");
