@@ -167,8 +167,11 @@ class Run {
     ++totals_.step;
     snapshot_due_ = state_.time >= snapshot * (1 - 1e-12);
     if (!lands && snapshot_due_ && state_.time > snapshot) picture_within(before);
+    if (pictured_ && adapts(scene_)) {
+      pictured_->sampled = sample();
+      particle_->dynamics().at(state_.time, began_);
+    }
     adapting_ = true;
-    if (pictured_ && adapts(scene_)) pictured_->sampled = sample();
     adapt();
     for (const Warning& remark : particle_->remarks()) warn(remark);
     record();
@@ -211,9 +214,10 @@ class Run {
         throw RunFailure(
             "after a step of fixed length particles are too close for Contact/limiter to hold them apart: set a smaller Time/fixed step");
       Net frozen = std::move(state_.frozen);
+      const double frozen_time = state_.frozen_time;
       state_ = before;
       if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the old operator
-      state_.frozen = std::move(frozen);
+      state_.frozen = std::move(frozen), state_.frozen_time = frozen_time;
       state_.step = report_.step / 2;
     }
   }

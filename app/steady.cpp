@@ -245,12 +245,11 @@ class SteadyRun {
     const auto clock = phases_.time("spectrum");
     motion::SpectrumOptions options = scene_.spectrum;
     const surface::Symmetry& shape = system_->particle->body().symmetry;
-    coupling::Ranks whole_ranks;  // distribution of the unknowns without symmetry reduction
     const coupling::CoupledMotion* on_it = system_->particle->fields();
     const bool apart = on_it && !on_it->knows_images(shape);
     if (apart && options.parity)
       throw UserError("Spectrum/parity needs surface fields with known images: remove the key to find modes of all parities.");
-    const std::shared_ptr<System> system = options.parity || apart ? whole(whole_ranks) : system_;
+    const std::shared_ptr<System> system = options.parity || apart ? whole() : system_;
     const coupling::Capsule& capsule = *system->particle->capsule();
     const Body& body = system->particle->body();
     const Net x = state_.x.topRows(capsule.n_points());
@@ -291,12 +290,12 @@ class SteadyRun {
   }
 
   /// Returns the current system without symmetry reduction. Modes of another parity than the shape need the velocities of all points.
-  std::shared_ptr<System> whole(coupling::Ranks& ranks) {
+  std::shared_ptr<System> whole() {
     if (system_->particle->body().symmetry.order() == 1)
       throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
     Scene scene = system_->scene;
     scene.symmetry.use = "none";
-    auto made = std::make_shared<System>(std::move(scene), ranks, phases_, told_);
+    auto made = std::make_shared<System>(std::move(scene), ranks_, phases_, told_);
     output::Checkpoint mesh;
     system_->particle->store(mesh);
     carry_to(*made, mesh);

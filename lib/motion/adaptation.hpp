@@ -44,6 +44,9 @@ struct AdaptationOptions {
 
   void declare(deck::Section& section);
 
+  /// Returns whether the error or the variation of the load causes refinement.
+  bool limits_load() const { return load_tolerance || reference_traction_variation; }
+
   /// Throws UserError, with a one-sentence message, if keys contradict each other, or if they allow no refinement of an initial mesh with this number
   /// of control points and this element length.
   void check(int first_points, double first_length) const;

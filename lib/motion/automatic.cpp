@@ -35,7 +35,7 @@ Scheme& Automatic::chosen(const Choice& choice) {
 void Automatic::measure(coupling::Dynamics& dynamics, State& state, Choice& choice) const {
   const auto points = static_cast<double>(state.x.rows());
   if (choice.points == points && choice.age < measured_every) return;
-  if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
+  if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
   dynamics.at(state.time, state.time);
   const double found = stiffness(dynamics, state.x, state.history.front(), state.direction, choice.points == points ? 3 : 8);
   if (std::isfinite(found)) choice.stiffness = found;

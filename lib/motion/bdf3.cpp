@@ -45,7 +45,7 @@ StepReport Bdf3::start(coupling::Dynamics& dynamics, State& state, double limit)
 
 StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   if (state.places.size() < places) return start(dynamics, state, limit);
-  if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
+  if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
   const Memory memory = remembered<Memory>(state.memory);
   coupling::Secants secants = state.secants;
   const std::array<const Net*, places + 1> nets{&state.x, &state.places[0].x, &state.places[1].x, &state.places[2].x};
@@ -60,9 +60,10 @@ StepReport Bdf3::advance(coupling::Dynamics& dynamics, State& state, double limi
     const Net rhs = -scheme.shift * (scheme.a[0] * *nets[0] + scheme.a[1] * *nets[1] + scheme.a[2] * *nets[2]);
     const Net predicted = interpolated(times, nets, dt);
     Stage stage;
+    stage.time = state.time + dt;
     stage.y = predicted;
     dynamics.improve_start(stage.y, state.x, scheme.shift);
-    dynamics.at(state.time + dt, state.time);
+    dynamics.at(stage.time, state.time);
     solve(dynamics, options_, rhs, scheme.shift, secants, stage);
     attempts.report.iterations += stage.iterations;
 

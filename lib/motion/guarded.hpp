@@ -24,6 +24,7 @@ class GuardedDynamics : public coupling::Dynamics {
   double next_kink(double time) const override { return motion_.next_kink(time); }
   Net velocity(const Net& x) override;
   void freeze(const Net& x) override;
+  bool lattice_moves() const override { return motion_.lattice_moves(); }
   double frozen_bytes() const override { return motion_.frozen_bytes(); }
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const coupling::Secants& secants) override;

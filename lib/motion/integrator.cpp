@@ -62,6 +62,19 @@ void begin(coupling::Dynamics& dynamics, State& state) {
   state.slope_error = 0;
 }
 
+void freeze(coupling::Dynamics& dynamics, State& state, double time) {
+  state.frozen = state.x, state.frozen_time = state.time;
+  refreeze(dynamics, state, time);
+}
+
+void refreeze(coupling::Dynamics& dynamics, const State& state, double time) {
+  if (state.frozen.size() == 0) return;
+  const bool moves = dynamics.lattice_moves();
+  if (moves) dynamics.at(state.frozen_time, state.frozen_time);
+  dynamics.freeze(state.frozen);
+  if (moves) dynamics.at(time, state.time);
+}
+
 void forget(State& state) {
   state.history.resize(std::min<std::size_t>(state.history.size(), 1));
   state.places.clear();

@@ -32,6 +32,7 @@ struct State {
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if there are none
+  double frozen_time = 0;       ///< time of the shape `frozen`
 };
 
 /// Keeps only the data that every scheme uses: position, slope, step, and the control net `frozen` of the assembled layer operators. Used if the
@@ -40,6 +41,11 @@ void forget(State& state);
 
 /// Computes the slope dx/dt at the state, if the state has no slope yet.
 void begin(coupling::Dynamics& dynamics, State& state);
+
+/// freeze() assembles the layer operators of the Jacobian at the shape and the time of the state. refreeze() assembles them at the shape `frozen` and
+/// its time, if the state has this shape. If the lattice moves, both then set `time`, within a step that begins at the time of the state.
+void freeze(coupling::Dynamics& dynamics, State& state, double time);
+void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
 /// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
 /// and frozen operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the state has

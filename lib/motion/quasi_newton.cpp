@@ -50,7 +50,7 @@ Verdict judge(coupling::Dynamics& dynamics, const TimeOptions& options, State& s
   // (4.3).
   const double changed = dynamics.distance(state.frozen, state.x);
   if (last.solved ? last.rate > options.contraction_limit && changed > worth_assembling : state.frozen != state.x) {
-    dynamics.freeze(state.frozen = state.x);
+    freeze(dynamics, state, last.time);
     secants = state.secants = {};
   }
   if (!last.solved || !std::isfinite(error)) {

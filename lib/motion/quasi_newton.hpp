@@ -15,6 +15,7 @@ struct Memory {
 
 /// Stage of an implicit scheme, y - shift v(y) = rhs with the velocity v, and its solution.
 struct Stage {
+  double time = 0;      ///< time at which the velocity v is evaluated; used only by `judge`
   Net y;                ///< start value of the iteration, and after `solve` the solution
   Net slope;            ///< slope (y - rhs)/shift of the result
   double rate = 0;      ///< contraction rate observed in this step, by this stage or an earlier stage; 0 if none was observed yet

@@ -38,7 +38,7 @@ struct SpectrumOptions {
 enum class ModeKind { shape, translation, rotation, labels, volume, mass };
 const char* name(ModeKind kind);
 
-/// Gradient of a quantity that the motion conserves, with respect to the state. `kind`: kind of the mode that has rate 0 because of the conservation.
+/// Gradient, with respect to the state, of a quantity that the motion conserves. `kind`: kind of the mode of rate 0 that the conservation causes.
 struct Conserved {
   Net gradient;
   ModeKind kind;
@@ -63,8 +63,8 @@ void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 ///
 /// Modes are changes of the shape, not motions of the control points along it. On a steady shape the velocity v is a sum of relabellings
 /// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
-/// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a fold, and an
-/// error of J would change their rates by the square root of the error.
+/// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a
+/// fold, and an error of J would change their rates by the square root of the error.
 class Linearised {
  public:
   /// Linearises the motion about x. `kept`: conserved quantities. The arguments must outlive this object. Collective.

@@ -60,7 +60,7 @@ class Prediction {
 
 StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double limit) {
   begin(dynamics, state);
-  if (state.frozen.size() == 0) dynamics.freeze(state.frozen = state.x);
+  if (state.frozen.size() == 0) freeze(dynamics, state, state.time);
   const auto [memory, known] = remembered<Remembered>(state.memory);
   coupling::Secants secants = state.secants;
   Attempts attempts(options_, state, limit);
@@ -72,6 +72,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
     Orders orders;
 
     Stage second, third;
+    third.time = state.time + dt;
     const Net rhs2 = state.x + shift * k1;
     second.y = rhs2 + shift * prediction.at(2 * d * dt, known.second);
     dynamics.improve_start(second.y, state.x, shift);
@@ -85,7 +86,7 @@ StepReport TrBdf2::advance(coupling::Dynamics& dynamics, State& state, double li
       third.rate = second.rate;
       third.y = rhs3 + shift * prediction.at(dt, known.third);
       dynamics.improve_start(third.y, second.y, shift);
-      dynamics.at(state.time + dt, state.time);
+      dynamics.at(third.time, state.time);
       solve(dynamics, options_, rhs3, shift, secants, third);
     }
     attempts.report.iterations += second.iterations + third.iterations;

@@ -146,7 +146,7 @@ void add_fluid(Lines& lines, const Scene& scene, const Body& body, int ranks) {
                                        wall.space.description.c_str()));
   if (wall.period > 0)
     lines.emplace_back("period", formatted("%.6g along x1: one period of the wall, all images by the kernels of one period", wall.period));
-  const bool iterates = wall.channel && coupling::WallSolver{scene.solvers.wall}.iterates(unknowns);
+  const bool iterates = wall.channel && coupling::WallSolver{scene.solvers.wall}.iterates(unknowns, wall.period > 0);
   const double megabytes = 8e-6 * unknowns * unknowns;
   const std::string how = iterates ? "found by GMRES and clusters in each velocity"
                                    : formatted("factored once: %.1f MB on each of %d rank%s", megabytes, ranks, ranks > 1 ? "s" : "");

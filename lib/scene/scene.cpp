@@ -129,7 +129,7 @@ void check_size(const Scene& scene) {
     check_bytes("Surface/elements per side",
                 formatted("be at most %.0f, but is %d", std::floor(std::sqrt((most - 2) / 6)), *scene.surface.elements_per_side),
                 points(scene), bytes);
-  if (!scene.tube.present || (scene.tube.channel && scene.solvers.wall != "factored")) return;
+  if (!scene.tube.present || (scene.tube.channel && coupling::WallSolver{scene.solvers.wall}.may_iterate(scene.tube.period > 0))) return;
   check_bytes(scene.tube.list() + "/azimuthal elements and " + scene.tube.list() + "/axial elements",
               formatted("give at most %.0f control points", most_wall_points()), wall_points(scene), doubles * coupling::Ranks().size());
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Data that searches for steady shapes, periodic motions and branches need from a scene: the rigid motions that leave the problem invariant, whether
-// a particle's centroid is held in place, the implicit step of the search, and the parameters of a branch.
+// a particle's centroid is held in place, the implicit step of the search, the conserved quantities, and the parameters of a branch.
 
 #include <array>
 #include <span>

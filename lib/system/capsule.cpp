@@ -136,7 +136,7 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   if (!interface_) return v;
   e.fluid_ = symmetric(v);
   const auto clock = phases_.time("interface motion");
-  v = interface_->velocity(x, constrained ? b : volumes_.gradient(x), v);
+  v = interface_->velocity(x, constrained ? b : volumes_.gradient(x), v, e.x());
   if (constrained) volumes_.constrain(v, b, c);  // removes the small change of volume that the spline interpolation of the normal velocity causes
   return v;
 }
@@ -267,6 +267,7 @@ Net Capsule::mesh_motion(const Net& delta) {
 
 Net Capsule::derivative(const Net& x, const Net& v, const Net& delta) {
   if (!has_frozen()) return difference(x, v, delta);
+  if (interface_) velocity(x);  // because InterfaceMotion::derivative needs the velocity at x
   const auto clock = phases_.time("stiffness");
   linearise(x);
   return symmetric(jacobian_.velocity_change(delta, {}).rate);

@@ -81,6 +81,7 @@ class Capsule : public Dynamics {
 
   double next_kink(double time) const override { return around_.flow.next_kink(time); }
   void freeze(const Net& x) override;
+  bool lattice_moves() const override { return parameters_.cell && !duct_.tube && !around_.solids; }
   double frozen_bytes() const override { return frozen_.bytes(); }
   void linearise(const Net& x) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;

@@ -114,8 +114,8 @@ Net CapsuleJacobian::viscous_product(const Net& v) {
     load = membranes_.solved(membranes_.viscous_work_change(deforming));
     hv -= frozen_.single_layer(load) / parameters_.viscosity;
   }
+  if (tube_) hv += tube_->frozen_response(load, deforming);
   clear_rigid(parameters_.particles, hv);
-  if (tube_) hv += tube_->frozen_response(load, inside);
   return v - without_flux(targets_.collocation().solve(hv));
 }
 

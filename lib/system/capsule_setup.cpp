@@ -32,7 +32,7 @@ std::unique_ptr<InterfaceMotion> interface_motion(const spline::Space& space, co
 Capsule::Capsule(const spline::Space& space, const Net& unstressed, const Net& initial, const stokes::AmbientFlow& flow,
                  const CapsuleParameters& parameters, Ranks& ranks, Phases& phases, std::unique_ptr<Tube> tube)
     : space_(space), rest_(initial), around_{flow, {}, {}}, parameters_(completed(parameters, space)), phases_(phases),
-      layout_(space, parameters_.symmetry, ranks),
+      layout_(space, parameters_.symmetry, phases),
       targets_(space, unstressed, parameters_, layout_),
       membranes_(space, unstressed, parameters_, layout_, phases),
       volumes_(space, initial, particles(), layout_, phases),

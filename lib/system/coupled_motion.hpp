@@ -60,6 +60,7 @@ class CoupledMotion : public Dynamics {
   void at(double time, double start) override { capsule_.at(time, start); }
   double next_kink(double time) const override { return capsule_.next_kink(time); }
   void freeze(const Net& y) override;
+  bool lattice_moves() const override { return capsule_.lattice_moves(); }
   double frozen_bytes() const override { return capsule_.frozen_bytes(); }
   void linearise(const Net& y) override;
   Net solve(double shift, const Net& r, double tolerance, const Secants& secants) override;

@@ -32,6 +32,9 @@ class Dynamics {
   /// Assembles the layer operators that the Jacobian keeps frozen (4.3) at x.
   virtual void freeze(const Net& x) = 0;
 
+  /// Returns true if freeze() uses a periodic lattice that changes in time. The time must then be the time of the shape that is passed to it.
+  virtual bool lattice_moves() const { return false; }
+
   /// Returns the size in bytes, over all ranks, of those frozen operators that grow with the square of the number of control points.
   virtual double frozen_bytes() const { return 0; }
 

@@ -214,8 +214,8 @@ std::vector<Net> InterfaceMotion::rotations(const Net& x, std::span<const int> a
   return all;
 }
 
-Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v) {
-  latest_.x = x;
+Net InterfaceMotion::velocity(const Net& x, const Net& b, const Net& v, const Net& given) {
+  latest_.x = given;
   const Net normals = normals_at(x);
   if (!relaxed_) return combined(x, b, normals, v, {}, latest_.rest);
   latest_.density = sites_ * mass_.solve(ranks_.filled(x.rows(), [&](Net& d) { mesh_.load(x, own_elements_, d); }));

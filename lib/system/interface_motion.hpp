@@ -34,8 +34,9 @@ class InterfaceMotion {
                   const membrane::SymmetricSolver& mass);
 
   /// Returns the control values of the velocity u (4.6) of the control points in the shape x. `v`: control values of the fluid velocity. `b`: dV/dx.
-  /// Collective.
-  Net velocity(const Net& x, const Net& b, const Net& v);
+  /// `given`: net of the same shape that `linearise` receives, which differs from x if particles have been moved into a cell, and by round-off in the
+  /// rows of rigid bodies. Collective.
+  Net velocity(const Net& x, const Net& b, const Net& v, const Net& given);
 
   /// Returns the control values of (1 - n n).(e_k x y) on each drop for each k of `axes`, where y is the position relative to the mean of the drop's
   /// control points. These fields rotate the mesh along an interface that does not move. Collective.
@@ -46,7 +47,7 @@ class InterfaceMotion {
 
   /// Returns the change of the control points' velocity u (4.6) if the shape x of `linearise` is displaced by delta. `dv`: the resulting change of
   /// the fluid velocity v. Neglects the changes of the volume gradient b and of the linear map from v to the rigid motion W. Includes the change of
-  /// the normals only if the last call of `velocity` before `linearise` was at the same shape x. Collective.
+  /// the normals only if the last call of `velocity` before `linearise` was for the same net x. Collective.
   Net derivative(const Net& dv, const Net& delta);
 
   /// Returns whether the mesh of any drop relaxes by itself (`relaxed`).

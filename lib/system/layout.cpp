@@ -5,17 +5,17 @@
 
 namespace tanktread::coupling {
 
-Layout::Layout(const spline::Space& space, const surface::Symmetry& symmetry, Ranks& ranks)
+Layout::Layout(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases)
     : symmetry_(symmetry),
-      ranks_(ranks),
-      share_(surface::share(space, surface::partition_of_points(space, ranks.size(), symmetry.fundamental()), ranks.rank())) {
+      share_(surface::share(space, surface::partition_of_points(space, ranks_.size(), symmetry.fundamental()), ranks_.rank())) {
   const auto points = [&](int e) { return std::span<const int>(space.elements[static_cast<std::size_t>(e)].points); };
   surface::FundamentalElements found = surface::fundamental_elements(symmetry, static_cast<int>(space.elements.size()), points);
   const auto mine = [&](int a) { return std::ranges::binary_search(share_.points, symmetry.source()[a]); };
   std::erase_if(found.element, [&](int e) { return std::ranges::none_of(points(e), mine); });
   folded_ = found.whole();
   elements_ = folded_ ? std::move(found.element) : share_.elements;
-  ranks.own(share_.points, symmetry);
+  ranks_.measure(phases);
+  ranks_.own(share_.points, symmetry);
 }
 
 void Layout::replicate_sums(Net& net) const {

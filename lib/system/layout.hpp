@@ -14,8 +14,8 @@ namespace tanktread::coupling {
 /// The functions that exchange nets (one row per control point) return equal nets on all ranks; they are collective.
 class Layout {
  public:
-  /// References must outlive this object. Collective.
-  Layout(const spline::Space& space, const surface::Symmetry& symmetry, Ranks& ranks);
+  /// References must outlive this object. The time of all exchanges is recorded in `phases`. Collective.
+  Layout(const spline::Space& space, const surface::Symmetry& symmetry, Phases& phases);
 
   const Ranks& ranks() const { return ranks_; }
   const std::vector<int>& points() const { return share_.points; }      ///< rank-owned control points, ascending
@@ -46,7 +46,7 @@ class Layout {
 
  private:
   const surface::Symmetry& symmetry_;
-  const Ranks& ranks_;
+  Ranks ranks_;
   surface::Share share_;
   std::vector<int> elements_;
   bool folded_ = false;  // true if elements_ contains one element of each symmetry orbit

@@ -72,9 +72,9 @@ Net Membranes::work_change(const Net& dx) const {
   Net change(dx.rows(), 3);
   tangent_.apply(dx, change);
   loads_.add_tangent(dx, change);
-  clear_rigid(particles_, change);
   layout_.replicate_sums(change);
   loads_.add_global_tangent(dx, change);
+  clear_rigid(particles_, change);
   return change;
 }
 

@@ -133,6 +133,7 @@ void store(const motion::State& state, Checkpoint& checkpoint) {
   checkpoint.numbers["time"] = state.time;
   checkpoint.numbers["proposed_step"] = state.step;
   checkpoint.numbers["slope_error"] = state.slope_error;
+  checkpoint.numbers["frozen_time"] = state.frozen_time;
   checkpoint.arrays["x"] = state.x;
   checkpoint.arrays["frozen"] = state.frozen;
   checkpoint.arrays["memory"] = Eigen::Map<const Eigen::VectorXd>(state.memory.data(), static_cast<Eigen::Index>(state.memory.size()));
@@ -154,6 +155,8 @@ motion::State stored_state(const Checkpoint& checkpoint) {
   state.slope_error = checkpoint.numbers.at("slope_error");
   state.x = checkpoint.arrays.at("x");
   state.frozen = checkpoint.arrays.at("frozen");
+  const auto frozen_time = checkpoint.numbers.find("frozen_time");  // checkpoints of earlier versions have no such number
+  state.frozen_time = frozen_time == checkpoint.numbers.end() ? state.time : frozen_time->second;
   const Eigen::MatrixXd& memory = checkpoint.arrays.at("memory");
   state.memory.assign(memory.data(), memory.data() + memory.size());
   state.history = stored("slope_", checkpoint);

@@ -247,7 +247,7 @@ void refine_alone(const Scene& scene, Body& body, const std::function<Net(const 
   constexpr int most = 10;
   for (int k = 0; k < most; ++k) {
     Net load = Net::Zero(body.rest.rows(), 3), x = body.rest;
-    if (scene.adaptation.load_tolerance || scene.adaptation.reference_traction_variation) load = force_density(body);
+    if (scene.adaptation.limits_load()) load = force_density(body);
     // Moves the centroid of the particle to x1 = 0, because x1 of the wall of a straight tube is measured from the centroid.
     if (body.wall && !body.wall->channel) x.col(0).array() -= surface::measures(body.space, x).centroid[0];
     std::vector<Member> only(1);

@@ -62,7 +62,7 @@ class Deforming : public ParticleSystem {
     const bool another_symmetry = !all_ && symmetry(members_.front().scene, body(), x).order() != body().symmetry.order();
     if (another_mesh || another_symmetry) settle(x);
     require(resumed.state.x.rows() == start().rows());
-    if (resumed.state.frozen.size() > 0) dynamics().freeze(resumed.state.frozen);
+    motion::refreeze(dynamics(), resumed.state, resumed.state.time);
     capsule_->work() = resumed.totals.work;
     for (std::size_t p = 0; p < members_.size(); ++p) members_[p].phase_angle = resumed.totals.phase_angle[p];
     hold_by(resumed.totals.contacts);
@@ -78,7 +78,7 @@ class Deforming : public ParticleSystem {
     capsule_->at(state.time, state.time - step);
     const double least = scene_.least_radius();
     Limiter limiter(members_, *capsule_, ranks_, scene_.contact.limit * least, scene_.flow.viscosity * scene_.rate() * least * least,
-                    scene_.rate());
+                    scene_.rate(), [&] { fields_->set_state(state.x); });
     motion::State own = fields_->of_shape(state);
     const stokes::AmbientFlow& flow = capsule_->flow();
     const Mat3 deformed =
@@ -122,9 +122,10 @@ class Deforming : public ParticleSystem {
     fields_->set_state(state.x);
     motion::State own = fields_->of_shape(state);
     placed_ = capsule_->rigid_at(own.x);
+    const auto needs_load = [&](const Member& member) { return due(member) && member.scene.adaptation.limits_load(); };
+    const Net load = std::ranges::any_of(members_, needs_load) ? capsule_->evaluation(own.x, {}, 0)->load() : Net(Net::Zero(own.x.rows(), 3));
     std::vector<Net> loads;
-    const auto here = capsule_->evaluation(own.x, {}, 0);
-    for (const Member& member : members_) loads.push_back(member.own(here->load()));
+    for (const Member& member : members_) loads.push_back(member.own(load));
     for (std::size_t p = 0; p < members_.size(); ++p)
       if (due(members_[p])) adapt(p, loads[p], own, totals);
     if (before_.empty()) return false;
@@ -136,7 +137,7 @@ class Deforming : public ParticleSystem {
     std::vector<const Body*> bodies(members_.size(), nullptr);
     for (const auto& [p, body] : before_) bodies[p] = body.get();
     state = fields_->transferred(*fields, state, std::move(own), bodies);
-    if (state.frozen.size() > 0) dynamics().freeze(state.frozen);
+    motion::refreeze(dynamics(), state, state.time);
     return true;
   }
 

@@ -34,6 +34,7 @@ bool Limiter::hold(motion::State& state, double step, coupling::Contacts& contac
   }
   Net x = start;
   bool holds = find(x);
+  if (!held_.empty()) set_loads_();
   for (int round = 0; holds && error() > tolerance; ++round) {
     holds = round < most_rounds && respond(state) && (x = moved(start)).allFinite() && find(x);
   }

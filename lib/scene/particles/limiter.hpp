@@ -1,7 +1,9 @@
 #pragma once
 // Limiter of the gaps between particles: `Contact/limiter`.
 
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "motion/integrator.hpp"
@@ -22,11 +24,12 @@ namespace tanktread {
 /// includes the effect of the stiffness of deformable particles.
 class Limiter {
  public:
-  /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. Objects passed
-  /// by reference must outlive this object.
+  /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. `set_loads`:
+  /// sets the loads of the fields on the surfaces in the state that is passed to `hold`; called before the first evaluation of the system. Objects
+  /// passed by reference must outlive this object.
   Limiter(const std::vector<Member>& members, coupling::Capsule& capsule, const coupling::Ranks& ranks, double limit, double unit,
-          double rate)
-      : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate) {}
+          double rate, std::function<void()> set_loads)
+      : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate), set_loads_(std::move(set_loads)) {}
 
   /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or if no forces
   /// restore the limit. In this case the call has changed only cached data of the system, and the caller must repeat the step with a smaller size.
@@ -55,6 +58,7 @@ class Limiter {
   coupling::Capsule& capsule_;
   const coupling::Ranks& ranks_;
   double limit_, unit_, rate_;
+  std::function<void()> set_loads_;
   double step_ = 0;
   std::vector<Held> held_;
   Net load_;                                  // load vector (virtual work per control point) of the contact forces that acted during the step

@@ -37,7 +37,7 @@ const motion::State& SurfaceFields::of_shape(const motion::State& state) {
   if (!motion_) return state;
   shapes_ = {};
   shapes_.time = state.time, shapes_.step = state.step, shapes_.slope_error = state.slope_error;
-  shapes_.x = shape(state.x), shapes_.frozen = shape(state.frozen);
+  shapes_.x = shape(state.x), shapes_.frozen = shape(state.frozen), shapes_.frozen_time = state.frozen_time;
   for (const Net& slope : state.history) shapes_.history.push_back(shape(slope));
   for (const motion::Place& place : state.places) shapes_.places.push_back({place.time, shape(place.x)});
   return shapes_;
@@ -58,7 +58,7 @@ motion::State SurfaceFields::transferred(SurfaceFields& before, const motion::St
   const auto transfer = [&](const Net& y, const Net& shape) { return y.size() > 0 ? transferred(before, y, shape, bodies) : Net(); };
   motion::State state;
   state.time = old.time, state.step = old.step, state.slope_error = old.slope_error, state.memory = old.memory;
-  state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen);
+  state.x = transfer(old.x, own.x), state.frozen = transfer(old.frozen, own.frozen), state.frozen_time = old.frozen_time;
   for (std::size_t k = 0; k < old.places.size(); ++k) state.places.push_back({old.places[k].time, transfer(old.places[k].x, own.places[k].x)});
   return state;
 }

@@ -254,8 +254,11 @@ Mat3 RigidTractions::moment(std::size_t p) {
 }
 
 int RigidTractions::solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns) {
-  reports_ = {krylov_.solve(system, right, unknowns, tolerance_)};
-  return converged_iterations();
+  Eigen::VectorXd found = unknowns;
+  reports_ = {krylov_.solve(system, right, found, tolerance_)};
+  const int iterations = converged_iterations();
+  unknowns = std::move(found);
+  return iterations;
 }
 
 int RigidTractions::converged_iterations() const {

@@ -110,7 +110,7 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
   if (cell_) find_pressure();
-  if (!cell_ && solver.iterates(3.0 * n / symmetry_.order())) {
+  if (solver.iterates(3.0 * n / symmetry_.order(), cell_.has_value())) {
     patches_of_rows_.emplace(surface_, *on_itself_, symmetry_.fundamental());
     krylov_ = std::make_unique<Krylov>(IterativeOptions{.solver = "GMRES", .preconditioner = "recycled"});
   } else {

@@ -47,7 +47,13 @@ struct WallSolver {
   double tolerance = 1e-8;          ///< relative residual of the iterative solver
 
   static constexpr double most_bytes = 4e9;
-  bool iterates(double unknowns) const { return method == "iterative" || (method == "auto" && 8 * unknowns * unknowns > most_bytes); }
+
+  /// Return whether the system is solved iteratively: for any number of unknowns, and for this number. The operator of a periodic wall is always
+  /// factored.
+  bool may_iterate(bool periodic) const { return !periodic && method != "factored"; }
+  bool iterates(double unknowns, bool periodic) const {
+    return may_iterate(periodic) && (method == "iterative" || 8 * unknowns * unknowns > most_bytes);
+  }
 };
 
 /// The single layer of the wall on itself, assembled and factored, and the inlet integral (2.13). The viscosity is not included. Nets are in the
@@ -56,7 +62,7 @@ struct WallSolver {
 /// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
 /// those of their fundamental points (4.12).
 ///
-/// If the factors would be too large, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner combines WallPatches
+/// If the factors would be too large and the wall is open, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner combines WallPatches
 /// and data recycled from earlier solves (2.24).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control

@@ -25,13 +25,18 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Unit in which positions and residuals are passed to NOX. The unit is small, so that the numbers are large. With a unit of order 1, differences of
-/// residuals near the solution could be below 1e-16. NOX treats such differences as singular.
-constexpr double unit = 0x1p-20;
+/// Returns the unit in which positions and residuals are passed to NOX: 2^-20 times the length of a displacement of norm 1, rounded to a power of 2.
+/// The unit is small, so that the numbers are large. With a larger unit, differences of residuals near the solution could be below 1e-16. NOX treats
+/// such differences as singular.
+double unit_of(const FixedPoint::Norm& norm, Eigen::Index rows) {
+  constexpr double small = 0x1p-20;
+  const double size = norm(Vec3::UnitY().transpose().replicate(rows, 1));
+  return size > 0 && std::isfinite(size) ? small * std::exp2(-std::round(std::log2(size))) : small;
+}
 
-Net net(const Eigen::VectorXd& numbers) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
+Net net(const Eigen::VectorXd& numbers, double unit) { return unit * Eigen::Map<const Net>(numbers.data(), numbers.size() / 3, 3); }
 
-Eigen::VectorXd numbers(const Net& net) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
+Eigen::VectorXd numbers(const Net& net, double unit) { return Eigen::Map<const Eigen::VectorXd>(net.data(), net.size()) / unit; }
 
 /// Residual F(x) = g(x) - x. Products F' d are computed by finite differences, with steps that exceed the noise of adaptive quadrature.
 class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
@@ -39,8 +44,8 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   using InArgs = Thyra::ModelEvaluatorBase::InArgs<double>;
   using OutArgs = Thyra::ModelEvaluatorBase::OutArgs<double>;
 
-  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, const Net& start, const std::string& preconditioner)
-      : g_(g), norm_(norm), space_(vector_space({{"places", start.size()}})), chosen_(preconditioner) {
+  Model(const FixedPoint::Map& g, const FixedPoint::Norm& norm, double unit, const Net& start, const std::string& preconditioner)
+      : g_(g), norm_(norm), unit_(unit), space_(vector_space({{"places", start.size()}})), chosen_(preconditioner) {
     if (chosen_.join(LinearSystem()).precondition) preconditioner_ = Teuchos::rcp(new FunctionOperator(space_));
   }
 
@@ -70,13 +75,13 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   }
 
   void evalModelImpl(const InArgs& in, const OutArgs& out) const override {
-    const Net x = net(numbers_of(*in.get_x()));
+    const Net x = net(numbers_of(*in.get_x()), unit_);
     if (x_.size() == 0 || x != x_) {
       f_ = g_(x) - x;
       x_ = x;
     }
     if (!f_.allFinite()) return out.setFailed();
-    if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_)));
+    if (!out.get_f().is_null()) Thyra::assign(out.get_f().ptr(), *vector_of(space_, numbers(f_, unit_)));
     if (out.get_W_op().is_null()) return;
     chosen_.refresh();
     newton_ = {{{"places", x.size()}}, [this, x, f = f_](const double* in_numbers, double* out_numbers) {
@@ -92,6 +97,7 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
 
   const FixedPoint::Map& g_;
   const FixedPoint::Norm& norm_;
+  double unit_;
   Teuchos::RCP<const Space> space_;
   mutable ChosenPreconditioner chosen_;
   Teuchos::RCP<FunctionOperator> preconditioner_;
@@ -99,15 +105,17 @@ class Model : public Thyra::StateFuncModelEvaluatorBase<double> {
   mutable Net x_, f_;  // x_: argument of the latest evaluation. f_: residual F(x_)
 };
 
-Net net(const NOX::Abstract::Vector& vector) { return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector())); }
+Net net(const NOX::Abstract::Vector& vector, double unit) {
+  return net(numbers_of(dynamic_cast<const NOX::Thyra::Vector&>(vector).getThyraVector()), unit);
+}
 
 /// Convergence test: stops at the tolerance in the given norm, or after `most` iterations.
 class Test : public NOX::StatusTest::Generic {
  public:
-  Test(const FixedPoint::Norm& norm, double tolerance, int most) : norm_(norm), tolerance_(tolerance), most_(most) {}
+  Test(const FixedPoint::Norm& norm, double unit, double tolerance, int most) : norm_(norm), unit_(unit), tolerance_(tolerance), most_(most) {}
   NOX::StatusTest::StatusType checkStatus(const NOX::Solver::Generic& solver, NOX::StatusTest::CheckType) override {
     const NOX::Abstract::Group& group = solver.getSolutionGroup();
-    const double rest = group.isF() ? norm_(net(group.getF())) : std::numeric_limits<double>::quiet_NaN();
+    const double rest = group.isF() ? norm_(net(group.getF(), unit_)) : std::numeric_limits<double>::quiet_NaN();
     if (rest <= tolerance_) return status_ = NOX::StatusTest::Converged;
     return status_ = !std::isfinite(rest) || solver.getNumIterations() >= most_ ? NOX::StatusTest::Failed : NOX::StatusTest::Unconverged;
   }
@@ -116,7 +124,7 @@ class Test : public NOX::StatusTest::Generic {
 
  private:
   const FixedPoint::Norm& norm_;
-  double tolerance_;
+  double unit_, tolerance_;
   int most_;
   NOX::StatusTest::StatusType status_ = NOX::StatusTest::Unevaluated;
 };
@@ -189,8 +197,9 @@ std::string FixedPoint::unread() const { return impl_->last ? unread_path(impl_-
 NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double tolerance, int most, Net& x, const Norm& rest) const {
   using Teuchos::RCP;
   using Weights = Thyra::VectorBase<double>;
-  const auto model = Teuchos::rcp(new Model(g, norm, x, impl_->preconditioner));
-  const auto start = vector_of(model->get_x_space(), numbers(x));
+  const double unit = unit_of(norm, x.rows());
+  const auto model = Teuchos::rcp(new Model(g, norm, unit, x, impl_->preconditioner));
+  const auto start = vector_of(model->get_x_space(), numbers(x, unit));
   const RCP<Thyra::LinearOpBase<double>> derivative = model->create_W_op();
   const auto from_right = Teuchos::rcp(new Thyra::DefaultPreconditioner<double>);
   from_right->initializeRight(model->preconditioner());
@@ -205,9 +214,9 @@ NonlinearReport FixedPoint::solve(const Map& g, const Norm& norm, double toleran
   auto& anderson = list->sublist("Anderson Parameters");
   if (anderson.isType<int>("Storage Depth")) anderson.set("Storage Depth", std::min(anderson.get<int>("Storage Depth"), static_cast<int>(x.size())));
   try {
-    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(rest ? rest : norm, tolerance, most)), list);
+    const auto solver = NOX::Solver::buildSolver(group, Teuchos::rcp(new Test(rest ? rest : norm, unit, tolerance, most)), list);
     const bool converged = solver->solve() == NOX::StatusTest::Converged;
-    x = net(solver->getSolutionGroup().getX());
+    x = net(solver->getSolutionGroup().getX(), unit);
     return {solver->getNumIterations(), converged};
   } catch (const char*) {  // thrown by NOX if the function or a direction cannot be evaluated
     return {0, false};

@@ -295,6 +295,37 @@ TEST(Integrators, AutoIsExplicitWhereThatIsStableAndImplicitWhereItIsNot) {
   }
 }
 
+/// Model in a lattice that moves. Records the time that was set when the operators were assembled.
+class InLattice : public Model {
+ public:
+  using Model::Model;
+  void at(double time, double /*start*/) override { now = time; }
+  bool lattice_moves() const override { return true; }
+  void freeze(const Net& x) override {
+    Model::freeze(x);
+    assembled = now;
+  }
+
+  double now = 0, assembled = 0;
+};
+
+TEST(Integrators, AShapeIsFrozenInTheLatticeOfItsTime) {
+  InLattice model(1);
+  State state = start(0.25);
+  state.time = 0.5;
+  state.frozen = Net::Zero(1, 3);
+  Stage last;  // not solved
+  last.time = model.now = 0.75;
+  coupling::Secants secants;
+  judge(model, with("tr-bdf2"), state, secants, last, 0, 3, {});
+  EXPECT_EQ(model.assembled, 0.5);
+  EXPECT_EQ(model.now, 0.75);
+  model.now = 0;  // as in a new system
+  refreeze(model, state, state.time);
+  EXPECT_EQ(model.assembled, 0.5);
+  EXPECT_EQ(model.assemblies, 2);
+}
+
 TEST(Integrators, AutoTakesAFirstStepThatAnExplicitOneCannot) {
   for (const double rate : {1.0, 1e4}) {
     Model model(rate);

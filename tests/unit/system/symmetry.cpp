@@ -85,6 +85,17 @@ TEST(Symmetry, GivesTheVelocityOfTheWholeSurface) {
   }
 }
 
+// A branch of steady shapes keeps systems of different symmetry.
+TEST(Symmetry, OfASystemDoesNotChangeWhenAnotherIsConstructed) {
+  Fixture f;
+  Net x = f.deformed();
+  x.col(0) += 0.1 * x.col(1);
+  const Net alone = f.capsule(false).velocity(x);
+  Capsule whole = f.capsule(false);
+  const Capsule reduced = f.capsule(true);
+  EXPECT_TRUE(whole.velocity(x) == alone);
+}
+
 TEST(Symmetry, GivesTheImplicitStepOfTheWholeSurface) {
   Fixture f;
   const Net x = f.deformed();

@@ -81,6 +81,7 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   state.places = {{0.05, Net::Random(20, 3)}, {-1. / 3, Net::Random(20, 3)}};
   state.direction = Net::Random(20, 3);
   state.memory = {1e-300, 2. / 3, -0.};
+  state.frozen_time = 0.05;
   Checkpoint checkpoint;
   store(state, checkpoint);
   scene.write(scratch / "snapshot_000001.hdf", checkpoint);
@@ -97,6 +98,9 @@ TEST(Checkpoint, HoldsTheStateOfAnIntegrator) {
   EXPECT_EQ(back.direction, state.direction);
   EXPECT_EQ(back.memory, state.memory);
   EXPECT_EQ(back.frozen.rows(), 0);
+  EXPECT_EQ(back.frozen_time, state.frozen_time);
+  checkpoint.numbers.erase("frozen_time");  // as in checkpoints of earlier versions
+  EXPECT_EQ(stored_state(checkpoint).frozen_time, state.time);
 }
 
 TEST(State, IsComparedOverTheRanksToTheLastBit) {
