@@ -147,6 +147,8 @@ Tanktread:
     for name, x1 in ("first", 0), ("third", 13.6):
         run(deck(text), "--set", f"Particle/center=[{x1}, 0, 0.05]", "--output", name, "--quiet")
     first, third = (series(name, "n_control_points") for name in ("first", "third"))
+    plan = run(deck(text), "--set", "Solvers/wall=iterative", "--check").stdout
+    check("factored once" in " ".join(plan.split()), "the wall of a periodic channel is not factored")
     check(first[0] > 56 and (first == third).all(), f"control points in the modelled period {first}, two periods farther {third}")
 
 

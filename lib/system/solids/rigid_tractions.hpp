@@ -120,7 +120,8 @@ class RigidTractions {
   const std::vector<SolveReport>& reports() const { return reports_; }  ///< reports of the iterative solves of the latest call of `solve` or `moment`
   /// Throws RunFailure if an iterative solve of the latest call did not converge. Otherwise returns the number of iterations of all its solves.
   int converged_iterations() const;
-  /// Solves another system for a traction, with the initial guess `unknowns`. Returns the number of iterations, or throws RunFailure. Collective.
+  /// Solves another system for a traction, with the initial guess `unknowns`. Returns the number of iterations, or throws RunFailure and leaves
+  /// `unknowns` unchanged. Collective.
   int solve(const LinearSystem& system, const Eigen::VectorXd& right, Eigen::VectorXd& unknowns);
   void forget_recycled() const;  ///< discards the data of earlier solves that the solver and the tube's wall keep
   Tube* tube() const { return walls_.tube; }

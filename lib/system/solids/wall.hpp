@@ -62,8 +62,8 @@ struct WallSolver {
 /// If a symmetry is given, all fields must have it. Only rows of fundamental points are then assembled, and columns of image points are added to
 /// those of their fundamental points (4.12).
 ///
-/// If the factors would be too large and the wall is open, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner combines WallPatches
-/// and data recycled from earlier solves (2.24).
+/// If the factors would be too large and the wall is open, each system is solved by GMRES, with products by a treecode (TreeSum). The preconditioner
+/// combines WallPatches and data recycled from earlier solves (2.24).
 ///
 /// A periodic wall is represented by one period, with the kernels of one period and no ends. Its tractions f are periodic, with one row of control
 /// values per site. A traction q n of constant pressure q produces no velocity, so that the condition int f.n dG = 0 is added to A.

@@ -52,6 +52,20 @@ TEST(FixedPoint, EndsUnconvergedAtTheLastIterationOrAtAValueThatIsNotFinite) {
   }
 }
 
+TEST(FixedPoint, DoesNotDependOnTheUnitOfLength) {
+  constexpr double unit = 0x1p-60;
+  const auto g = [&](const Net& y) -> Net { return unit * stretched(y / unit); };
+  const auto in_unit = [&](const Net& y) { return norm(y) / unit; };
+  for (const char* method : {"anderson", "newton-krylov"}) {
+    Net x = Net::Zero(10, 3), small = x;
+    const NonlinearReport report = FixedPoint(method, nullptr).solve(stretched, norm, 1e-8, 60, x);
+    const NonlinearReport same = FixedPoint(method, nullptr).solve(g, in_unit, 1e-8, 60, small);
+    EXPECT_TRUE(same.converged) << method;
+    EXPECT_EQ(same.iterations, report.iterations) << method;
+    EXPECT_TRUE(small == unit * x) << method;
+  }
+}
+
 TEST(FixedPoint, AListThatNoxDoesNotTakeIsTheUsersMistake) {
   const auto list = std::make_shared<Teuchos::ParameterList>();
   list->sublist("Anderson Parameters").set("Storage Deep", 3);

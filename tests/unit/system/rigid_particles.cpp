@@ -1,12 +1,15 @@
 // Rigid bodies among other particles by the second-kind equation, compared with the first-kind equation, exact solutions for pairs, and very viscous
 // drops.
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "base/errors.hpp"
 #include "spline/extraction.hpp"
 #include "spline/space.hpp"
 #include "spline/t_mesh.hpp"
@@ -195,6 +198,16 @@ struct ByTractions : Bodies {
     parameters.solvers.rigid_bodies = "first kind";
   }
 };
+
+TEST(RigidTractions, AFailedSolveKeepsTheInitialGuess) {
+  Bodies one({{Vec3::Zero(), Vec3::Ones(), Rigid{}}}, 3, Mat3::Zero());
+  RigidTractions tractions(one.space, one.rest, 1, viscosity, one.parameters.quadrature, one.parameters.solvers, one.ranks);
+  const auto fails = [](const double*, double* out) { std::fill_n(out, 3, std::numeric_limits<double>::quiet_NaN()); };
+  const LinearSystem system{{{"traction", 3}}, fails, {}};
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Ones(3);
+  EXPECT_THROW(tractions.solve(system, Eigen::VectorXd::Ones(3), unknowns), RunFailure);
+  EXPECT_TRUE(unknowns == Eigen::VectorXd::Ones(3));
+}
 
 /// The force on spheres that approach each other, compared with the multipole solution above.
 TEST(RigidTractions, ErrLessThanDoubleLayers) {
