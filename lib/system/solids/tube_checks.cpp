@@ -92,7 +92,7 @@ Tube::Checks Tube::checks(const Net& f, const Net& v, const Response& response) 
 
 namespace {
 
-quadrature::Options sharper(quadrature::Options options) {
+quadrature::Options for_leak(quadrature::Options options) {
   options.tolerance = std::clamp(check_sharpness * options.tolerance, 1e-12, sharpest);
   return options;
 }
@@ -103,7 +103,7 @@ Tube::BetweenSitesOfWall::BetweenSitesOfWall(const surface::TubeWall& wall, cons
                                              const BetweenSites& between, const quadrature::Options& options)
     : at(between.values * wall.net),
       weights(between.weights),
-      layer(stokes::Layer::Kernel::single_layer, wall.space, between.places, sharper(options)) {
+      layer(stokes::Layer::Kernel::single_layer, wall.space, between.places, for_leak(options)) {
   if (cell) layer.repeat(*cell);
   layer.place(wall.net);
 }
