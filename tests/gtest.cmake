@@ -12,7 +12,7 @@ target_precompile_headers(app_test_headers PRIVATE ${PROJECT_SOURCE_DIR}/lib/sce
 
 # gtest_program(NAME KIND kind SOURCES … ROOMS … [MPI [SERIAL suite…]]): one GoogleTest program, one ctest entry a TEST, with the label `kind`.
 # Suites whose names end in Long carry the label `long`. MPI: main() initialises MPI, and the whole program runs once more on two ranks,
-# but for the suites named after SERIAL: their code knows of no ranks, or is run on several ranks by tests in tests/cli.
+# but for the suites named after SERIAL (with and without parameters): their code knows of no ranks, or is run on several ranks by tests in tests/cli.
 function(gtest_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "MPI" "KIND" "SOURCES;ROOMS;SERIAL")
   add_executable(${name} ${arg_SOURCES})
@@ -37,9 +37,11 @@ function(gtest_program name)
   discover(${name} short "-*Long.*" "${arg_KIND}")
   discover(${name} long "*Long.*" "${arg_KIND};long")
   if(arg_MPI)
+    list(TRANSFORM arg_SERIAL APPEND "/*" OUTPUT_VARIABLE with_parameters)
     list(TRANSFORM arg_SERIAL APPEND ".*")
     list(JOIN arg_SERIAL ":" serial)
-    add_test(NAME ${name}.on_two_ranks COMMAND ${MPIEXEC_EXECUTABLE} -n 2 $<TARGET_FILE:${name}> --gtest_filter=-*Long.*:${serial})
+    list(JOIN with_parameters ":" serial_with_parameters)
+    add_test(NAME ${name}.on_two_ranks COMMAND ${MPIEXEC_EXECUTABLE} -n 2 $<TARGET_FILE:${name}> --gtest_filter=-*Long.*:${serial}:${serial_with_parameters})
     set_tests_properties(${name}.on_two_ranks PROPERTIES LABELS "${arg_KIND};mpi" PROCESSORS 2 ENVIRONMENT "${run_environment}")
   endif()
 endfunction()
