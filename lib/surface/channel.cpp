@@ -66,7 +66,7 @@ void Channel::read_points() {
   factors_ = interpolate_open(s, factor, Vec2::Zero(), Vec2::Zero());
 }
 
-/// For the profile `step`, returns the length of the wall contour minus the length of the centre line, from the middle of the profile to one end.
+/// Returns the length of the wall contour minus the length of the centre line, from the middle of the profile to one end, if the profile is `step`.
 /// Returns 0 for other profiles.
 double Channel::jump() const {
   if (own_.profile != "step") return 0;

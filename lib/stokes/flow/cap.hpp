@@ -17,7 +17,7 @@ namespace tanktread::stokes {
 ///
 ///   8 pi c_1 = oint rho.nu / r dl,    8 pi c_a = -h oint nu_a / r dl,   a = 2, 3.
 ///
-/// By reciprocity, c_j(y)/mu is also the flow rate along x1 through the cap due to a unit point force e_j at y.
+/// The value c_j(y)/mu is, by reciprocity, also the flow rate along x1 through the cap due to a unit point force e_j at y.
 class Cap {
  public:
   /// `tolerance`: error of the integrals relative to their largest value.
