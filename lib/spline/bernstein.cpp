@@ -4,44 +4,50 @@
 
 namespace tanktread::spline {
 
-void bernstein(int p, double x, double* value) {
+namespace {
+
+/// Replaces the values at x of the polynomials of degree k - 1 by those of degree k.
+void raise_degree(int k, double x, double* value) {
   const double y = 1 - x;
-  value[0] = 1;
-  for (int k = 1; k <= p; ++k) {
-    double carried = 0;
-    for (int i = 0; i < k; ++i) {
-      const double old = value[i];
-      value[i] = carried + y * old;
-      carried = x * old;
-    }
-    value[k] = carried;
+  double carried = 0;
+  for (int i = 0; i < k; ++i) {
+    const double old = value[i];
+    value[i] = carried + y * old;
+    carried = x * old;
   }
+  value[k] = carried;
 }
 
-namespace {
 /// Computes d/dx B_i^p = p (B_{i-1}^{p-1} - B_i^{p-1}) from the values of degree p - 1.
 void difference(int p, const double* lower, double* out) {
   out[0] = -p * lower[0];
   for (int i = 1; i < p; ++i) out[i] = p * (lower[i - 1] - lower[i]);
   out[p] = p * lower[p - 1];
 }
+
 }  // namespace
+
+void bernstein(int p, double x, double* value) {
+  value[0] = 1;
+  for (int k = 1; k <= p; ++k) raise_degree(k, x, value);
+}
 
 void bernstein(int p, double x, double* value, double* first, double* second) {
   assert(p >= 1 && p <= max_degree);
-  double lower[max_degree + 1], lower_slope[max_degree + 1];
-  bernstein(p, x, value);
-  bernstein(p - 1, x, lower);
-  difference(p, lower, first);
-  if (!second) return;
   if (p == 1) {
-    second[0] = second[1] = 0;
-    return;
+    value[0] = 1;
+    if (second) second[0] = second[1] = 0;
+  } else {
+    bernstein(p - 2, x, value);
+    if (second) {
+      double slope[max_degree + 1];
+      difference(p - 1, value, slope);
+      difference(p, slope, second);
+    }
+    raise_degree(p - 1, x, value);
   }
-  double lowest[max_degree + 1];
-  bernstein(p - 2, x, lowest);
-  difference(p - 1, lowest, lower_slope);
-  difference(p, lower_slope, second);
+  difference(p, value, first);
+  raise_degree(p, x, value);
 }
 
 TensorBernstein tensor_bernstein(int p, const Eigen::VectorXd& s, const Eigen::VectorXd& t) {

@@ -24,9 +24,9 @@ struct Height {
   Mat2 hessian;
 };
 Height height(const Patch& patch, int c, double sign, const Vec2& at) {
-  const Jet j = jet(patch, at[0], at[1]);
-  Height result{sign * j.x[c], sign * Vec2(j.s[c], j.t[c]), {}};
-  result.hessian << sign * j.ss[c], sign * j.st[c], sign * j.st[c], sign * j.tt[c];
+  const CoordinateJet j = jet(patch, c, at[0], at[1]);
+  Height result{sign * j.x, sign * Vec2(j.s, j.t), {}};
+  result.hessian << sign * j.ss, sign * j.st, sign * j.st, sign * j.tt;
   return result;
 }
 
@@ -70,9 +70,9 @@ std::pair<double, Vec2> summit(const Patch& patch, int c, double sign, Vec2 at) 
 /// Returns the parameters of the point with the largest sign * x_c on the grid of sample(). This point is a start for summit(). The Bezier point with
 /// the largest sign * x_c may be far from the maximum.
 Vec2 start(const Patch& patch, int c, double sign) {
-  const Grid x = sample(patch);
+  const Grid<double> x = sample(patch, c);
   int highest = 0;
-  const auto height = [&](int k) { return sign * x[k / (cells + 1)][k % (cells + 1)][c]; };
+  const auto height = [&](int k) { return sign * x[k / (cells + 1)][k % (cells + 1)]; };
   for (int k = 1; k < (cells + 1) * (cells + 1); ++k)
     if (height(k) > height(highest)) highest = k;
   return Vec2(highest % (cells + 1), highest / (cells + 1)) / cells;
@@ -104,9 +104,9 @@ struct Crossing {
 /// Moves a sampled point onto the section curve y2 = 0 along the gradient of y2, and returns it with its distance from the centre.
 std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at) {
   for (int iteration = 0; iteration < 10; ++iteration) {
-    const Jet j = jet(patch, at[0], at[1]);
-    const Vec2 slope(j.s[1], j.t[1]);
-    const Vec2 step = -(j.x[1] - centre[1]) / slope.squaredNorm() * slope;
+    const CoordinateJet j = jet(patch, 1, at[0], at[1]);
+    const Vec2 slope(j.s, j.t);
+    const Vec2 step = -(j.x - centre[1]) / slope.squaredNorm() * slope;
     if (!(step.norm() < 1)) break;
     at = (at + step).cwiseMax(0).cwiseMin(1);
     if (step.norm() < converged) break;
@@ -121,26 +121,21 @@ std::optional<Crossing> on_curve(const Patch& patch, const Vec3& centre, Vec2 at
 /// and the smallest distance.
 std::vector<Crossing> crossings(const Patch& patch, const Vec3& centre) {
   std::vector<Crossing> result;
-  double above[cells + 1][cells + 1];
-  Grid y = sample(patch);
-  for (int j = 0; j <= cells; ++j) {
-    for (int i = 0; i <= cells; ++i) {
-      y[j][i] -= centre;
-      above[j][i] = std::abs(y[j][i][1]) < 1e-13 * y[j][i].norm() ? 0. : y[j][i][1];
-    }
-  }
-  const auto edge = [&](int j, int i, int j2, int i2) {
-    const double a = above[j][i], b = above[j2][i2];
-    if (a * b > 0) return;
-    const double share = a == b ? 0.5 : a / (a - b);
-    if (const auto found = on_curve(patch, centre, Vec2(i + share * (i2 - i), j + share * (j2 - j)) / cells)) result.push_back(*found);
+  Grid<double> above = sample(patch, 1);
+  const double in_plane = 1e-13 * (place(patch, 0, 0) - centre).norm();  // sampled points below this distance from the plane count as points of it
+  for (auto& line : above)
+    for (double& height : line)
+      if (height -= centre[1]; std::abs(height) < in_plane) height = 0;
+  const auto add = [&](double i, double j) {
+    if (const auto found = on_curve(patch, centre, Vec2(i, j) / cells)) result.push_back(*found);
   };
-  for (int j = 0; j <= cells; ++j) {
+  for (int j = 0; j <= cells; ++j)
     for (int i = 0; i <= cells; ++i) {
-      if (i < cells) edge(j, i, j, i + 1);
-      if (j < cells) edge(j, i, j + 1, i);
+      const double here = above[j][i];
+      if (here == 0) add(i, j);
+      if (i < cells && here * above[j][i + 1] < 0) add(i + here / (here - above[j][i + 1]), j);
+      if (j < cells && here * above[j + 1][i] < 0) add(i, j + here / (here - above[j + 1][i]));
     }
-  }
   return result;
 }
 
@@ -195,21 +190,20 @@ struct Candidate {
 
 /// Searches for the maximum of sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
 /// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then it starts again from the next
-/// sampled point.
+/// sampled point. Elements and points are left out if their distance is further below the largest sampled distance than a quarter of the spread of the
+/// element's distances: where the distance is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);
   for (const Candidate& c : candidates) {
-    const double best = c.best(sign).distance;
-    // skips elements that cannot contain the maximum: their sampled maximum is below the largest one by more than the spread of their distances,
-    // which exceeds the sampling errors
-    if (sign * best + c.spread() < sampled) continue;
+    const double best = c.best(sign).distance, slack = c.spread() / 4;
+    if (sign * best + slack < sampled) continue;
     const auto add = [&](double distance) {
       found.smallest = std::min(found.smallest, distance), found.largest = std::max(found.largest, distance);
       return sign * (distance - best) >= -1e-12 * best;
     };
     add(best);
-    for (std::size_t k = 0; k < c.crossings.size(); ++k) {
+    for (std::size_t k = 0; k < c.crossings.size() && sign * (c.best(sign, k).distance - best) >= -slack; ++k) {
       const std::optional<double> distance = stationary_distance(surface[c.element], centre, c.best(sign, k).at);
       if (distance && add(*distance)) break;
     }

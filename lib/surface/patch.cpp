@@ -9,30 +9,53 @@ namespace tanktread::surface {
 
 using spline::max_degree;
 
-Jet jet(const Patch& patch, double s, double t) {
-  const int p = patch.degree;
-  double b[max_degree + 1], b1[max_degree + 1], b2[max_degree + 1], c[max_degree + 1], c1[max_degree + 1], c2[max_degree + 1];
-  spline::bernstein(p, s, b, b1, b2);
-  spline::bernstein(p, t, c, c1, c2);
-  Jet result{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-  const double* row = patch.points;
-  for (int d = 0; d < 3; ++d) {
+namespace {
+
+/// Values, first and second derivatives of the Bernstein polynomials of degree p at the local coordinates of a point.
+struct Factors {
+  int p;
+  double s[3][max_degree + 1], t[3][max_degree + 1];
+  Factors(int degree, double at_s, double at_t) : p(degree) {
+    spline::bernstein(p, at_s, s[0], s[1], s[2]);
+    spline::bernstein(p, at_t, t[0], t[1], t[2]);
+  }
+
+  /// Returns the coordinate with the given Bezier coefficients and its derivatives.
+  CoordinateJet of(const double* row) const {
+    CoordinateJet result{};
     for (int j = 0; j <= p; ++j, row += p + 1) {
       double value = 0, first = 0, second = 0;
       for (int i = 0; i <= p; ++i) {
-        value += b[i] * row[i];
-        first += b1[i] * row[i];
-        second += b2[i] * row[i];
+        value += s[0][i] * row[i];
+        first += s[1][i] * row[i];
+        second += s[2][i] * row[i];
       }
-      result.x[d] += c[j] * value;
-      result.s[d] += c[j] * first;
-      result.ss[d] += c[j] * second;
-      result.t[d] += c1[j] * value;
-      result.st[d] += c1[j] * first;
-      result.tt[d] += c2[j] * value;
+      result.x += t[0][j] * value;
+      result.s += t[0][j] * first;
+      result.ss += t[0][j] * second;
+      result.t += t[1][j] * value;
+      result.st += t[1][j] * first;
+      result.tt += t[2][j] * value;
     }
+    return result;
+  }
+};
+
+}  // namespace
+
+Jet jet(const Patch& patch, double s, double t) {
+  const Factors factors(patch.degree, s, t);
+  Jet result;
+  for (int c = 0; c < 3; ++c) {
+    const CoordinateJet part = factors.of(patch.points + c * patch.n_bezier());
+    result.x[c] = part.x, result.s[c] = part.s, result.t[c] = part.t;
+    result.ss[c] = part.ss, result.st[c] = part.st, result.tt[c] = part.tt;
   }
   return result;
+}
+
+CoordinateJet jet(const Patch& patch, int c, double s, double t) {
+  return Factors(patch.degree, s, t).of(patch.points + c * patch.n_bezier());
 }
 
 Vec3 place(const Patch& patch, double s, double t) {
@@ -56,25 +79,46 @@ double mean_curvature(const Jet& jet) {
   return -(e * jet.tt.dot(n) - 2 * f * jet.st.dot(n) + g * jet.ss.dot(n)) / (2 * (e * g - f * f));
 }
 
-/// Computes the positions on the grid of a patch by sums over the Bernstein polynomials in s first, then in t.
-Grid sample(const Patch& patch) {
+namespace {
+
+/// Values at the grid points of the Bernstein polynomials of each degree. Index: degree, polynomial, grid point.
+using Tables = std::array<std::array<std::array<double, cells + 1>, max_degree + 1>, max_degree + 1>;
+Tables grid_tables() {
+  Tables tables{};
+  for (int p = 0; p <= max_degree; ++p)
+    for (int i = 0; i <= cells; ++i) {
+      double values[max_degree + 1];
+      spline::bernstein(p, double(i) / cells, values);
+      for (int k = 0; k <= p; ++k) tables[p][k][i] = values[k];
+    }
+  return tables;
+}
+
+}  // namespace
+
+/// Computes the coordinate on the grid by sums over the Bernstein polynomials in s first, then in t.
+Grid<double> sample(const Patch& patch, int c) {
+  static const Tables tables = grid_tables();
   const int p = patch.degree;
-  Grid x;
-  double at[cells + 1][spline::max_degree + 1];
-  for (int i = 0; i <= cells; ++i) spline::bernstein(p, double(i) / cells, at[i]);
-  for (int c = 0; c < 3; ++c) {
-    double along_s[spline::max_degree + 1][cells + 1];
-    for (int j = 0; j <= p; ++j)
-      for (int i = 0; i <= cells; ++i) {
-        along_s[j][i] = 0;
-        for (int k = 0; k <= p; ++k) along_s[j][i] += at[i][k] * patch.coordinate(c, j * (p + 1) + k);
-      }
+  const auto& at = tables[p];
+  Grid<double> x{};
+  const double* coefficient = patch.points + c * patch.n_bezier();
+  for (int k = 0; k <= p; ++k) {
+    double along_s[cells + 1] = {};
+    for (int b = 0; b <= p; ++b, ++coefficient)
+      for (int i = 0; i <= cells; ++i) along_s[i] += at[b][i] * *coefficient;
     for (int j = 0; j <= cells; ++j)
-      for (int i = 0; i <= cells; ++i) {
-        double sum = 0;
-        for (int k = 0; k <= p; ++k) sum += at[j][k] * along_s[k][i];
-        x[static_cast<size_t>(j)][static_cast<size_t>(i)][c] = sum;
-      }
+      for (int i = 0; i <= cells; ++i) x[j][i] += at[k][j] * along_s[i];
+  }
+  return x;
+}
+
+Grid<Vec3> sample(const Patch& patch) {
+  Grid<Vec3> x;
+  for (int c = 0; c < 3; ++c) {
+    const Grid<double> coordinate = sample(patch, c);
+    for (std::size_t j = 0; j <= cells; ++j)
+      for (std::size_t i = 0; i <= cells; ++i) x[j][i][c] = coordinate[j][i];
   }
   return x;
 }

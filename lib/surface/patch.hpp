@@ -26,6 +26,12 @@ struct Jet {
 };
 Jet jet(const Patch& patch, double s, double t);
 
+/// One coordinate and its derivatives, as in Jet.
+struct CoordinateJet {
+  double x, s, t, ss, st, tt;
+};
+CoordinateJet jet(const Patch& patch, int c, double s, double t);
+
 /// Returns |x_,s x x_,t|.
 double jacobian(const Jet& jet);
 
@@ -38,8 +44,12 @@ double mean_curvature(const Jet& jet);
 constexpr int cells = 6;  ///< number of intervals per direction of the grid on which sample() evaluates an element
 
 /// Positions at the parameters (s, t) = (i, j)/cells of an element, indexed [j][i].
-using Grid = std::array<std::array<Vec3, cells + 1>, cells + 1>;
-Grid sample(const Patch& patch);
+template <class Value>
+using Grid = std::array<std::array<Value, cells + 1>, cells + 1>;
+Grid<Vec3> sample(const Patch& patch);
+
+/// Returns coordinate c of these positions.
+Grid<double> sample(const Patch& patch, int c);
 
 /// The Bezier points of one element of a surface.
 class ElementPoints {

@@ -1,5 +1,6 @@
 #include "surface/shapes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -58,9 +59,13 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
   return fine;
 }
 
-/// Returns points of the limit surface of the initial net at vertices of a lattice.
-Net limit_points(const spline::Lattice& l, const std::vector<int>& vertices) {
-  const spline::TMesh coarse = spline::cube(3, 5);  // five levels: the surface is exact except within 1/32 of an element from a corner of the cube
+/// Returns points of the limit surface of the initial net at vertices of a mesh. The surface of a coarse mesh with L levels is exact except within
+/// 2^-L of its elements from a corner of the cube, but is exact at the corner. So L is the smallest for which the other vertices are outside, up to 5.
+Net limit_points(const spline::TMesh& mesh, const std::vector<int>& vertices) {
+  const spline::Lattice& l = *mesh.lattice;
+  int levels = 0;
+  while (levels < 5 && 3 * std::ranges::min(mesh.spacing) << levels < l.units) ++levels;
+  const spline::TMesh coarse = spline::cube(3, levels);
   const spline::Space space = spline::space(coarse, spline::ExtraordinaryRule::catmull_clark);
   const Net net = coarse_net(*coarse.lattice)(spline::anchors(coarse), Eigen::all);
   const spline::Locator locator(space);
@@ -75,7 +80,7 @@ Net smooth_sphere(const spline::TMesh& mesh) {
   const spline::Lattice& l = *mesh.lattice;
   const std::vector<int> vertices = spline::anchors(mesh);
   const int level = subdivisions(mesh, static_cast<int>(vertices.size()));
-  if (level < 0) return limit_points(l, vertices).rowwise().normalized();
+  if (level < 0) return limit_points(mesh, vertices).rowwise().normalized();
   Net net = coarse_net(l);
   for (int k = 0; k < level; ++k) net = subdivided(l, l.units / (3 << k), net);
   return net(vertices, Eigen::all).rowwise().normalized();

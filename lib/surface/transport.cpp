@@ -91,7 +91,7 @@ Treading tank_treading(const BezierMap& map, const Net& x, const Net& v, const N
     const auto [low, high] = hull(places[e], 1);
     if (low > centre[1] + in_plane || high < centre[1] - in_plane) continue;
     const auto sampled = [&](const Net& net) { return sample(Patches(map, net, {&e, 1})[0]); };
-    const Grid at = sample(places[e]), moves = sampled(v), before = unstressed ? sampled(*unstressed) : at;
+    const Grid<Vec3> at = sample(places[e]), moves = sampled(v), before = unstressed ? sampled(*unstressed) : at;
     const auto corner = [&](size_t j, size_t i) {
       const double height = at[j][i][1] - centre[1];
       return Corner{at[j][i], moves[j][i], before[j][i], std::abs(height) < in_plane ? 0 : height};

@@ -154,9 +154,9 @@ Occupation::~Occupation() {
 void write_arrays(const std::filesystem::path& path, const std::vector<Array>& arrays) {
   const hdf::Id file = hdf::new_file();
   for (const Array& array : arrays) {
-    hdf::write(file, array.name, array.values, hdf::Shape(array.shape.begin(), array.shape.end()));
-    hdf::attribute(file, array.name, "unit", array.unit);
-    hdf::attribute(file, array.name, "description", array.description);
+    const hdf::Id set = hdf::write(file, array.name, array.values, hdf::Shape(array.shape.begin(), array.shape.end()));
+    hdf::attribute(set, "unit", array.unit);
+    hdf::attribute(set, "description", array.description);
   }
   write_whole(path, hdf::image(file));
 }

@@ -31,17 +31,17 @@ Id text_type(const std::string& text) {
   return {type, H5Tclose, "no text type"};
 }
 
-void write_any(hid_t file, const std::string& name, hid_t type, const Shape& shape, const void* data) {
+Id write_any(hid_t file, const std::string& name, hid_t type, const Shape& shape, const void* data) {
   const Id space = space_of(shape), links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, "no list of link properties");
   check(H5Pset_create_intermediate_group(links, 1), "cannot create groups");
-  const Id set(H5Dcreate2(file, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
+  Id set(H5Dcreate2(file, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, "cannot create " + name);
   check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "cannot write " + name);
+  return set;
 }
 
-void write_attribute(hid_t file, const std::string& name, const std::string& key, hid_t type, const Shape& shape, const void* data) {
+void write_attribute(hid_t object, const std::string& key, hid_t type, const Shape& shape, const void* data) {
   const Id space = space_of(shape);
-  const Id id(H5Acreate_by_name(file, name.c_str(), key.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-              "cannot create " + key);
+  const Id id(H5Acreate2(object, key.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, "cannot create " + key);
   check(H5Awrite(id, type, data), "cannot write " + key);
 }
 
@@ -95,19 +95,19 @@ Id open_copy(const std::filesystem::path& path) {
   return {H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, "cannot open " + path.string()};
 }
 
-void write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape) {
-  write_any(file, name, H5T_NATIVE_DOUBLE, shape, values.data());
+Id write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape) {
+  return write_any(file, name, H5T_NATIVE_DOUBLE, shape, values.data());
 }
-void write(hid_t file, const std::string& name, std::span<const std::int64_t> values) {
-  write_any(file, name, H5T_NATIVE_INT64, {values.size()}, values.data());
+Id write(hid_t file, const std::string& name, std::span<const std::int64_t> values) {
+  return write_any(file, name, H5T_NATIVE_INT64, {values.size()}, values.data());
 }
-void write(hid_t file, const std::string& name, std::span<const std::uint8_t> values) {
-  write_any(file, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
+Id write(hid_t file, const std::string& name, std::span<const std::uint8_t> values) {
+  return write_any(file, name, H5T_NATIVE_UINT8, {values.size()}, values.data());
 }
-void write(hid_t file, const std::string& name, const std::string& text) { write_any(file, name, text_type(text), {}, text.c_str()); }
+Id write(hid_t file, const std::string& name, const std::string& text) { return write_any(file, name, text_type(text), {}, text.c_str()); }
 
-void write_group(hid_t file, const std::string& name) {
-  const Id group(H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "cannot create " + name);
+Id write_group(hid_t file, const std::string& name) {
+  return {H5Gcreate2(file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "cannot create " + name};
 }
 
 std::vector<double> read_doubles(hid_t file, const std::string& name, Shape& shape) {
@@ -135,11 +135,11 @@ std::vector<std::string> datasets(hid_t file, const std::string& group) {
   return result;
 }
 
-void attribute(hid_t file, const std::string& name, const std::string& key, const std::string& text) {
-  write_attribute(file, name, key, text_type(text), {}, text.c_str());
+void attribute(const Id& object, const std::string& key, const std::string& text) {
+  write_attribute(object, key, text_type(text), {}, text.c_str());
 }
-void attribute(hid_t file, const std::string& name, const std::string& key, std::span<const std::int64_t> values) {
-  write_attribute(file, name, key, H5T_NATIVE_INT64, {values.size()}, values.data());
+void attribute(const Id& object, const std::string& key, std::span<const std::int64_t> values) {
+  write_attribute(object, key, H5T_NATIVE_INT64, {values.size()}, values.data());
 }
 
 std::string read_attribute(hid_t file, const std::string& name, const std::string& key) {

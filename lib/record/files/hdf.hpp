@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <hdf5.h>
@@ -16,7 +17,10 @@ namespace tanktread::output::hdf {
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t), const std::string& what);
-  ~Id() { close_(id_); }
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  Id(Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Id(const Id&) = delete;
   Id& operator=(const Id&) = delete;
   operator hid_t() const { return id_; }
@@ -40,22 +44,24 @@ Id open_copy(const std::filesystem::path& path);
 
 using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
 
-/// Write or read datasets of a file, row-major. Missing groups of a name `group/name` are created. `read_doubles` sets `shape` to the shape of the
-/// dataset.
-void write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
-void write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
-void write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);
-void write(hid_t file, const std::string& name, const std::string& text);
-void write_group(hid_t file, const std::string& name);  ///< writes an empty group
+/// Write or read datasets of a file, row-major. `write` returns the dataset. Missing groups of a name `group/name` are created. `read_doubles` sets
+/// `shape` to the shape of the dataset.
+Id write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
+Id write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
+Id write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);
+Id write(hid_t file, const std::string& name, const std::string& text);
+Id write_group(hid_t file, const std::string& name);  ///< writes an empty group and returns it
 std::vector<double> read_doubles(hid_t file, const std::string& name, Shape& shape);
 std::string read_text(hid_t file, const std::string& name);
 
 /// Returns the names of the datasets below a group, without `group/`, in alphabetical order; empty if there is no such group.
 std::vector<std::string> datasets(hid_t file, const std::string& group);
 
-/// Write or read attributes of the object `name`.
-void attribute(hid_t file, const std::string& name, const std::string& key, const std::string& text);
-void attribute(hid_t file, const std::string& name, const std::string& key, std::span<const std::int64_t> values);
+/// Writes an attribute of a dataset or group.
+void attribute(const Id& object, const std::string& key, const std::string& text);
+void attribute(const Id& object, const std::string& key, std::span<const std::int64_t> values);
+
+/// Read attributes of the dataset or group `name`.
 std::string read_attribute(hid_t file, const std::string& name, const std::string& key);
 std::vector<std::string> attribute_names(hid_t file, const std::string& name);
 

@@ -64,17 +64,16 @@ const std::vector<double>& RunRecord::values(std::string_view name) const {
 void RunRecord::write(Durable durable) const {
   const hdf::Id file = hdf::new_file();
   hdf::write(file, "deck", deck_);
-  hdf::write_group(file, "provenance");
-  hdf::write_group(file, "series");
-  for (const auto& [key, text] : provenance_) hdf::attribute(file, "provenance", key, text);
-  const auto add = [&file](const std::string& name, const Series& one) {
-    hdf::write(file, name, one.values, {one.values.size()});
-    hdf::attribute(file, name, "unit", one.unit);
-    hdf::attribute(file, name, "description", one.description);
-    if (!one.si.empty()) hdf::attribute(file, name, "SI", one.si);
+  const hdf::Id provenance = hdf::write_group(file, "provenance"), series = hdf::write_group(file, "series");
+  for (const auto& [key, text] : provenance_) hdf::attribute(provenance, key, text);
+  const auto add = [](hid_t group, const std::string& name, const Series& one) {
+    const hdf::Id set = hdf::write(group, name, one.values, {one.values.size()});
+    hdf::attribute(set, "unit", one.unit);
+    hdf::attribute(set, "description", one.description);
+    if (!one.si.empty()) hdf::attribute(set, "SI", one.si);
   };
-  for (const Series& one : series_) add("series/" + one.name, one);
-  for (const Series& one : errors_) add("error/" + one.name, one);
+  for (const Series& one : series_) add(series, one.name, one);
+  for (const Series& one : errors_) add(file, "error/" + one.name, one);
   write_whole(path_, hdf::image(file), durable);
 }
 

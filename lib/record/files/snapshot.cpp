@@ -22,7 +22,7 @@ void write(hid_t file, const std::string& name, const Rows& rows, std::size_t di
 }
 
 void write(hid_t file, const Checkpoint& checkpoint) {
-  hdf::write_group(file, "checkpoint");
+  const hdf::Id group = hdf::write_group(file, "checkpoint");
   for (const auto& [name, matrix] : checkpoint.arrays) write(file, "checkpoint/arrays/" + name, matrix);
   std::string names;  // names of the entries of checkpoint.numbers, one per line; one dataset per entry would take longer to write than all fields
   std::vector<double> numbers;
@@ -30,14 +30,15 @@ void write(hid_t file, const Checkpoint& checkpoint) {
   hdf::write(file, "checkpoint/numbers", numbers, {numbers.size()});
   hdf::write(file, "checkpoint/names of numbers", names);
   for (const auto& [name, text] : checkpoint.texts) hdf::write(file, "checkpoint/texts/" + name, text);
-  hdf::attribute(file, "checkpoint", "checksum", checksum(checkpoint));
+  hdf::attribute(group, "checksum", checksum(checkpoint));
 }
 
 void write(hid_t file, const LagrangeMesh& mesh) {
   using Count = std::array<std::int64_t, 1>;
-  for (const char* group : {"VTKHDF", "VTKHDF/PointData", "VTKHDF/CellData", "VTKHDF/FieldData"}) hdf::write_group(file, group);
-  hdf::attribute(file, "VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
-  hdf::attribute(file, "VTKHDF", "Type", "UnstructuredGrid");
+  const hdf::Id grid = hdf::write_group(file, "VTKHDF");
+  for (const char* group : {"PointData", "CellData", "FieldData"}) hdf::write_group(grid, group);
+  hdf::attribute(grid, "Version", std::array<std::int64_t, 2>{1, 0});
+  hdf::attribute(grid, "Type", "UnstructuredGrid");
   hdf::write(file, "VTKHDF/NumberOfPoints", Count{static_cast<std::int64_t>(mesh.sites.size())});
   hdf::write(file, "VTKHDF/NumberOfCells", Count{static_cast<std::int64_t>(mesh.offsets.size()) - 1});
   hdf::write(file, "VTKHDF/NumberOfConnectivityIds", Count{static_cast<std::int64_t>(mesh.connectivity.size())});

@@ -22,10 +22,15 @@ Eigen::VectorXd numbers_of(const ThyraVector& vector) {
   return Eigen::Map<const Eigen::VectorXd>(view.values(), view.subDim());
 }
 
-Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers) {
-  take_first({numbers.data(), static_cast<std::size_t>(numbers.size())});
+void set(const Teuchos::RCP<ThyraVector>& vector, const Eigen::VectorXd& numbers) {
+  const Thyra::DetachedVectorView<double> view(vector);
+  Eigen::Map<Eigen::VectorXd>(view.values(), numbers.size()) = numbers;
+  take_first({view.values(), static_cast<std::size_t>(numbers.size())});
+}
+
+Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers) {
   const Teuchos::RCP<ThyraVector> vector = Thyra::createMember(space);
-  Eigen::Map<Eigen::VectorXd>(Thyra::DetachedVectorView<double>(vector).values(), numbers.size()) = numbers;
+  set(vector, numbers);
   return vector;
 }
 

@@ -22,8 +22,11 @@ Teuchos::RCP<const Space> vector_space(const Blocks& blocks);
 /// Returns the entries of all blocks of a vector, one block after another.
 Eigen::VectorXd numbers_of(const ThyraVector& vector);
 
-/// Returns a vector of this space, equal on all ranks. Its entries are `numbers` of the first rank.
-Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, Eigen::VectorXd numbers);
+/// Sets the entries of a vector on all ranks to `numbers` of the first rank.
+void set(const Teuchos::RCP<ThyraVector>& vector, const Eigen::VectorXd& numbers);
+
+/// Returns a vector of this space with these entries.
+Teuchos::RCP<ThyraVector> vector_of(const Teuchos::RCP<const Space>& space, const Eigen::VectorXd& numbers);
 
 /// Linear operator on a vector of all blocks, defined by a function. A zero vector is mapped to zero without calling the function. Every rank uses
 /// the result of the first rank.

@@ -103,6 +103,7 @@ struct Krylov::Impl {
   Blocks blocks;
   Teuchos::RCP<const Space> space;
   Teuchos::RCP<FunctionOperator> product, preconditioner;
+  Teuchos::RCP<ThyraVector> unknowns, right;
   Teuchos::RCP<Thyra::LinearOpWithSolveBase<double>> solver;
 
   void prepare(const LinearSystem& system) {
@@ -110,6 +111,8 @@ struct Krylov::Impl {
       blocks = system.blocks;
       chosen.forget();
       space = vector_space(blocks);
+      unknowns = Thyra::createMember(space);
+      right = Thyra::createMember(space);
       product = Teuchos::rcp(new FunctionOperator(space));
       preconditioner = system.precondition ? Teuchos::rcp(new FunctionOperator(space)) : Teuchos::null;
       solver = belos.factory->createOp();
@@ -142,7 +145,9 @@ void Krylov::forget() const { impl_->chosen.forget(); }
 
 SolveReport Krylov::solve(const LinearSystem& system, const Eigen::VectorXd& b, Eigen::VectorXd& x, double tolerance) const {
   impl_->prepare(impl_->chosen.join(system));
-  const auto unknowns = vector_of(impl_->space, x), right = vector_of(impl_->space, b);
+  const Teuchos::RCP<ThyraVector>&unknowns = impl_->unknowns, &right = impl_->right;
+  set(unknowns, x);
+  set(right, b);
   if (numbers_of(*right).squaredNorm() == 0) {
     x.setZero();
     return {0, true, {}};
