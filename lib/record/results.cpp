@@ -29,8 +29,6 @@ namespace tanktread {
 
 namespace {
 
-constexpr std::chrono::seconds second(1);
-
 /// Returns a new, practically unique identifier of a run: sixteen hexadecimal digits.
 std::string identifier() {
   std::random_device random;
@@ -215,18 +213,18 @@ void Results::record(Columns& row) {
     throw std::logic_error("the columns of a row are not those that were declared");
   write([&] {
     record_->append(row.values());
-    if (record_->rows() == 1 || Clock::now() >= due_) write_record();
+    if (record_->rows() == 1 || Clock::now() >= due_) write_files();
   });
 }
 
-void Results::write_record() {
+/// Writes `run.h5`, then the snapshots that wait.
+void Results::write_files() {
   const auto begun = Clock::now();
   record_->write(durable());
-  due_ = Clock::now() + std::max<Clock::duration>(second, 50 * (Clock::now() - begun));
+  due_ = Clock::now() + std::max<Clock::duration>(std::chrono::seconds(1), 50 * (Clock::now() - begun));
+  for (const auto& [step, bytes] : waiting_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
+  waiting_.clear();
 }
-
-/// Returns whether files are flushed to the disk. During the first second of a run they are not: repeating this second is faster than the flushes.
-output::Durable Results::durable() const { return Clock::now() - start_ < second ? output::Durable::no : output::Durable::yes; }
 
 void Results::warn(const std::string& sentence) {
   warnings_.push_back(sentence);
@@ -248,11 +246,12 @@ Results::Sampled Results::sample(const SurfacePicture& picture, double time) {
 
 void Results::save(output::Checkpoint checkpoint, const motion::State& state, const RunTotals& totals, const Sampled& picture) {
   write([&] {
-    write_record();
     complete(checkpoint, state, totals, picture.time);
-    output::write_snapshot(directory_ / output::snapshot_name(totals.step), checkpoint, picture.mesh, picture.fields, durable());
-    if (durable() == output::Durable::yes) output::sync(directory_);
+    waiting_.emplace_back(totals.step, output::snapshot_file(checkpoint, picture.mesh, picture.fields));
     series_->add(totals.step, picture.time);
+    if (last_saved_ >= 0 && young()) return;
+    write_files();
+    if (durable() == output::Durable::yes) output::sync(directory_);
     if (durable() == output::Durable::yes) series_->write();
   });
   last_saved_ = totals.step;
@@ -270,7 +269,10 @@ void Results::complete(output::Checkpoint& checkpoint, const motion::State& stat
 int Results::close(const Account& account, const Phases& phases) {
   memory_ = peak_memory(ranks_);
   std::string missed;
-  write([&] { missed = finish(account, phases); });
+  write([&] {
+    if (!waiting_.empty()) write_files();
+    missed = finish(account, phases);
+  });
   if (!account.whole) missed.clear();
   if (writes_) {
     if (!request_.quiet) std::fputs(output::closing_table(phases, account.counts, directory_).c_str(), stdout);

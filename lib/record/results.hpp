@@ -75,8 +75,9 @@ void check_vacant(const RunRequest& request);
 /// Files of a run (README.md, Results). The first rank samples snapshots and writes all files. Every call is collective, and all ranks throw
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
-/// During the first second of a run, files are not flushed to the disk. Afterwards, each snapshot and the rows of `run.h5` up to its step are flushed
-/// before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are flushed.
+/// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
+/// next: repeating this second is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to its step are
+/// flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are flushed.
 /// `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
@@ -89,7 +90,7 @@ class Results {
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written at every snapshot. Between snapshots, it is written at intervals of at least
+  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written at intervals of at least
   /// one second and at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all ranks take
   /// the same decisions.
   void record(Columns& row);
@@ -122,6 +123,7 @@ class Results {
   const std::filesystem::path& directory() const { return directory_; }
 
  private:
+  using Clock = std::chrono::steady_clock;
   template <class Write>
   void write(const Write& action);
   void begin();
@@ -130,8 +132,9 @@ class Results {
   void complete(output::Checkpoint& checkpoint, const motion::State& state, const RunTotals& totals, double picture_time) const;
   void set_aside(const std::vector<output::Damaged>& damaged, const std::string& chosen);
   void load_record(const output::Checkpoint& checkpoint, const std::string& chosen);
-  void write_record();
-  output::Durable durable() const;
+  void write_files();
+  bool young() const { return Clock::now() - start_ < std::chrono::seconds(1); }
+  output::Durable durable() const { return young() ? output::Durable::no : output::Durable::yes; }
   std::string finish(const Account& account, const Phases& phases);
   output::Entries<std::string> known_errors() const;
   std::map<std::string, std::string> origin() const;
@@ -148,10 +151,10 @@ class Results {
   std::optional<output::RunRecord> record_;
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
+  std::vector<std::pair<int, std::string>> waiting_;  // steps and bytes of snapshots that are to be written
   std::vector<std::string> warnings_;
   output::Entries<long> memory_;  // peak memory, for the summary
   int last_saved_ = -1;
-  using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now(), due_ = start_;  // start_: beginning of this process; due_: time at which `run.h5` is to be written next
 };
 

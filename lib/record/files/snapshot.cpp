@@ -51,14 +51,13 @@ void write(hid_t file, const LagrangeMesh& mesh) {
 
 std::vector<Field> picture(const Nodes& nodes, const Net& net) { return {{points, nodes.values(net)}, {"Normals", nodes.normals(net)}}; }
 
-void write_snapshot(const fs::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields,
-                    Durable durable) {
+std::string snapshot_file(const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields) {
   const hdf::Id file = hdf::new_file();
   write(file, checkpoint);
   write(file, mesh);
   for (const Field& field : fields)  // a field with one component is one-dimensional, because ParaView then shows it as a scalar
     write(file, (field.name == points ? "VTKHDF/" : "VTKHDF/PointData/") + field.name, field.values, field.values.cols() > 1 ? 2 : 1);
-  write_whole(path, hdf::image(file), durable);
+  return std::string(hdf::image(file));
 }
 
 SnapshotSeries::SnapshotSeries(fs::path directory) : directory_(std::move(directory)) {}

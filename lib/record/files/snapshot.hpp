@@ -26,10 +26,8 @@ struct Field {
 /// shading. The caller adds further fields.
 std::vector<Field> picture(const Nodes& nodes, const Net& net);
 
-/// Writes the file atomically (write_whole): `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) with `fields` at all nodes. Throws
-/// RunFailure if writing fails.
-void write_snapshot(const std::filesystem::path& path, const Checkpoint& checkpoint, const LagrangeMesh& mesh,
-                    std::span<const Field> fields, Durable durable = Durable::no);
+/// Returns the bytes of a snapshot's file: `/checkpoint` and `/VTKHDF` (version 1.0, UnstructuredGrid) with `fields` at all nodes.
+std::string snapshot_file(const Checkpoint& checkpoint, const LagrangeMesh& mesh, std::span<const Field> fields);
 
 /// The list `run.hdf.series`, with which ParaView opens all snapshots of a run as one time series:
 /// {"file-series-version":"1.0","files":[{"name":"snapshot_000000.hdf","time":0.0}, ...]}.

@@ -37,7 +37,7 @@ struct Scene {
     return result;
   }
   void write(const std::filesystem::path& path, const Checkpoint& checkpoint) const {
-    write_snapshot(path, checkpoint, nodes->mesh(), fields());
+    write_whole(path, snapshot_file(checkpoint, nodes->mesh(), fields()));
   }
 };
 
