@@ -239,7 +239,7 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    unit_ = std::abs(parameter - start_) / std::max(change, 1e-12);
+    unit_ = std::exp2(std::round(std::log2(std::abs(parameter - start_) / std::max(change, 1e-12))));  // a power of two: q unit is exact
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
     ahead_.front().first.place.q = start_ / unit_;
     solved->s = step_ = length(solved->place - last_.front().place);

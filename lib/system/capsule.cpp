@@ -89,12 +89,14 @@ std::vector<Net> Capsule::relabellings(const Net& x) {
   return all;
 }
 
-std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess) {
-  if (latest_ && same(x, latest_->x())) return latest_;
+std::shared_ptr<Evaluation> Capsule::evaluate(const Net& x, const Net& guess, double error) {
+  const std::shared_ptr<Evaluation> before = latest_ && same(x, latest_->x()) ? latest_ : nullptr;
+  if (before && before->error_ <= error) return before;
   ++work_.evaluations;
   latest_.reset();
   const auto e = std::make_shared<Evaluation>(*this, x);
-  e->velocity_ = symmetric(in_cell(*e, guess));
+  e->error_ = error;
+  e->velocity_ = symmetric(in_cell(*e, before ? before->velocity_ : guess));
   e->solved_ = true;
   if (!bodies_.rigid.empty()) e->rigid_ = bodies_.rigid;
   if (e->velocity_.allFinite()) latest_ = e;
@@ -125,7 +127,7 @@ Net Capsule::solve(Evaluation& e, Net x, const Net& guess) {
   if (constrained) volumes_.constrain(v, b, c);
   membranes_.place_viscous(x);
   if (bodies_.tractions) v = solve_tractions(e, x, b, c, symmetric(v));
-  else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess);
+  else if (has_velocity_system()) v = solve_velocity(x, f, b, c, v, interface_ ? Net() : guess, e.error_);
   e.unknowns_ = v;
   if (viscous() && !bodies_.tractions) e.load_ += membranes_.viscous_load(x, symmetric(v));
   if (!bodies_.rigid.empty() && !bodies_.tractions) {

@@ -68,8 +68,8 @@ class Capsule : public Dynamics {
   ~Capsule() override;
 
   /// Evaluates the shape x: loads, unknowns and velocities. Returns the cached result if x is the shape evaluated last and forces and flow have not
-  /// changed. `guess`, if given, is the initial guess of the linear solve.
-  std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {});
+  /// changed. `guess`, if given, is the initial guess of the linear solve. `error`: see Evaluation::solve.
+  std::shared_ptr<Evaluation> evaluate(const Net& x, const Net& guess = {}, double error = 0);
 
   /// Returns an evaluation of the shape x that computes each quantity at its first use. `velocity`: velocity of the control points; no rows if
   /// unknown. If the shape evaluated last is within `distance` of x (in `norm`), its rigid motions and fluid velocities are used. Otherwise a linear
@@ -201,12 +201,12 @@ class Capsule : public Dynamics {
   void push_bodies(const Net& x);
   Net explicit_velocity(const Net& x, const Net& f, const Net& moves, std::optional<Tube::Response>* answer);
   Net defect_here(const Net& x, const Net& u);
-  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess);
+  Net solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error);
   Net solve_blocks(const std::function<Net(const Net&)>& load, const std::function<Net(const Net&, const Net&)>& unbounded, const Net& f,
                    const Net& b, const Net& c, const Net& rhs);
   Net solve_tractions(Evaluation& e, const Net& x, const Net& b, const Net& c, const Net& flow);
   Mat3 moment_by_traction(Evaluation& at, std::size_t p);
-  void note(const SolveReport& report, const Eigen::VectorXd& v);
+  void note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance);
 
   const spline::Space& space_;
   Net rest_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 #include "base/formatted.hpp"
@@ -11,7 +12,7 @@
 
 namespace tanktread::coupling {
 
-void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
+void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v, double tolerance) {
   ++work_.velocity_solves;
   work_.velocity_iterations += report.iterations;
   work_.most_velocity_iterations = std::max<long>(work_.most_velocity_iterations, report.iterations);
@@ -19,14 +20,14 @@ void Capsule::note(const SolveReport& report, const Eigen::VectorXd& v) {
   const double ratio = std::ranges::max_element(particles(), {}, contrast)->viscosity_ratio;
   const std::string system =
       bodies_.rigid.empty() ? formatted("the velocity at viscosity ratio %g", ratio) : "the velocity of rigid bodies and others";
-  if (v.allFinite()) require_convergence(report, system, parameters_.solvers.tolerance);
+  if (v.allFinite()) require_convergence(report, system, tolerance);
 }
 
 /// Solves P B P v = rhs (4.2) for v, where P rhs = rhs. The vectors b and c define the projection P (2.8), which removes changes of the volumes. If b
 /// and c are empty, the volumes are free and P = 1. In a tube, B includes the response of the wall to v with the option `schur`; with other options,
 /// solve_blocks() solves for v and the wall tractions together. The initial guess is rhs if `guess` is empty or there are rigid bodies, and otherwise
 /// `guess`.
-Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess) {
+Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net& c, const Net& rhs, const Net& guess, double error) {
   const auto clock = phases_.time("velocity system");
   const Eigen::Index n = x.rows();
   layers_.assemble(x, viscous());
@@ -69,7 +70,10 @@ Net Capsule::solve_velocity(const Net& x, const Net& f, const Net& b, const Net&
     Eigen::Map<Net>(out, n, 3) = y;
   };
   const LinearSystem system{velocity_blocks(particles()), apply, bodies_.isolated->empty() ? Apply() : precondition};
-  note(velocity_solver_.solve(system, right, v, parameters_.solvers.tolerance), v);
+  const auto least = [](const Particle& one) { return one.radius * std::sqrt(static_cast<double>(one.block.n_points)); };
+  const double allowed = error * std::ranges::min(particles() | std::views::transform(least));  // of the Euclidean norm
+  const double tolerance = std::max(parameters_.solvers.tolerance, std::min(1e-2, allowed / right.norm()));
+  note(velocity_solver_.solve(system, right, v, tolerance), v, tolerance);
   Net solution = Eigen::Map<const Net>(v.data(), n, 3);
   project(solution);
   return solution;
@@ -88,7 +92,7 @@ Net Capsule::solve_blocks(const std::function<Net(const Net&)>& load, const std:
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
   x.head(rhs.size()) = right.head(rhs.size());
   const LinearSystem linear = system.linear_system(velocity_blocks(particles()), parameters_.solvers.tube);
-  note(velocity_solver_.solve(linear, right, x, parameters_.solvers.tolerance), x);
+  note(velocity_solver_.solve(linear, right, x, parameters_.solvers.tolerance), x, parameters_.solvers.tolerance);
   return Eigen::Map<const Net>(x.data(), rhs.rows(), 3);
 }
 
@@ -136,7 +140,8 @@ Net Capsule::solve_tractions(Evaluation& e, const Net& x, const Net& b, const Ne
   for (std::size_t p = 0; p < particles().size(); ++p)
     if (bodies_.rigid.holds(p)) bodies_.rigid.move(p, body->motion, body->force, body->torque, v), ++body;
   e.load_ = load(bodies_.tractions->unknowns());
-  for (const SolveReport& report : bodies_.tractions->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()));
+  for (const SolveReport& report : bodies_.tractions->reports())
+    note(report, Eigen::Map<const Eigen::VectorXd>(v.data(), v.size()), parameters_.solvers.tolerance);
   if (duct_.tube) e.response_ = duct_.tube->respond(e.load_, v, bodies_.tractions->lacking_pressure());
   return v;
 }
@@ -146,7 +151,8 @@ Mat3 Capsule::moment_by_traction(Evaluation& at, std::size_t p) {
   at.rigid();
   const Mat3 moment = bodies_.tractions->moment(static_cast<std::size_t>(std::ranges::count_if(
       std::span(particles()).first(p), [](const Particle& one) { return one.rigid.has_value(); })));
-  for (const SolveReport& report : bodies_.tractions->reports()) note(report, Eigen::Map<const Eigen::VectorXd>(at.x().data(), at.x().size()));
+  for (const SolveReport& report : bodies_.tractions->reports())
+    note(report, Eigen::Map<const Eigen::VectorXd>(at.x().data(), at.x().size()), parameters_.solvers.tolerance);
   return -moment;
 }
 

@@ -10,9 +10,9 @@ namespace tanktread::coupling {
 Evaluation::Evaluation(Capsule& system, Net x, Net velocity, std::shared_ptr<Evaluation> near)
     : system_(&system), x_(std::move(x)), known_(std::move(velocity)), near_(std::move(near)) {}
 
-void Evaluation::solve() {
+void Evaluation::solve(double error) {
   if (solved_) return;
-  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, known_);
+  const std::shared_ptr<Evaluation> found = system_->evaluate(x_, known_, error);
   Net known = std::move(known_);
   *this = *found;
   known_ = std::move(known);

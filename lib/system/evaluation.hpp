@@ -50,8 +50,9 @@ class Evaluation {
 
   Tube::Checks checks();                                 ///< returns the errors of the tube's response in the conditions (2.14)
 
-  /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess.
-  void solve();
+  /// Solves for the unknowns if that has not been done yet. Uses the known velocity as initial guess. `error`: allowed error of the velocity
+  /// (Capsule::norm per unit of time), if it is larger than the error due to Solvers/tolerance.
+  void solve(double error = 0);
 
   /// Returns the stresslet of particle p (6.7), force x length, with the velocity v of the fluids,
   /// S_ij = int (df_i x_j + df_j x_i)/2 - delta_ij/3 df.x - (1 - lambda) mu (v_i n_j + v_j n_i) dG. Batchelor 1970; Pozrikidis 1992, section 5.1.
@@ -72,6 +73,7 @@ class Evaluation {
   Capsule* system_;
   Net x_, known_;  // known_: velocity passed to the constructor
   std::shared_ptr<Evaluation> near_;
+  double error_ = 0;      // allowed error of the solution, see solve()
   bool solved_ = false;  // true if load, velocities, unknowns and rigid bodies are computed
   Net velocity_, fluid_;  // velocity_: velocity of the control points. fluid_: velocity of the fluid; no rows if no control point slides
   Net unknowns_;          // unknowns of the velocity system: the fluid velocity, or w (2.23) in the rows of rigid bodies

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from harness import check, command, deck, main, run, series, start, summary
+from harness import check, command, deck, main, run, series, start, summary, wait_within
 
 DECK = """
 Tanktread:
@@ -68,8 +68,7 @@ def a_run_in_a_long_step_stops_before_its_end_and_goes_on_to_the_same_bits():
     fine = ["--set", "Surface/elements per side=8", "--set", "Particle/viscosity ratio=5", "--set", "Time/final time=0.1"]
     run(deck(DECK), *fine, "--output", "whole", "--quiet")
     process = start(deck(DECK), *fine, "--output", "out", "--quiet")
-    while process.poll() is None and not (pathlib.Path("out/run.h5").exists() and len(series("out", "time")) > 2):
-        time.sleep(0.001)
+    wait_within(process, "out", "whole")
     process.send_signal(signal.SIGHUP)
     _, said = process.communicate(timeout=60)
     check(process.returncode == 4 and "signal" in said, process.returncode, said)

@@ -102,6 +102,14 @@ def start(*arguments, ranks=1):
                             stderr=subprocess.PIPE, text=True)
 
 
+def wait_within(process, results, whole):
+    """Waits until the run in the background, which writes to `results`, has probably done two fifths of its steps. `whole`: results of the same run."""
+    while process.poll() is None and not pathlib.Path(results, "run.h5").exists():
+        time.sleep(0.001)
+    seconds = series(whole, "wall_seconds")
+    time.sleep(0.4 * (seconds[-1] - seconds[0]))
+
+
 def package(name, *arguments):
     """Runs the command tanktread-<name> of the Python package in a fork of this process, which has made its imports once. Returns stdout, stderr and
     returncode."""

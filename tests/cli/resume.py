@@ -8,7 +8,7 @@ import time
 
 import numpy
 
-from harness import check, deck, main, run, series, start, summary
+from harness import check, deck, main, run, series, start, summary, wait_within
 
 DECK = """
 Tanktread:
@@ -138,8 +138,7 @@ def sigterm_stops_with_a_checkpoint_at_the_last_step():
     deck(DECK)
     run("deck.yaml", "--output", "whole", "--quiet")
     process = start("deck.yaml", "--output", "stopped", "--quiet")
-    while process.poll() is None and not (pathlib.Path("stopped/run.h5").exists() and len(series("stopped", "time")) >= 4):
-        time.sleep(0.001)
+    wait_within(process, "stopped", "whole")
     process.send_signal(signal.SIGTERM)
     _, said = process.communicate(timeout=60)
     check("Traceback" not in said and "signal" in said, said)

@@ -163,8 +163,8 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    if ((body().wall || solids_) && !accurate(state)) here->solve();  // solves again if the velocity is inaccurate, because the response of a tube or
-                                                                      // solids is computed from it
+    // solves again if the velocity is inaccurate, because the response of a tube or solids is computed from it
+    if ((body().wall || solids_) && state.slope_error > accuracy()) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();
     std::vector<Columns> columns(members_.size());
@@ -259,10 +259,8 @@ class Deforming : public ParticleSystem {
     fields_ = std::make_unique<SurfaceFields>(members_, *capsule_);
   }
 
-  /// Returns true if the error of the slope (the velocity of the control points) does not exceed the tolerance.
-  bool accurate(const motion::State& state) const {
-    return state.slope_error <= scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate());
-  }
+  /// Returns the largest error of the slope (the velocity of the control points) that the tolerance allows.
+  double accuracy() const { return scene_.time.tolerance * std::abs(capsule_->flow().amplitude() * scene_.rate()); }
 
   /// Returns the data of particle p for a row, except what add_treading() sets. Adds the columns of the particle's surface fields to `to`.
   std::unique_ptr<ParticleRow> particle_row(std::size_t p, coupling::Evaluation& here, const motion::State& state, const Net& y, Columns& to) {
