@@ -226,7 +226,10 @@ std::optional<BranchPoint> Branch::next() {
   }
   const auto [solved, fold] = std::move(ahead_.front());
   ahead_.erase(ahead_.begin());
-  return BranchPoint{solved.place.q * unit_, second_, solved.place.x, fold, solved.iterations, solved.rest};
+  double parameter = solved.place.q * unit_;
+  for (const double end : {start_, options_.to})
+    if (std::abs(parameter - end) < 1e-14 * std::abs(end)) parameter = end;  // removes rounding errors
+  return BranchPoint{parameter, second_, solved.place.x, fold, solved.iterations, solved.rest};
 }
 
 /// Finds the first or the second point of the branch, each at a prescribed value of the parameter.
@@ -239,7 +242,7 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    unit_ = std::exp2(std::round(std::log2(std::abs(parameter - start_) / std::max(change, 1e-12))));  // a power of two: q unit is exact
+    unit_ = std::abs(parameter - start_) / std::max(change, 1e-12);
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
     ahead_.front().first.place.q = start_ / unit_;
     solved->s = step_ = length(solved->place - last_.front().place);
