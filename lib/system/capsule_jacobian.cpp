@@ -83,49 +83,50 @@ Net CapsuleJacobian::inflation(const Net& c) {
   return along.allFinite() ? along : c;
 }
 
-/// Returns B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx) (4.3), and 0 in the rows of rigid bodies. P is the volume projection (2.8), R
-/// the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the membrane tangent. `work`, if given, is added to H dx.
-Net CapsuleJacobian::energy_part(const Net& dx, const Net& work) {
-  Net h = membranes_.work_change(dx);
-  if (work.size() > 0) h += work;
-  const Net f = membranes_.solved(std::move(h));
-  Net u = frozen_.single_layer(f);
-  if (by_sites_) {
-    u /= -parameters_.viscosity;
-    if (tube_) u += tube_->frozen_response(f);
-    const Net at_sites = targets_.at_sites() * dx;
+/// Returns B v - shift B J dx, with
+///
+///   B v = P B P v + (1 - P) v,   B J dx = P (grad v_inf dx - (1/mu) R^{-1} A M0^{-1} H dx)                                         (4.3)
+///
+/// P is the volume projection (2.8), R the collocation matrix, A the frozen single layer, M0 the mass matrix, and H the membrane tangent. `work`, if
+/// given, is added to H dx. v or dx may have no rows, which stands for 0. In the rows of rigid bodies B v is v, and B J dx is 0. The layers and the
+/// tube are applied once, to the sum of all loads.
+Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Net& work) {
+  const bool moves = v.size() > 0 && has_system(), displaced = dx.size() > 0;
+  if (!moves && !displaced) return v;
+  Net moving, work_change;
+  if (moves) {
+    moving = without_flux(v);
+    clear_rigid(parameters_.particles, moving);
+    if (membranes_.viscous()) work_change = membranes_.viscous_work_change(moving);
+  }
+  if (displaced) {
+    Net h = shift * membranes_.work_change(dx);
+    if (work.size() > 0) h += shift * work;
+    work_change = work_change.size() > 0 ? Net(work_change + h) : std::move(h);
+  }
+  const Net load = work_change.size() > 0 ? membranes_.solved(std::move(work_change)) : Net();
+  Net u = Net::Zero(std::max(v.rows(), dx.rows()), 3);
+  if (moves && frozen_.has_double()) u = frozen_.double_layer(moving);
+  if (load.size() > 0) u -= frozen_.single_layer(load) / parameters_.viscosity;
+  if (tube_) u += tube_->frozen_response(load, moving);
+  if (displaced && by_sites_) {
+    const Net at_sites = shift * (targets_.at_sites() * dx);
     for (Eigen::Index i = 0; i < u.rows(); ++i) u.row(i) += at_sites.row(i) * gradients_[static_cast<size_t>(i)].transpose();
-    clear_rigid(parameters_.particles, u);
-    return without_flux(targets_.collocated(std::move(u)));
   }
-  Net change = dx * flow_.gradient(Vec3::Zero()).transpose() - targets_.collocated(std::move(u)) / parameters_.viscosity;
+  Net change = targets_.collocated(std::move(u));
+  if (displaced && !by_sites_) change += shift * dx * flow_.gradient(Vec3::Zero()).transpose();
   clear_rigid(parameters_.particles, change);
-  return without_flux(std::move(change));
+  change = without_flux(std::move(change));
+  return v.size() > 0 ? Net(v - change) : Net(-change);
 }
 
-/// Returns P B P v + (1 - P) v with the volume projection P (2.8). The rows of rigid bodies are unchanged and do not contribute to other rows.
-Net CapsuleJacobian::viscous_product(const Net& v) {
-  if (!has_system()) return v;
-  const Net inside = without_flux(v);
-  Net hv = Net::Zero(v.rows(), 3), deforming = inside, load;
-  clear_rigid(parameters_.particles, deforming);
-  if (frozen_.has_double()) hv = frozen_.double_layer(deforming);
-  if (membranes_.viscous()) {
-    load = membranes_.solved(membranes_.viscous_work_change(deforming));
-    hv -= frozen_.single_layer(load) / parameters_.viscosity;
-  }
-  if (tube_) hv += tube_->frozen_response(load, deforming);
-  clear_rigid(parameters_.particles, hv);
-  return v - without_flux(targets_.collocation().solve(hv));
-}
-
-/// Returns the change of the fluid velocity due to the displacement dx. Solves B (J dx) = energy_part(dx) to a smaller tolerance than the system of
+/// Returns the change J dx of the fluid velocity due to the displacement dx. Solves a linear system with the matrix B to a smaller tolerance than the system of
 /// an implicit step, because each product with the matrix of that system may require this solve.
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
-  const Net rhs = energy_part(dx, work);
+  const Net rhs = product({}, dx, -1, work);
   if (!has_system()) return rhs;
   const Eigen::Index n = dx.rows();
-  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = viscous_product(Eigen::Map<const Net>(in, n, 3)); };
+  const auto apply = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = product(Eigen::Map<const Net>(in, n, 3), {}, 0, {}); };
   Eigen::VectorXd v = Eigen::Map<const Eigen::VectorXd>(rhs.data(), rhs.size());
   const Eigen::VectorXd right = v;
   work_.solver_iterations += inner_solver_.solve({velocity_blocks(parameters_.particles), apply, {}}, right, v, 1e-3).iterations;
@@ -140,7 +141,7 @@ CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, cons
 }
 
 CapsuleJacobian::RateChange CapsuleJacobian::rate_change(const Net& dx, const Net& work) {
-  return interface_ ? velocity_change(dx, work) : RateChange{energy_part(dx, work), {}};
+  return interface_ ? velocity_change(dx, work) : RateChange{product({}, dx, -1, work), {}};
 }
 
 void CapsuleJacobian::prepare_step(double shift) {
@@ -152,7 +153,8 @@ Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
-    Eigen::Map<Net>(out, n, 3) = left(delta) - shift * (rate_change(delta, {}).rate + secants(delta));
+    const Net changed = interface_ ? Net(delta - shift * velocity_change(delta, {}).rate) : product(delta, delta, shift, {});
+    Eigen::Map<Net>(out, n, 3) = changed - shift * secants(delta);
   };
   prepare_step(shift);
   const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };

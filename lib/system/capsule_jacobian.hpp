@@ -40,7 +40,7 @@ class CapsuleJacobian {
   bool flows_by_system() const { return has_system() && !interface_ && !parameters_.any_rigid(); }
 
   /// Returns B v, or v if control points slide along an interface.
-  Net left(const Net& v) { return interface_ ? v : viscous_product(v); }
+  Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if control points slide along an interface
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
 
@@ -69,8 +69,7 @@ class CapsuleJacobian {
  private:
   bool has_system() const { return frozen_.has_double() || membranes_.viscous(); }
   std::vector<Mat3> gradients_at(const Net& x) const;
-  Net energy_part(const Net& dx, const Net& work);
-  Net viscous_product(const Net& v);
+  Net product(const Net& v, const Net& dx, double shift, const Net& work);
   Net fluid_velocity_change(const Net& dx, const Net& work);
   Net without_flux(Net rate) const;
 
