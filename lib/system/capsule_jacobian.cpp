@@ -77,7 +77,7 @@ Net CapsuleJacobian::without_flux(Net rate) const {
 }
 
 Net CapsuleJacobian::inflation(const Net& c) {
-  constexpr double rough = 1e-2;  // relative residual
+  constexpr double rough = 0.1;  // relative residual
   if (latest_shift_ == 0 || interface_ || c.rows() != flux_.rows() || std::ranges::none_of(parameters_.particles, keeps_area)) return c;
   const Net along = solve(latest_shift_, c, rough, {});
   return along.allFinite() ? along : c;
