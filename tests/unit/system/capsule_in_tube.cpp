@@ -122,6 +122,23 @@ TEST(CapsuleInTube, AVelocityNearTheAnswerSavesIterationsAndNothingElse) {
   EXPECT_LT(helped.capsule->work().velocity_iterations, plain.capsule->work().velocity_iterations);
 }
 
+TEST(CapsuleInTube, ARoughVelocityHasTheErrorAllowedAndIsNotTakenForAnExactOne) {
+  Confined exact(4, "schur"), rough(4, "schur");
+  const Net v = exact.capsule->velocity(exact.x);
+  int fewer = exact.capsule->work().velocity_iterations;
+  for (const double error : {1e-6, 1e-4, 1e-2}) {
+    Confined scene(4, "schur");
+    EXPECT_LT(scene.capsule->norm(scene.capsule->evaluate(scene.x, {}, error)->velocity() - v), error);
+    EXPECT_LT(scene.capsule->work().velocity_iterations, fewer) << error;
+    fewer = scene.capsule->work().velocity_iterations;
+  }
+  rough.capsule->evaluate(rough.x, {}, 1e-3);
+  EXPECT_LT((rough.capsule->velocity(rough.x) - v).norm(), 1e-8 * v.norm());  // residuals of 1e-11, condition numbers of 1e3
+  const long evaluations = rough.capsule->work().evaluations;
+  rough.capsule->evaluate(rough.x, {}, 1e-3);
+  EXPECT_EQ(rough.capsule->work().evaluations, evaluations);  // the exact velocity also serves as a rough one
+}
+
 TEST(CapsuleInTube, TheJacobianHoldsTheAnswerOfTheWall) {
   Confined scene(1, "schur");
   Capsule& capsule = *scene.capsule;
