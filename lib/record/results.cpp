@@ -192,7 +192,8 @@ void Results::load_record(const output::Checkpoint& checkpoint, const std::strin
   if (const auto run = origin_of_record.find("run"); run == origin_of_record.end() || run->second != run_)
     throw UserError("--resume " + directory_.string() + ": " + chosen +
                     " and run.h5 belong to different runs: remove the file that does not belong here.");
-  if (record_->rows() < rows || record_->checksum(rows) != checkpoint.texts.at("record"))
+  const auto matches = [&](bool with_undefined) { return record_->checksum(rows, with_undefined) == checkpoint.texts.at("record"); };
+  if (record_->rows() < rows || (!matches(false) && !matches(true)))
     throw UserError("--resume " + directory_.string() + ": the rows of run.h5 up to " + chosen +
                     " are damaged: they differ from what was written.");
   record_->truncate(rows);

@@ -1,6 +1,7 @@
 #include "record/files/run_record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -77,13 +78,15 @@ void RunRecord::write(Durable durable) const {
   write_whole(path_, hdf::image(file), durable);
 }
 
-std::string RunRecord::checksum(std::size_t rows) const {
+std::string RunRecord::checksum(std::size_t rows, bool with_undefined) const {
   std::map<std::string_view, const Series*> by_name;
   for (const Series& one : series_) by_name[one.name] = &one;
   Checksum sum;
   for (const auto& [name, one] : by_name) {
+    const auto values = std::span(one->values).first(std::min(rows, one->values.size()));
+    if (!with_undefined && std::ranges::all_of(values, [](double value) { return std::isnan(value); })) continue;
     sum.add(one->name);
-    for (const double value : std::span(one->values).first(std::min(rows, one->values.size()))) sum.add(value);
+    for (const double value : values) sum.add(value);
   }
   return sum.digits();
 }

@@ -80,6 +80,19 @@ TEST(RunRecord, ASeriesThatIsNewOnResumeHasNoValuesBefore) {
   EXPECT_EQ(back.values("energy")[1], 2.5);
 }
 
+TEST(RunRecord, ASeriesThatIsNewOnResumeKeepsTheChecksumOfEarlierRows) {
+  RunRecord record("run.h5", "", {});
+  record.declare("time", "1", "");
+  record.append(std::array{0.5});
+  const std::string before = record.checksum(1);
+  record.declare("energy", "1", "");
+  EXPECT_EQ(record.checksum(1), before);
+  EXPECT_NE(record.checksum(1, true), before);
+  record.append(std::array{1.5, 2.5});
+  EXPECT_EQ(record.checksum(1), before);
+  EXPECT_NE(record.checksum(2), before);
+}
+
 TEST(RunRecord, ItsChecksumIsOfItsFirstRowsInAnyOrderOfTheSeries) {
   const Scratch scratch;
   RunRecord record = three_series(scratch / "run.h5");
