@@ -190,8 +190,8 @@ struct Candidate {
 
 /// Searches for the maximum of sign * distance in all candidates that may contain it, and extends the range `found` by the distances found. On a
 /// nearly circular curve, the search from a sampled maximum may converge to a minimum or leave the element. Then it starts again from the next
-/// sampled point. Elements and points are left out if their distance is further below the largest sampled distance than a quarter of the spread of the
-/// element's distances: where the distance is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
+/// sampled point. Elements and points are left out if their distance is further below the largest sampled distance than a quarter of the spread of
+/// the element's distances: where the distance is a parabola with its maximum inside the element, the sampling error is at most spread/cells^2.
 void add_distances(const Patches& surface, const Vec3& centre, const std::vector<Candidate>& candidates, double sign, Range& found) {
   double sampled = -infinity;
   for (const Candidate& c : candidates) sampled = std::max(sampled, sign * c.best(sign).distance);

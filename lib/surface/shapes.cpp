@@ -60,7 +60,7 @@ Net subdivided(const spline::Lattice& l, int h, const Net& net) {
 }
 
 /// Returns points of the limit surface of the initial net at vertices of a mesh. The surface of a coarse mesh with L levels is exact except within
-/// 2^-L of its elements from a corner of the cube, but is exact at the corner. So L is the smallest for which the other vertices are outside, up to 5.
+/// 2^-L of its elements from a corner of the cube, but is exact at the corner. So L is the smallest, up to 5, that keeps the other vertices outside.
 Net limit_points(const spline::TMesh& mesh, const std::vector<int>& vertices) {
   const spline::Lattice& l = *mesh.lattice;
   int levels = 0;

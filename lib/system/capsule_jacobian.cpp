@@ -120,7 +120,7 @@ Net CapsuleJacobian::product(const Net& v, const Net& dx, double shift, const Ne
   return v.size() > 0 ? Net(v - change) : Net(-change);
 }
 
-/// Returns the change J dx of the fluid velocity due to the displacement dx. Solves a linear system with the matrix B to a smaller tolerance than the system of
+/// Returns the change J dx of the fluid velocity due to the displacement dx. Solves B (J dx) = rhs to a smaller tolerance than the system of
 /// an implicit step, because each product with the matrix of that system may require this solve.
 Net CapsuleJacobian::fluid_velocity_change(const Net& dx, const Net& work) {
   const Net rhs = product({}, dx, -1, work);

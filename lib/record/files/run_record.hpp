@@ -57,9 +57,9 @@ class RunRecord {
 
   void write(Durable durable = Durable::no) const;
 
-  /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum). A series whose values in these
-  /// rows are all NaN does not contribute, so that a series that a resumed run adds does not change the checksum of earlier rows. `with_undefined`:
-  /// includes such series, as checkpoints of earlier versions do.
+  /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum). A series whose values in
+  /// these rows are all NaN does not contribute, so that a series that a resumed run adds does not change the checksum of earlier rows.
+  /// `with_undefined`: includes such series, as checkpoints of earlier versions do.
   std::string checksum(std::size_t rows, bool with_undefined = false) const;
 
   std::size_t rows() const { return series_.empty() ? 0 : series_.front().values.size(); }
