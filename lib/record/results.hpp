@@ -91,9 +91,8 @@ class Results {
   void remesh(const Body& body, const surface::BezierMap& map);
 
   /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written at intervals of at
-  /// least one second and at least fifty times the duration of a write.
-  /// Sets the row on every rank to the values of the first rank, so that all ranks take
-  /// the same decisions.
+  /// least one second and at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all
+  /// ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.
