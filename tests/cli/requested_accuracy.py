@@ -170,7 +170,7 @@ def the_wall_clock_limit_is_honoured_and_said():
     deck(DROP)
     result = run("deck.yaml", "--accuracy", "taylor_inertia=1e-9", "--set", "Accuracy/wall-clock limit=0.6", "--quiet", "--output", "short",
                  code=4, timeout=60)
-    check("wall-clock limit" in result.stderr or "was stopped" in result.stderr, result.stderr)
+    check("wall-clock limit" in result.stderr or "stopped" in result.stderr, result.stderr)
     check("--resume short continues the run" in result.stderr and "--resume short/level" not in result.stderr, result.stderr)
     said = run("deck.yaml", "--accuracy", "taylor_inertia=1%", "--set", "Accuracy/wall-clock limit=1e-6", "--check", "--quiet", code=4).stderr
     check(len(said.splitlines()) == 1 and "wall-clock limit" in said, said)
@@ -214,7 +214,7 @@ def a_ladder_resumes_without_the_files_of_its_deck():
     history = pathlib.Path("decks/history.csv")
     history.write_text("time,amplitude\n0,1\n10,0.9\n", encoding="utf-8")
     deck(DROP.replace("shear rate: 1.0", "history: {file: history.csv}"), "decks/deck.yaml")
-    process = start("decks/deck.yaml", "--accuracy", "taylor_inertia=5%", "--quiet", "--output", "levels")
+    process = start("decks/deck.yaml", "--accuracy", "taylor_inertia=0.5%", "--quiet", "--output", "levels")
     while not pathlib.Path("levels/level_1").exists() and process.poll() is None:
         time.sleep(0.001)
     process.kill()
