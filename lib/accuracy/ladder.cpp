@@ -40,7 +40,7 @@ class Ladder {
     for (int k = 0; k < task_.options.levels && k <= last_level; ++k) {
       if (const std::string why = is_over(k) ? "" : reason_to_stop(k); !why.empty()) return conclude(stopped, why);
       if (k >= balanced_from && count_ == k && !balanced_ && !within_reach(k) && balance() == stopped)
-        return conclude(stopped, "the runs that balance the parts were stopped");
+        return conclude(stopped, "a run that balances the parts was stopped");
       const int code = run(k);
       if (code == stopped) return conclude(stopped, formatted("level %d was stopped", k));
       if (count_ >= 3 && failure_of_last_.empty() && judge(k)) return conclude(met, "");

@@ -252,8 +252,9 @@ void Results::save(output::Checkpoint checkpoint, const motion::State& state, co
     series_->add(totals.step, picture.time);
     if (last_saved_ >= 0 && young()) return;
     write_files();
-    if (durable() == output::Durable::yes) output::sync(directory_);
-    if (durable() == output::Durable::yes) series_->write();
+    if (young()) return;
+    output::sync(directory_);
+    series_->write();
   });
   last_saved_ = totals.step;
 }
