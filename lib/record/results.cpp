@@ -222,7 +222,8 @@ void Results::record(Columns& row) {
 void Results::write_files() {
   const auto begun = Clock::now();
   record_->write(durable());
-  due_ = Clock::now() + std::max<Clock::duration>(std::chrono::seconds(1), 50 * (Clock::now() - begun));
+  const Clock::time_point now = Clock::now();
+  due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - start_, std::chrono::seconds(1)));
   for (const auto& [step, bytes] : waiting_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
   waiting_.clear();
 }

@@ -76,7 +76,7 @@ void check_vacant(const RunRequest& request);
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
-/// next: repeating this second is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to its step
+/// next: repeating the steps since then is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to its step
 /// are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are flushed.
 /// `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
@@ -90,8 +90,8 @@ class Results {
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written at intervals of at
-  /// least one second and at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all
+  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the run is twice
+  /// as old as at the last write or one second older, but at intervals of at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all
   /// ranks take the same decisions.
   void record(Columns& row);
 
