@@ -1,6 +1,7 @@
 #include "membrane/surfactant_kernel.hpp"
 
 #include <cmath>
+#include <cstring>
 
 #include "base/kernel.hpp"
 
@@ -8,14 +9,23 @@ namespace tanktread::membrane {
 namespace INSTRUCTIONS {
 namespace {
 
+/// Evaluates k fields at the Gauss points from q on that fill a register or a number.
+template <int k, class Lanes>
+void sampled(int q, int n, int functions, const double* table, const double* control_values, double* fields) {
+  Lanes sums[k] = {};
+  for (int a = 0; a < functions; ++a) {
+    Lanes value;
+    std::memcpy(&value, table + a * n + q, sizeof value);
+    for (int f = 0; f < k; ++f) sums[f] += control_values[a * k + f] * value;
+  }
+  for (int f = 0; f < k; ++f) std::memcpy(fields + f * n + q, &sums[f], sizeof sums[f]);
+}
+
 template <int k>
 void sampled(int n, int functions, const double* table, const double* control_values, double* fields) {
-  for (int i = 0; i < k * n; ++i) fields[i] = 0;
-  for (int a = 0; a < functions; ++a)
-    for (int f = 0; f < k; ++f) {
-      const double value = control_values[a * k + f];
-      for (int q = 0; q < n; ++q) fields[f * n + q] += value * table[a * n + q];
-    }
+  int q = 0;
+  for (; q + lanes <= n; q += lanes) sampled<k, Register>(q, n, functions, table, control_values, fields);
+  for (; q < n; ++q) sampled<k, double>(q, n, functions, table, control_values, fields);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "quadrature/options.hpp"
 
+#include <algorithm>
+
 #include "base/errors.hpp"
 #include "deck/section.hpp"
 #include "deck/words.hpp"
@@ -33,6 +35,12 @@ void Options::declare(deck::Section& section) {
 void Options::choose_smooth_sums() {
   if (far_sum == "auto") far_sum = "dense";
   if (far_precision == "auto") far_precision = "double";
+}
+
+Options Options::for_matrix() const {
+  Options sharper = *this;
+  sharper.tolerance = std::max(1e-12, std::min(1e-7, tolerance / 10));
+  return sharper;
 }
 
 void Options::check() const {

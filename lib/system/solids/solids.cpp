@@ -12,12 +12,6 @@ namespace tanktread::coupling {
 
 namespace {
 
-/// Returns options with a smaller tolerance, for the matrix of the solids on themselves. This matrix is assembled only once.
-quadrature::Options for_assembly(quadrature::Options options) {
-  options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
-  return options;
-}
-
 surface::SolidSurface all_of(const std::vector<Solids::Solid>& solids) {
   std::vector<surface::SolidSurface> surfaces;
   for (const Solids::Solid& one : solids) surfaces.push_back(one.surface);
@@ -54,7 +48,7 @@ Solids::Solids(const std::vector<Solid>& solids, const Parameters& parameters, P
   }
   reached_ = across_;
   make_layer();
-  stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, for_assembly(parameters.quadrature));
+  stokes::Layer on_itself(stokes::Layer::Kernel::single_layer, surface_.space, surface_.sites, parameters.quadrature.for_matrix());
   on_itself.repeat(cell(), {.assembled = true, .across = across_});
   on_itself.place(surface_.net);
   const bool only_plates = std::ranges::all_of(solids, [&](const Solid& one) {

@@ -77,12 +77,6 @@ void WallPatches::apply(const Net& rhs, Net& f) const {
 
 namespace {
 
-/// Returns options with a smaller tolerance, for the single-layer matrix of the wall on itself, which is assembled only once.
-quadrature::Options sharper(quadrature::Options options) {
-  options.tolerance = std::max(1e-12, std::min(1e-7, options.tolerance / 10));
-  return options;
-}
-
 /// Returns the lattice of a periodic wall. The reference distance l of (2.43) is well outside the duct: if it were close to the duct's radius,
 /// tractions on the wall could not move the fluid along the duct.
 std::optional<stokes::PeriodicCell> lattice(const surface::TubeWall& wall) {
@@ -102,11 +96,11 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
       layer_(stokes::Layer::Kernel::single_layer, surface_.space, {}, quadrature),
       tolerance_(solver.tolerance) {
   const auto n = static_cast<int>(wall.sites.size());
-  if (!cell_) inlet_.emplace(wall.outline, wall.start, sharper(quadrature).tolerance);
+  if (!cell_) inlet_.emplace(wall.outline, wall.start, quadrature.for_matrix().tolerance);
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
   layer_.place(wall.net);
   if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
-  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall), sharper(quadrature));
+  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall), quadrature.for_matrix());
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
   if (cell_) find_pressure();
