@@ -22,7 +22,7 @@ Estimate estimated(const std::vector<double>& differences, double scale, const s
   if (n == 1 || !std::isfinite(differences[n - 2])) return {last, unknown, "it needs three levels"};
   if (std::max(last, differences[n - 2]) <= round_off * scale) return {std::max(last, differences[n - 2]), unknown, ""};
   const auto factor = [&](std::size_t level) { return differences[level - 1] / (expected[level - 1] - expected[level]); };
-  const double error = safety * factor(n) * finest;
+  const double error = factor(n) * finest;
   const double ratio = expected[n - 1] / finest * factor(n - 1) / factor(n);
   if (ratio >= least_ratio && ratio <= most_ratio) return {error, ratio, ""};
   if (n > 2 && std::isfinite(differences[n - 3])) {

@@ -9,12 +9,10 @@ namespace tanktread::accuracy {
 /// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor C
 /// that depends on the series, so that d_l is about C (E_(l-1) - E_l). The error of the finest level is
 ///
-///   e_l = 1.2 C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                  (9.1)
+///   e_l = C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                      (9.1)
 ///
-/// The factor 1.2 was fitted to estimates in 18 scenes. In these scenes, the ratio of the estimate to the true error was between 1/3 and 3 for 92 %
-/// of the 118 estimates for series that users request, and for 89 % of the 905 estimates for all series. Two alternatives are less accurate: the
-/// largest or the mean C of several levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to the differences, because a difference may
-/// be small by chance.
+/// Two alternatives are less accurate: the largest or the mean C of several levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to
+/// the differences, because a difference may be small by chance.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is
@@ -23,10 +21,7 @@ struct Estimate {
   bool trusted() const { return untrusted.empty(); }
 };
 
-/// Safety factor of an estimated error, the factor 1.2 of (9.1).
-constexpr double safety = 1.2;
-
-/// Second safety factor: a request is met if the estimated error times this factor is at most the requested error.
+/// Safety factor: a request is met if the estimated error times this factor is at most the requested error.
 constexpr double margin = 1.5;
 
 /// Differences below this number times the magnitude of a series (`scale` of estimated()) count as round-off.

@@ -38,7 +38,7 @@ class Temporary {
 int needed(const Answer& answer, double difference, int levels) {
   const double factor = difference / (expected_error({}) - expected_error({1, 1, 1}));
   int level = 2;
-  while (level < levels && safety * margin * factor * expected_error({level, level, level}) > answer.allowed) ++level;
+  while (level < levels && margin * factor * expected_error({level, level, level}) > answer.allowed) ++level;
   return level;
 }
 

@@ -104,7 +104,7 @@ std::string publish(const Task& task, const std::vector<Outcome>& levels, const 
   if (levels.size() > 2 && !is_branch(finest.record) && obstacle(levels).empty()) {
     const Outcome& before = levels[levels.size() - 2];
     const double fine = expected_error(finest.level), coarse = expected_error(before.level);
-    write_position_errors(finest.directory, before.directory, task.directory, safety * fine / (coarse - fine));
+    write_position_errors(finest.directory, before.directory, task.directory, fine / (coarse - fine));
   }
   output::RunRecord record = finest.record;
   deck::SeriesTable table;
