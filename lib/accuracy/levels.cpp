@@ -134,7 +134,10 @@ void set_time(Setter& to, int level) {
   else
     to.set("Time/tolerance", std::max(most, 1e-13));
   to.lower("Time/iteration tolerance", most / 10);
-  to.lower("Steady/tolerance", most / 100);
+  if (to.has_section("Continuation"))
+    to.lower("Steady/tolerance", most / 100);
+  else if (to.has("Steady/tolerance"))  // not smaller: errors of a loose quadrature on a coarse mesh prevent smaller corrections
+    to.set("Steady/tolerance", most / 1000);
   to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
   to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));
 }

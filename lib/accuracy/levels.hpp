@@ -48,7 +48,8 @@ Level balanced(int k, double time, double quadrature);
 /// - Walls have 4n azimuthal elements if the deck has the default number, 24, and otherwise proportionally more or fewer.
 /// - `Time/tolerance` is 2e-3/4^level; a fixed step is halved per level, so that an error of second order also falls by a factor of 4.
 /// - `Quadrature/tolerance` equals `Time/tolerance`, but is at least 1e-6; rules with a fixed number of points have 2 more points per level.
-/// - Tolerances of solvers, and of searches for steady and periodic shapes, are lowered if they are too large for these two tolerances.
+/// - `Steady/tolerance` is `Time/tolerance`/1000, except for branches.
+/// - Other tolerances of solvers and searches are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 
 /// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh.

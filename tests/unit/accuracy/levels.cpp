@@ -31,6 +31,12 @@ TEST(Levels, RefineMeshAndTolerancesTogether) {
   EXPECT_FALSE(sets(plain, {0, 0, 0}, "Solvers/tolerance=1e-08"));  // tight enough
 }
 
+TEST(Levels, SearchesForSteadyShapesAreAsAccurateAsTheLevelExceptOnBranches) {
+  const Values search = with(plain, {{"Steady/tolerance", "1e-8"}}), branch = with(search, {{"Continuation/to", "0.1"}});
+  EXPECT_TRUE(sets(search, {0, 0, 0}, "Steady/tolerance=2e-06"));
+  EXPECT_FALSE(sets(branch, {0, 0, 0}, "Steady/tolerance=2e-06"));
+}
+
 TEST(Levels, ChangeOnePartAlone) {
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Surface/elements per side=4"));
   EXPECT_TRUE(sets(plain, {1, 3, 1}, "Time/tolerance=3.125e-05"));
