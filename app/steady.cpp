@@ -344,6 +344,7 @@ class SteadyRun {
   }
 
   int close() {
+    if (scene_.output.surface_text && failure_.empty()) results_.write_surface(system_->particle->picture(state_).surface);
     Account account;
     account.plan = chosen_;
     count();
