@@ -144,6 +144,12 @@ CapsuleJacobian::RateChange CapsuleJacobian::rate_change(const Net& dx, const Ne
   return interface_ ? velocity_change(dx, work) : RateChange{product({}, dx, -1, work), {}};
 }
 
+CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double shift, const Net& work) {
+  if (!interface_) return {product(dx, dx, shift, work), {}};
+  RateChange change = velocity_change(dx, work);
+  return {dx - shift * change.rate, std::move(change.slip)};
+}
+
 void CapsuleJacobian::prepare_step(double shift) {
   latest_shift_ = shift;
   if (area_) area_->factor(shift);
@@ -153,8 +159,7 @@ Net CapsuleJacobian::solve(double shift, const Net& rhs, double tolerance, const
   const Eigen::Index n = rhs.rows();
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, n, 3);
-    const Net changed = interface_ ? Net(delta - shift * velocity_change(delta, {}).rate) : product(delta, delta, shift, {});
-    Eigen::Map<Net>(out, n, 3) = changed - shift * secants(delta);
+    Eigen::Map<Net>(out, n, 3) = step_change(delta, shift, {}).rate - shift * secants(delta);
   };
   prepare_step(shift);
   const auto keep_area = [&](const double* in, double* out) { Eigen::Map<Net>(out, n, 3) = step_preconditioner(Eigen::Map<const Net>(in, n, 3)); };

@@ -132,22 +132,40 @@ Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.ja
 /// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the rate of change
 /// of the shape is multiplied by B (4.2), so that no linear system with B needs to be solved.
 Net CoupledMotion::right(const Net& delta, bool solved) {
-  Net load = Net::Zero(n_, 3);
-  std::vector<Eigen::VectorXd> values;
+  const FieldChange fields = field_change(delta);
   const Net dx = shape(delta);
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    const Block& block = blocks_[k];
-    values.push_back(block.on.field->value_change(block.rows.rows(dx), coefficients(delta, k)));
-    block.rows.rows(load) += block.on.field->load_change(block.rows.rows(dx), values.back());
-  }
   CapsuleJacobian& jacobian = capsule_.jacobian();
-  const CapsuleJacobian::RateChange change = solved ? jacobian.velocity_change(dx, load) : jacobian.rate_change(dx, load);
+  const CapsuleJacobian::RateChange change = solved ? jacobian.velocity_change(dx, fields.load) : jacobian.rate_change(dx, fields.load);
   Net result = with_shape(Net::Zero(rows_, 3), change.rate);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(result, k, field_rate(k, delta, fields, change.slip));
+  return result;
+}
+
+/// Returns left(delta) - shift right(delta), in which the layers are applied once.
+Net CoupledMotion::step(const Net& delta, double shift) {
+  const FieldChange fields = field_change(delta);
+  const CapsuleJacobian::RateChange change = capsule_.jacobian().step_change(shape(delta), shift, fields.load);
+  Net result = with_shape(delta, change.rate);
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    set_coefficients(result, k, coefficients(delta, k) - shift * field_rate(k, delta, fields, change.slip));
+  return result;
+}
+
+CoupledMotion::FieldChange CoupledMotion::field_change(const Net& delta) const {
+  FieldChange change{{}, Net::Zero(n_, 3)};
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
-    set_coefficients(result, k, block.on.field->rate_change(block.rows.rows(dx), values[k], rows_of(block.rows, change.slip)));
+    const Net dx = block.rows.rows(delta);
+    change.values.push_back(block.on.field->value_change(dx, coefficients(delta, k)));
+    block.rows.rows(change.load) += block.on.field->load_change(dx, change.values.back());
   }
-  return result;
+  return change;
+}
+
+/// Returns the change of the rate of field k. `slip`: change of the slip velocity of all particles; empty if no control points slide.
+Eigen::VectorXd CoupledMotion::field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const {
+  const Block& block = blocks_[k];
+  return block.on.field->rate_change(block.rows.rows(delta), fields.values[k], rows_of(block.rows, slip));
 }
 
 /// Solves (left - shift (right + secants)) delta = rhs for the change of state delta, with the operators left() and right().
@@ -155,7 +173,7 @@ Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const 
   capsule_.jacobian().prepare_step(shift);
   const auto apply = [&](const double* in, double* out) {
     const Net delta = Eigen::Map<const Net>(in, rows_, 3);
-    Eigen::Map<Net>(out, rows_, 3) = left(delta) - shift * (right(delta) + secants(delta));
+    Eigen::Map<Net>(out, rows_, 3) = step(delta, shift) - shift * secants(delta);
   };
   const auto precondition = [&](const double* in, double* out) {
     Net delta = Eigen::Map<const Net>(in, rows_, 3);

@@ -88,8 +88,16 @@ class CoupledMotion : public Dynamics {
     spline::Block rows;        // rows of the particle in the control net
     Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
   };
+  /// Changes of the coefficients of all fields, and of the work of their loads.
+  struct FieldChange {
+    std::vector<Eigen::VectorXd> values;
+    Net load;
+  };
+  FieldChange field_change(const Net& delta) const;
+  Eigen::VectorXd field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const;
   Net left(const Net& delta);
   Net right(const Net& delta, bool solved = false);
+  Net step(const Net& delta, double shift);
   Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);
 
