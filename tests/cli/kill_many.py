@@ -3,6 +3,7 @@
 # ranks: 2
 # Sixty-four capsules, killed at any moment, go on where their last checkpoint stands: to the last bit on as many processes, to rounding on others.
 # A third argument is the number of kills (20).
+import pathlib
 import random
 import signal
 import sys
@@ -40,6 +41,8 @@ def what_is_killed_goes_on():
         process.communicate()
         if process.returncode != -signal.SIGKILL:
             continue  # it was done
+        if not any(pathlib.Path(results).glob("snapshot_*.hdf")):
+            continue  # it had not begun
         time.sleep(1)  # mpirun is gone, its processes follow
         went_on = run("--resume", results, "--quiet", ranks=after, timeout=3600, code=None)
         check(went_on.returncode == 0, results, went_on.stderr)
