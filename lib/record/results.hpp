@@ -76,9 +76,9 @@ void check_vacant(const RunRequest& request);
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
-/// next: repeating the steps since then is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to its step
-/// are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are flushed.
-/// `run.hdf.series` is written for the first time after a second, or at the end of the run.
+/// next: repeating the steps since then is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to
+/// its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are
+/// flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
@@ -91,8 +91,8 @@ class Results {
   void remesh(const Body& body, const surface::BezierMap& map);
 
   /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the run is twice
-  /// as old as at the last write or one second older, but at intervals of at least fifty times the duration of a write. Sets the row on every rank to the values of the first rank, so that all
-  /// ranks take the same decisions.
+  /// as old as at the last write or one second older, but at intervals of at least fifty times the duration of a write. Sets the row on every rank
+  /// to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.

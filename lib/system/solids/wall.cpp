@@ -100,7 +100,8 @@ Wall::Wall(const surface::TubeWall& wall, const quadrature::Options& quadrature,
   if (cell_) layer_.repeat(*cell_, {.assembled = true});
   layer_.place(wall.net);
   if (wall.channel) boxes_.emplace(patches_.emplace(surface::BezierMap(wall.space), wall.net));
-  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall), quadrature.for_matrix());
+  on_itself_ = std::make_unique<stokes::Layer>(stokes::Layer::Kernel::single_layer, surface_.space, points_.target_sites(wall),
+                                               quadrature.for_matrix());
   if (cell_) on_itself_->repeat(*cell_, {.assembled = true});
   on_itself_->place(wall.net);
   if (cell_) find_pressure();
