@@ -329,6 +329,7 @@ class SteadyRun {
     system_->particle->store(checkpoint);
     for (int k = 0; const motion::Mode& mode : found_.modes) checkpoint.arrays["mode " + std::to_string(++k)] = mode.real;
     SurfacePicture picture = system_->particle->picture(state_);
+    if (scene_.output.surface_text) results_.write_surface(picture.surface);
     picture.fields = [this, of_shape = picture.fields](const output::Nodes& nodes) {
       std::vector<output::Field> fields = of_shape(nodes);
       int k = 0;
@@ -344,7 +345,6 @@ class SteadyRun {
   }
 
   int close() {
-    if (scene_.output.surface_text && failure_.empty()) results_.write_surface(system_->particle->picture(state_).surface);
     Account account;
     account.plan = chosen_;
     count();

@@ -127,17 +127,17 @@ void set_wall(Setter& to, const std::string& list, int level) {
   to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
 }
 
-void set_time(Setter& to, int level) {
-  const double most = tolerance(level);
+void set_time(Setter& to, const Level& level) {
+  const double most = tolerance(level.time);
   if (to.has("Time/fixed step"))
-    to.scale("Time/fixed step", std::pow(2., 2 - level));
+    to.scale("Time/fixed step", std::pow(2., 2 - level.time));
   else
     to.set("Time/tolerance", std::max(most, 1e-13));
   to.lower("Time/iteration tolerance", most / 10);
   if (to.has_section("Continuation"))
     to.lower("Steady/tolerance", most / 100);
-  else if (to.has("Steady/tolerance"))  // not smaller: errors of a loose quadrature on a coarse mesh prevent smaller corrections
-    to.set("Steady/tolerance", most / 1000);
+  else if (to.has("Steady/tolerance"))  // not smaller: errors of the quadrature prevent smaller corrections
+    to.set("Steady/tolerance", std::max({most, tolerance(level.quadrature), least_quadrature}) / 100);
   to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
   to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));
 }
@@ -182,7 +182,7 @@ std::vector<std::string> settings(const Values& deck, const Level& level) {
   for (const std::string& prefix : all) set_mesh(to, prefix, side_of(to, prefix) / finest, level.mesh);
   for (const char* list : {"Tube", "Channel"}) set_wall(to, list, level.mesh);
   to.scale_whole("Wall/elements per period", elements_per_side(level.mesh) / 6., 4, 200);
-  set_time(to, level.time);
+  set_time(to, level);
   set_quadrature(to, level.quadrature);
   return to.all;
 }

@@ -27,8 +27,9 @@ int elements_per_side(int level);
 /// Returns Time/tolerance at a level, 2e-3/4^level.
 double tolerance(int level);
 
-/// Returns the expected error of a level divided by the error of level 0, that of its mesh: (n/n_0)^-4.25 with n elements per side. A looser time
-/// integration or quadrature is assumed to contribute little. The exponent was fitted to 222 estimates in 28 scenes.
+/// Returns the expected error of a level divided by the error of level 0. It is taken to be the error of the mesh, (n/n_0)^-4.25 with n elements per
+/// side. A looser time integration or quadrature is assumed to contribute little. The exponent was fitted to 222 differences between levels in 28
+/// scenes.
 double expected_error(const Level& level);
 
 /// Factors by which one level reduces the errors of time integration and of quadrature. The time tolerance limits the local error of a step and falls
@@ -48,7 +49,8 @@ Level balanced(int k, double time, double quadrature);
 /// - Walls have 4n azimuthal elements if the deck has the default number, 24, and otherwise proportionally more or fewer.
 /// - `Time/tolerance` is 2e-3/4^level; a fixed step is halved per level, so that an error of second order also falls by a factor of 4.
 /// - `Quadrature/tolerance` equals `Time/tolerance`, but is at least 1e-6; rules with a fixed number of points have 2 more points per level.
-/// - `Steady/tolerance` is `Time/tolerance`/1000, except for branches.
+/// - `Steady/tolerance` is a hundredth of the larger of these two tolerances, even if the deck has a smaller value. On branches it is lowered to a
+///   hundredth of `Time/tolerance` if it is larger.
 /// - Other tolerances of solvers and searches are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 

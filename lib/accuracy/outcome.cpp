@@ -77,12 +77,14 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
 }
 
 /// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of
-/// a single series is not suitable, because a component may vanish by symmetry.
+/// a single series is not suitable, because a component may vanish by symmetry. Other series that are undefined at some times are left out, because
+/// they may be arbitrarily large at times next to these.
 double scale_of(const output::RunRecord& record, const std::string& series) {
   const auto one = std::ranges::find(record.series(), series, &output::Series::name);
   double most = 0;
   for (const output::Series& other : record.series())
-    if (one != record.series().end() && other.unit == one->unit && has_error(other.name))
+    if (one != record.series().end() && other.unit == one->unit && has_error(other.name) &&
+        (other.name == series || std::ranges::none_of(other.values, [](double value) { return std::isnan(value); })))
       most = std::max(most, magnitude(curve(record, other.name)));
   return most;
 }

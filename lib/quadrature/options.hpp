@@ -24,7 +24,7 @@ struct Options {
   /// `auto`, the leading growth rate of a capsule was wrong by 1 to 25 %.
   void choose_smooth_sums();
 
-  /// Returns options with a smaller tolerance, for the single-layer matrix of walls on themselves, which is assembled only once.
+  /// Returns options with a smaller tolerance, for single-layer matrices and integrals of walls, plates and posts that are computed only once.
   Options for_matrix() const;
 
   void declare(deck::Section& section);

@@ -218,12 +218,15 @@ void Results::record(Columns& row) {
   });
 }
 
-/// Writes `run.h5`, then the snapshots that wait.
+/// Writes `run.h5`, unless the file has all rows, then the snapshots that wait.
 void Results::write_files() {
-  const auto begun = Clock::now();
-  record_->write(durable());
-  const Clock::time_point now = Clock::now();
-  due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - start_, std::chrono::seconds(1)));
+  if (rows_written_ != record_->rows()) {
+    const auto begun = Clock::now();
+    record_->write(durable());
+    const Clock::time_point now = Clock::now();
+    due_ = now + std::max(50 * (now - begun), std::min<Clock::duration>(now - start_, std::chrono::seconds(1)));
+    rows_written_ = record_->rows();
+  }
   for (const auto& [step, bytes] : waiting_) output::write_whole(directory_ / output::snapshot_name(step), bytes, durable());
   waiting_.clear();
 }
@@ -251,7 +254,7 @@ void Results::save(output::Checkpoint checkpoint, const motion::State& state, co
     complete(checkpoint, state, totals, picture.time);
     waiting_.emplace_back(totals.step, output::snapshot_file(checkpoint, picture.mesh, picture.fields));
     series_->add(totals.step, picture.time);
-    if (last_saved_ >= 0 && young()) return;
+    if (last_saved_ >= 0 && young() && rows_written_ != record_->rows()) return;
     write_files();
     if (young()) return;
     output::sync(directory_);

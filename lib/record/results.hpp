@@ -76,9 +76,9 @@ void check_vacant(const RunRequest& request);
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
-/// next: repeating the steps since then is faster than writing `run.h5` for each of them. Afterwards, each snapshot and the rows of `run.h5` up to
-/// its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all its files are
-/// flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
+/// next: after a kill, repeating the last steps is faster than it would be to write `run.h5` for each snapshot. Afterwards, each snapshot and the
+/// rows of `run.h5` up to its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a
+/// second, all its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
@@ -149,6 +149,7 @@ class Results {
   std::filesystem::path directory_;
   std::optional<output::Occupation> occupation_;
   std::optional<output::RunRecord> record_;
+  std::size_t rows_written_ = 0;  // rows that this process has written to `run.h5`
   std::optional<output::SnapshotSeries> series_;
   std::optional<output::Nodes> nodes_;  // nodes of the snapshots
   std::vector<std::pair<int, std::string>> waiting_;  // steps and bytes of snapshots that are to be written

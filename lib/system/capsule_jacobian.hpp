@@ -43,7 +43,9 @@ class CapsuleJacobian {
   Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
   RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if control points slide along an interface
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
-  RateChange step_change(const Net& dx, double shift, const Net& work);  ///< returns left(dx) - shift rate_change(dx), applying each layer once
+  /// Returns left(dx) - shift rate_change(dx, work) as `rate`, and the change of the slip velocity, which is not multiplied by `shift`. Applies each
+  /// layer once if no control points slide.
+  RateChange step_change(const Net& dx, double shift, const Net& work);
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt
   Net step_preconditioner(const Net& r) const { return area_ ? area_->apply(r) : r; }  ///< approximate inverse of the matrix of `solve`

@@ -141,7 +141,7 @@ Net CoupledMotion::right(const Net& delta, bool solved) {
   return result;
 }
 
-/// Returns left(delta) - shift right(delta), in which the layers are applied once.
+/// Returns left(delta) - shift right(delta). If no control points slide, each layer is applied once.
 Net CoupledMotion::step(const Net& delta, double shift) {
   const FieldChange fields = field_change(delta);
   const CapsuleJacobian::RateChange change = capsule_.jacobian().step_change(shape(delta), shift, fields.load);

@@ -88,7 +88,7 @@ class CoupledMotion : public Dynamics {
     spline::Block rows;        // rows of the particle in the control net
     Eigen::SparseMatrix<double> symmetric;  // basis of symmetric coefficients; empty if the scene has no symmetry
   };
-  /// Changes of the coefficients of all fields, and of the work of their loads.
+  /// Changes of the values of all fields (Field::value_change), and of the virtual work of their loads.
   struct FieldChange {
     std::vector<Eigen::VectorXd> values;
     Net load;

@@ -133,11 +133,11 @@ def a_file_in_the_directory_of_results_stays():
 
 
 def the_final_shape_of_a_search_is_written_too():
-    search = "Tanktread: {Flow: {type: uniaxial extension}, %s Membrane: {law: surface tension, capillary number: 0.02}, Steady: {tolerance: 1.0e-5}}"
-    run(deck(search % "Surface: {elements per side: 3},"), "--output", "found", "--quiet", "--set", "Output/surface text=true")
-    run(deck(search % "Particle: {shape: file, file: found/surface.iga},"), "--output", "again", "--quiet")
-    # both end within Steady/tolerance of the same shape
-    close(series("found", "taylor_inertia")[-1], series("again", "taylor_inertia")[-1], 1e-4, "D of the shape that is found from the file")
+    scene = "Tanktread: {Flow: {type: uniaxial extension}, %s Membrane: {law: surface tension, capillary number: 0.02}, %s}"
+    run(deck(scene % ("Surface: {elements per side: 3},", "Steady: {tolerance: 1.0e-5}")), "--output", "found", "--quiet", "--set", "Output/surface text=true")
+    run(deck(scene % ("Particle: {shape: file, file: found/surface.iga},", "Time: {final time: 1.0e-3}")), "--output", "again", "--quiet")
+    # the same control points, summed in another order
+    close(series("again", "taylor_inertia")[0], series("found", "taylor_inertia")[-1], 1e-12, "D of the shape from the file")
 
 
 main()

@@ -41,9 +41,9 @@ def what_is_killed_goes_on():
         process.communicate()
         if process.returncode != -signal.SIGKILL:
             continue  # it was done
-        if not any(pathlib.Path(results).glob("snapshot_*.hdf")):
-            continue  # it had not begun
         time.sleep(1)  # mpirun is gone, its processes follow
+        if not any(pathlib.Path(results).glob("snapshot_*.hdf")):
+            continue  # it had no snapshot yet
         went_on = run("--resume", results, "--quiet", ranks=after, timeout=3600, code=None)
         check(went_on.returncode == 0, results, went_on.stderr)
         resumed += 1

@@ -57,7 +57,7 @@ def _last_checkpoint(results):
 
 
 def _kill_after(results, snapshots, *arguments):
-    """Starts a run and kills it when it has that many snapshots, which are written at once; its record is held back for a second."""
+    """Starts a run and kills it when it has that many snapshots, most of which wait for a while in the first second of a run."""
     _kill_when(lambda: len(list(pathlib.Path(results).glob("snapshot_*.hdf"))) >= snapshots, *arguments)
 
 

@@ -82,7 +82,7 @@ surface::Deformation deformation(const surface::Geometry& geometry, const FlowPl
                                  const coupling::Ranks& ranks);
 
 /// Returns S:E/(2 mu V E:E), where S is the stresslet of the row and E the symmetric part of the flow's gradient; 0 if the flow is not affine, and
-/// NaN if E is zero up to rounding. `flow`: flow at the time of the row.
+/// NaN if E is zero or the amplitude of the flow is zero up to rounding. `flow`: flow at the time of the row.
 double intrinsic_viscosity(const stokes::AmbientFlow& flow, double viscosity, const ParticleRow& now);
 
 /// Returns the row of a rigid body at x, which moves by `motion` and has turned by `turn`. `flow`: flow at the time of the row. Drag and torque are

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -33,8 +34,16 @@ TEST(Levels, RefineMeshAndTolerancesTogether) {
 
 TEST(Levels, SearchesForSteadyShapesAreAsAccurateAsTheLevelExceptOnBranches) {
   const Values search = with(plain, {{"Steady/tolerance", "1e-8"}}), branch = with(search, {{"Continuation/to", "0.1"}});
-  EXPECT_TRUE(sets(search, {0, 0, 0}, "Steady/tolerance=2e-06"));
-  EXPECT_FALSE(sets(branch, {0, 0, 0}, "Steady/tolerance=2e-06"));
+  EXPECT_TRUE(sets(search, {0, 0, 0}, "Steady/tolerance=2e-05"));
+  EXPECT_TRUE(sets(search, {4, 4, 2}, "Steady/tolerance=1.25e-06"));  // the quadrature of level 2 allows no smaller corrections
+  EXPECT_TRUE(sets(search, {9, 9, 9}, "Steady/tolerance=1e-08"));
+  for (const std::string& setting : settings(branch, {0, 0, 0})) EXPECT_FALSE(setting.starts_with("Steady/"));  // tight enough
+  EXPECT_TRUE(sets(branch, {7, 7, 7}, "Steady/tolerance=1.220703125e-09"));
+}
+
+TEST(Levels, AreExpectedToHaveTheErrorsOfTheirMeshes) {
+  EXPECT_DOUBLE_EQ(expected_error({}), 1);
+  EXPECT_NEAR(expected_error({5, 3, 7}), std::pow(4, -4.25), 1e-15);  // twelve elements per side instead of three
 }
 
 TEST(Levels, ChangeOnePartAlone) {

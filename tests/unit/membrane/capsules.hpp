@@ -75,8 +75,8 @@ double response_error(const L& law, double i1, double i2) {
                    std::abs(r.psi22 - (at(0, 1).psi2 - at(0, -1).psi2) / (2 * h))});
 }
 
-/// Returns the relative difference between the load along a direction and the gradient of the energy. Half of the direction is u and half the load
-/// itself, because the change of the energy along u alone may be so small that round-off of the energy hides it.
+/// Returns the relative difference between the load along a direction and the gradient of the energy. The direction is u plus the load scaled
+/// to the norm of u, because the change of the energy along u alone may be so small that round-off of the energy hides it.
 inline double gradient_error(const Membrane& membrane, const Net& x, const Net& u) {
   const Net load = membrane.load(x), along = u + u.norm() / load.norm() * load;
   return std::abs(inner(load, along) / difference([&](const Net& y) { return membrane.energy(y); }, x, along) - 1);
