@@ -127,6 +127,8 @@ void set_wall(Setter& to, const std::string& list, int level) {
   to.set_whole(list + "/flow elements", 16 * n, 8, 4000);
 }
 
+double quadrature_tolerance(int level) { return std::max(tolerance(level), least_quadrature); }
+
 void set_time(Setter& to, const Level& level) {
   const double most = tolerance(level.time);
   if (to.has("Time/fixed step"))
@@ -135,15 +137,15 @@ void set_time(Setter& to, const Level& level) {
     to.set("Time/tolerance", std::max(most, 1e-13));
   to.lower("Time/iteration tolerance", most / 10);
   if (to.has_section("Continuation"))
-    to.lower("Steady/tolerance", most / 100);
+    to.lower("Steady/tolerance", most / 100);  // not raised, because on a branch corrections of thirty times the tolerance count as converged
   else if (to.has("Steady/tolerance"))  // not smaller: errors of the quadrature prevent smaller corrections
-    to.set("Steady/tolerance", std::max({most, tolerance(level.quadrature), least_quadrature}) / 100);
+    to.set("Steady/tolerance", std::max(most, quadrature_tolerance(level.quadrature)) / 100);
   to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
   to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));
 }
 
 void set_quadrature(Setter& to, int level) {
-  const double most = std::max(tolerance(level), least_quadrature);
+  const double most = quadrature_tolerance(level);
   if (to.text("Quadrature/rule") == "adaptive")
     to.set("Quadrature/tolerance", most);
   else

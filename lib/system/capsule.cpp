@@ -252,8 +252,7 @@ Net Capsule::correction(double shift, const Net& defect, double tolerance, const
 
 Net Capsule::missed(const Net& change, const Net& delta, double shift) {
   const auto clock = phases_.time("implicit solve");
-  const Net changed = defect_spares_system() ? Net(change + jacobian_.left(delta) / shift) : jacobian_.left(change + delta / shift);
-  return changed - jacobian_.rate_change(delta, {}).rate;
+  return (defect_spares_system() ? change : jacobian_.left(change)) + jacobian_.step_change(delta, shift, {}).rate / shift;
 }
 
 void Capsule::improve_start(Net& y, const Net& before, double shift) {

@@ -140,10 +140,6 @@ CapsuleJacobian::RateChange CapsuleJacobian::velocity_change(const Net& dx, cons
   return {du, dv - du};
 }
 
-CapsuleJacobian::RateChange CapsuleJacobian::rate_change(const Net& dx, const Net& work) {
-  return interface_ ? velocity_change(dx, work) : RateChange{product({}, dx, -1, work), {}};
-}
-
 CapsuleJacobian::RateChange CapsuleJacobian::step_change(const Net& dx, double shift, const Net& work) {
   if (!interface_) return {product(dx, dx, shift, work), {}};
   RateChange change = velocity_change(dx, work);

@@ -20,9 +20,8 @@ namespace tanktread::coupling {
 /// bodies in J are 0, because their motion is not stiff. Calls are collective.
 class CapsuleJacobian {
  public:
-  /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: change of the velocity of the control points, or
-  /// B times this change; see rate_change() and velocity_change(). `slip`: change of the fluid velocity minus the velocity of the control points;
-  /// empty if no control points slide.
+  /// Changes due to a displacement dx and to additional loads with the virtual work `work`. `rate`: see velocity_change() and step_change(). `slip`:
+  /// change of the fluid velocity minus the velocity of the control points; empty if no control points slide along an interface.
   struct RateChange {
     Net rate, slip;
   };
@@ -41,10 +40,9 @@ class CapsuleJacobian {
 
   /// Returns B v, or v if control points slide along an interface.
   Net left(const Net& v) { return interface_ ? v : product(v, {}, 0, {}); }
-  RateChange rate_change(const Net& dx, const Net& work);      ///< returns B J dx as `rate`, or J dx if control points slide along an interface
   RateChange velocity_change(const Net& dx, const Net& work);  ///< returns J dx as `rate`
-  /// Returns left(dx) - shift rate_change(dx, work) as `rate`, and the change of the slip velocity, which is not multiplied by `shift`. Applies each
-  /// layer once if no control points slide.
+  /// Returns the left-hand side B (dx - shift J dx) of an implicit step as `rate`, or dx - shift J dx if control points slide. `slip` is not
+  /// multiplied by `shift`. Applies each layer once if no control points slide.
   RateChange step_change(const Net& dx, double shift, const Net& work);
 
   void prepare_step(double shift);  ///< prepares step_preconditioner() for implicit steps with this shift gamma dt

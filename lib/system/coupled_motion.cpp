@@ -129,19 +129,8 @@ void CoupledMotion::linearise(const Net& y) {
 /// Multiplies the change of shape in delta by the operator B of (4.2). Does not modify the changes of the fields.
 Net CoupledMotion::left(const Net& delta) { return with_shape(delta, capsule_.jacobian().left(shape(delta))); }
 
-/// Returns the product of the Jacobian J (4.33) with delta. If `solved` is false and no control points slide along an interface, the rate of change
-/// of the shape is multiplied by B (4.2), so that no linear system with B needs to be solved.
-Net CoupledMotion::right(const Net& delta, bool solved) {
-  const FieldChange fields = field_change(delta);
-  const Net dx = shape(delta);
-  CapsuleJacobian& jacobian = capsule_.jacobian();
-  const CapsuleJacobian::RateChange change = solved ? jacobian.velocity_change(dx, fields.load) : jacobian.rate_change(dx, fields.load);
-  Net result = with_shape(Net::Zero(rows_, 3), change.rate);
-  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(result, k, field_rate(k, delta, fields, change.slip));
-  return result;
-}
-
-/// Returns left(delta) - shift right(delta). If no control points slide, each layer is applied once.
+/// Returns the left-hand side of an implicit step, delta - shift J delta with the Jacobian J (4.33). If no control points slide along an interface,
+/// the rows of the shape are multiplied by B (4.2), so that no linear system with B needs to be solved, and each layer is applied once.
 Net CoupledMotion::step(const Net& delta, double shift) {
   const FieldChange fields = field_change(delta);
   const CapsuleJacobian::RateChange change = capsule_.jacobian().step_change(shape(delta), shift, fields.load);
@@ -168,7 +157,7 @@ Eigen::VectorXd CoupledMotion::field_rate(std::size_t k, const Net& delta, const
   return block.on.field->rate_change(block.rows.rows(delta), fields.values[k], rows_of(block.rows, slip));
 }
 
-/// Solves (left - shift (right + secants)) delta = rhs for the change of state delta, with the operators left() and right().
+/// Solves step(delta) - shift secants(delta) = rhs for the change of state delta.
 Net CoupledMotion::system(double shift, const Net& rhs, double tolerance, const Secants& secants) {
   capsule_.jacobian().prepare_step(shift);
   const auto apply = [&](const double* in, double* out) {
@@ -208,13 +197,17 @@ Net CoupledMotion::correction(double shift, const Net& defect, double tolerance,
 }
 
 Net CoupledMotion::missed(const Net& change, const Net& delta, double shift) {
-  return (defect_spares_system() ? Net(change + left(delta) / shift) : left(change + delta / shift)) - right(delta);
+  return (defect_spares_system() ? change : left(change)) + step(delta, shift) / shift;
 }
 
 Net CoupledMotion::derivative(const Net& y, const Net& v, const Net& delta) {
   if (!capsule_.has_frozen()) return difference(y, v, delta);
   linearise(y);
-  return symmetric(right(delta, true));
+  const FieldChange fields = field_change(delta);
+  const CapsuleJacobian::RateChange change = capsule_.jacobian().velocity_change(shape(delta), fields.load);
+  Net rate = with_shape(Net::Zero(rows_, 3), change.rate);
+  for (std::size_t k = 0; k < blocks_.size(); ++k) set_coefficients(rate, k, field_rate(k, delta, fields, change.slip));
+  return symmetric(std::move(rate));
 }
 
 Net CoupledMotion::mesh_motion(const Net& delta) {

@@ -96,7 +96,6 @@ class CoupledMotion : public Dynamics {
   FieldChange field_change(const Net& delta) const;
   Eigen::VectorXd field_rate(std::size_t k, const Net& delta, const FieldChange& fields, const Net& slip) const;
   Net left(const Net& delta);
-  Net right(const Net& delta, bool solved = false);
   Net step(const Net& delta, double shift);
   Net system(double shift, const Net& rhs, double tolerance, const Secants& secants);
   Net slip_at(const Net& x);
