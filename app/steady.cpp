@@ -20,6 +20,7 @@
 #include "record/plan.hpp"
 #include "record/results.hpp"
 #include "scene/searches.hpp"
+#include "scene/series/surface_fields.hpp"
 #include "scene/particles/particle_system.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
@@ -196,7 +197,8 @@ class SteadyRun {
       return systems_.front().second;
     }
     const auto clock = phases_.time("set-up");
-    auto made = std::make_shared<System>(request_.changed(settings_of(scene_.continuation, parameters)), ranks_, phases_, told_);
+    auto made = std::make_shared<System>(with_field_lengths_of(scene_, request_.changed(settings_of(scene_.continuation, parameters))), ranks_,
+                                         phases_, told_);
     if (mesh_) carry_to(*made, *mesh_);
     const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
     if (points != expected)

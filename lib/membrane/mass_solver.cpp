@@ -22,8 +22,21 @@ void MassSolver::factor(const Eigen::SparseMatrix<double>& m0) {
 }
 
 Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d) {
+  constexpr int all[] = {0, 1, 2};
+  return solve(s, d, all);
+}
+
+Eigen::VectorXd MassSolver::solve_scalar(const Eigen::SparseMatrix<double>& s, const Eigen::VectorXd& d) {
+  constexpr int first[] = {0};
+  Net columns = Net::Zero(d.size(), 3);
+  columns.col(0) = d;
+  return solve(s, columns, first).col(0);
+}
+
+/// Solves for some components of d. The other components must be zero.
+Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d, std::span<const int> components) {
   const Eigen::VectorXd scale = diagonal_.cwiseQuotient(s.diagonal()).cwiseSqrt();
-  const auto precondition = [&](const Net& r) { return Net(scale.asDiagonal() * reference_.solve(scale.asDiagonal() * r)); };
+  const auto precondition = [&](const Net& r) { return Net(scale.asDiagonal() * reference_.solve(scale.asDiagonal() * r, components)); };
   const Eigen::Array3d enough = residual_of_mass * residual_of_mass * column_products(d, d);
   Net f = precondition(d), r = d - s * f;
   Net direction = Net::Zero(d.rows(), 3);
@@ -41,7 +54,7 @@ Net MassSolver::solve(const Eigen::SparseMatrix<double>& s, const Net& d) {
   }
   iterations_ = 0;
   direct_.factor(s);
-  return direct_.solve(d);
+  return direct_.solve(d, components);
 }
 
 }  // namespace tanktread::membrane

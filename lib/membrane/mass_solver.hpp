@@ -1,6 +1,8 @@
 #pragma once
 // Linear systems with the mass matrices of a moving surface.
 
+#include <span>
+
 #include <Eigen/SparseCore>
 
 #include "base/types.hpp"
@@ -29,9 +31,14 @@ class MassSolver {
   /// Returns S^-1 d for the mass matrix S = s (3.6), to a relative residual of 1e-13 in each component.
   Net solve(const Eigen::SparseMatrix<double>& s, const Net& d);
 
+  /// Returns S^-1 d for a scalar field d, shape (N), on a surface without symmetry.
+  Eigen::VectorXd solve_scalar(const Eigen::SparseMatrix<double>& s, const Eigen::VectorXd& d);
+
   int iterations() const { return iterations_; }  ///< iterations of the last solve with a mass matrix S (3.6); 0 if S was factored
 
  private:
+  Net solve(const Eigen::SparseMatrix<double>& s, const Net& d, std::span<const int> components);
+
   SymmetricSolver reference_, direct_;
   Eigen::VectorXd diagonal_;  // diagonal of M0
   int iterations_ = 0;

@@ -51,9 +51,7 @@ std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, d
 
 void Surfactant::set_state(const Net& x, const Eigen::VectorXd& q) {
   x_ = x, q_ = q;
-  Net content = Net::Zero(x.rows(), 3);  // the solver requires three columns
-  content.col(0) = share_.cwiseProduct(q);
-  concentration_ = solver_.solve(mass_.update(x), content).col(0);
+  concentration_ = solver_.solve_scalar(mass_.update(x), share_.cwiseProduct(q));
   double largest = -INFINITY;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
     ElementPoints& at = elements_[e];

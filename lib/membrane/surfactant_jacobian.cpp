@@ -82,9 +82,7 @@ Eigen::VectorXd Surfactant::value_change(const Net& dx, const Eigen::VectorXd& d
     test(1, at.n, at.functions, at.value.data(), at.value.data(), spread, none, rows);
     add_rows(e, rows, content);
   });
-  Net columns = Net::Zero(space_.n_points, 3);  // the solver requires three columns
-  columns.col(0) = content;
-  return solver_.solve(known_mass_.update(known_x_), columns).col(0);
+  return solver_.solve_scalar(known_mass_.update(known_x_), content);
 }
 
 Net Surfactant::load_change(const Net& dx, const Eigen::VectorXd& dc) const {

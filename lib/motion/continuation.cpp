@@ -74,8 +74,8 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
 
-/// Finds the intersection of the branch with the plane through the point `predicted` that has this normal.
-std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal) {
+/// Finds the intersection of the branch with the plane through the point `predicted` that has this normal. `tolerance`: size of the last correction.
+std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal, double tolerance) {
   constexpr int most_rounds = 8, most_iterations = 80;
   constexpr double far = 4;  // largest distance of the solution from the predicted point, divided by the step
   Solved solved{predicted, 0, 0, 0};
@@ -108,15 +108,15 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     joined.topRows(from.x.rows()) = from.x;
     const coupling::FixedPoint solver(steady_.method, solvers_.nox, solvers_.of(solvers_.steady), coupling::FixedPoint::deep(joined.size()));
     const int most = std::min(steady_.iterations, most_iterations);
-    const coupling::NonlinearReport report = solver.solve(corrected, norm, steady_.tolerance, most, joined);
-    if (!report.converged && !(least < noise * steady_.tolerance)) return {};
+    const coupling::NonlinearReport report = solver.solve(corrected, norm, tolerance, most, joined);
+    if (!report.converged && !(least < noise * tolerance)) return {};
     solved.iterations = std::max(solved.iterations, report.converged ? report.iterations : 0);
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
     solved.rest = moved * turned;  // estimated error due to dG/dp, which is evaluated at `from`: the norm of the change of (x, p) from `from`, times
                                    // the change of p
-    if (solved.rest < steady_.tolerance) return solved;
+    if (solved.rest < tolerance) return solved;
   }
   return {};
 }
@@ -168,7 +168,7 @@ std::optional<Branch::Solved> Branch::stepped() {
     std::optional<double> asked = end_before(next);
     if (options_.method == "natural" && !asked) asked = next.q * unit_;
     if (!asked) {
-      auto solved = on_plane(next, t);
+      auto solved = on_plane(next, t, steady_.tolerance);
       if (!near(solved)) continue;
       asked = end_before(solved->place);
       if (!asked) {
@@ -197,7 +197,7 @@ void Branch::adapt() {
     const double size = length(t);
     t = {t.x / size, t.q / size};
     for (Solved& one : last_) {
-      auto solved = on_plane(one.place, t);
+      auto solved = on_plane(one.place, t, steady_.tolerance);
       if (!solved) solved = at_parameter(one.place.q * unit_, one.place.x);
       if (!solved) throw RunFailure("a steady shape of the branch was not found on the refined mesh");
       solved->s = one.s;
@@ -242,7 +242,7 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    unit_ = std::abs(parameter - start_) / std::max(change, 1e-12);
+    unit_ = std::abs(parameter - start_) / std::max(change, 0.01 * options_.largest_change);  // the parameter may not change the shape
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
     ahead_.front().first.place.q = start_ / unit_;
     solved->s = step_ = length(solved->place - last_.front().place);

@@ -100,7 +100,7 @@ class Branch {
   double inner(const Place& a, const Place& b) const;
   double length(const Place& a) const { return std::sqrt(inner(a, a)); }
   std::optional<Solved> at_parameter(double parameter, const Net& x);
-  std::optional<Solved> on_plane(const Place& predicted, const Place& normal);
+  std::optional<Solved> on_plane(const Place& predicted, const Place& normal, double tolerance);
   std::optional<Solved> stepped();
   Place predicted(const Place& t) const;
   void begin();

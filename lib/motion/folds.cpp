@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/LU>
@@ -11,34 +12,57 @@
 
 namespace tanktread::motion {
 
-/// Returns the fold near three consecutive points of the branch, or nothing if no fold is found.
+namespace {
+
+/// Parabola q(s) through three points of a branch, with s = 0 at the point in the middle.
+struct Parabola {
+  Eigen::Matrix3d inverse;
+  Eigen::Vector3d coefficients;
+
+  Parabola(const Eigen::Vector3d& s, const Eigen::Vector3d& q) {
+    Eigen::Matrix3d powers;
+    powers << Eigen::Vector3d::Ones(), s, s.cwiseAbs2();
+    inverse = powers.inverse();
+    coefficients = inverse * q;
+  }
+  double vertex() const { return -coefficients[1] / (2 * coefficients[2]); }
+  double value(double s) const { return coefficients.dot(Eigen::Vector3d(1, s, s * s)); }
+  /// Returns the weights of the three points in the parabola's value at s.
+  Eigen::RowVector3d weights(double s) const { return Eigen::RowVector3d(1, s, s * s) * inverse; }
+};
+
+}  // namespace
+
+/// Returns the fold near three consecutive points of the branch, or nothing if no fold is found. The fold is the vertex of the parabola through three
+/// points. One of them is replaced by a new point near the vertex until the parameter at the vertex changes by less than the tolerance. Then the
+/// branch is solved at the vertex. New points keep a distance from the others, because errors of points that are close together move the vertex.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
+  double before = std::numeric_limits<double>::quiet_NaN();
+  Place normal = three[2].place - three[0].place;
+  const double size = length(normal);
+  normal = {normal.x / size, normal.q / size};
   for (int k = 0; k < most; ++k) {
-    Eigen::Matrix3d powers;
-    Eigen::Vector3d q;
-    for (int i = 0; i < 3; ++i) {
-      const double s = three[i].s - three[1].s;
-      powers.row(i) << 1, s, s * s;
-      q[i] = three[i].place.q;
-    }
-    const Eigen::Matrix3d inverse = powers.inverse();
-    const Eigen::Vector3d parabola = inverse * q;
-    const double s = -parabola[1] / (2 * parabola[2]);
-    const Eigen::RowVector3d weights = Eigen::RowVector3d(1, s, s * s) * inverse;
+    const double middle = three[1].s, left = three[0].s - middle, right = three[2].s - middle;
+    const Parabola parabola({left, 0, right}, {three[0].place.q, three[1].place.q, three[2].place.q});
+    const double vertex = parabola.vertex(), q = parabola.value(vertex), allowed = options_.fold_tolerance * std::abs(q);
+    // At this distance from the vertex, the parameter differs by a sixteenth of the tolerance.
+    const double closest = std::sqrt(allowed / std::abs(parabola.coefficients[2])) / 4;
+    const double apart = std::max(closest, (right - left) / 8);
+    const auto nearest = [&](double s) { return std::ranges::min({left, 0., right}, {}, [&](double at) { return std::abs(s - at); }); };
+    double s = vertex;
+    if (const double near = nearest(vertex); std::abs(vertex - near) < apart) s = near + std::copysign(apart, vertex - near);
+    const bool crowded = std::abs(s - nearest(s)) < apart / 2, found = crowded || std::abs(q - before) < allowed;
+    if (found) s = vertex;
+    before = q;
+    const Eigen::RowVector3d weights = parabola.weights(s);
     Place predicted{Net::Zero(x_.rows(), 3), 0};
-    for (int i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[i]);
-    Place normal = three[2].place - three[0].place;
-    const double size = length(normal);
-    normal = {normal.x / size, normal.q / size};
-    auto solved = on_plane(predicted, normal);
+    for (std::size_t i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
+    auto solved = on_plane(predicted, normal, std::min(steady_.tolerance, allowed / 4));
     if (!solved) return {};
-    solved->s = three[1].s + s;
-    const double nearest = std::min({std::abs(solved->place.q - three[0].place.q), std::abs(solved->place.q - three[1].place.q),
-                                     std::abs(solved->place.q - three[2].place.q)});
-    if (nearest < options_.fold_tolerance * std::abs(solved->place.q)) return Fold{std::move(*solved), std::move(normal)};
-    const std::size_t farthest = std::abs(three[0].s - solved->s) > std::abs(three[2].s - solved->s) ? 0 : 2;
-    three[farthest] = std::move(*solved);
+    solved->s = middle + s;
+    if (found && (crowded || std::abs(solved->place.q - q) < allowed)) return Fold{std::move(*solved), std::move(normal)};
+    three[std::abs(left - vertex) > std::abs(right - vertex) ? 0 : 2] = std::move(*solved);
     std::ranges::sort(three, {}, &Solved::s);
   }
   return {};
@@ -50,7 +74,7 @@ std::optional<Branch::Fold> Branch::fold_near(const Place& expected, const Place
   Place from = expected;
   for (const int i : {0, 1, -1}) {
     const double s = 0.5 * i * options_.largest_change;
-    auto solved = on_plane(from.along(along, s), along);
+    auto solved = on_plane(from.along(along, s), along, steady_.tolerance);
     if (!solved) return {};
     if (i == 0) from = solved->place;
     solved->s = s;

@@ -76,6 +76,7 @@ struct ParticleKind {
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< true if the deck has the section Membrane
+  double field_length = 0;      ///< length by which values of surface fields are multiplied in a state of the motion; 0: R_C of the particle
 
   void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
                                                ///< Surface, Interface and Adaptation

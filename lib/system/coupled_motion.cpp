@@ -18,7 +18,8 @@ CoupledMotion::CoupledMotion(Capsule& capsule, std::vector<On> fields)
   for (const On& on : fields_) {
     const Particle& particle = capsule.particles()[on.particle];
     const Eigen::Index size = on.field->size();
-    blocks_.push_back({on, first, size, particle.radius * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block, {}});
+    const double length = on.length > 0 ? on.length : particle.radius;
+    blocks_.push_back({on, first, size, length * std::sqrt(particle.block.n_points / static_cast<double>(size)), particle.block, {}});
     if (capsule.symmetry().order() > 1) blocks_.back().symmetric = basis(blocks_.size() - 1, capsule.symmetry(), Vec3::Ones());
     first += size;
   }

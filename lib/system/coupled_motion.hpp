@@ -25,6 +25,7 @@ class CoupledMotion : public Dynamics {
   struct On {
     std::size_t particle;
     membrane::Field* field;
+    double length = 0;  ///< length by which the values of the field are multiplied in a state; 0: R_C of the particle
   };
 
   /// `capsule` and the fields must outlive this object.

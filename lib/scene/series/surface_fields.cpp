@@ -10,6 +10,13 @@
 
 namespace tanktread {
 
+Scene with_field_lengths_of(const Scene& first, Scene scene) {
+  const std::vector<Scene> alone = first.alone();
+  scene.field_length = alone.front().radius();
+  for (std::size_t p = 0; p < std::min(alone.size(), scene.particles.size()); ++p) scene.particles[p].field_length = alone[p].radius();
+  return scene;
+}
+
 SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsule& capsule) : members_(members), capsule_(capsule) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const Scene& scene = members[p].scene;
@@ -29,7 +36,7 @@ SurfaceFields::SurfaceFields(const std::vector<Member>& members, coupling::Capsu
   }
   if (all_.empty()) return;
   std::vector<coupling::CoupledMotion::On> on;
-  for (const One& one : all_) on.push_back({one.particle, one.field.get()});
+  for (const One& one : all_) on.push_back({one.particle, one.field.get(), members[one.particle].scene.field_length});
   motion_.emplace(capsule, std::move(on));
 }
 

@@ -25,6 +25,10 @@ struct SurfactantRow {
   void add_columns(Columns& to) const;
 };
 
+/// Returns the scene with the factors of field values in states (`field_length`) that the scene `first` has. States of one branch of steady shapes
+/// thus have the same meaning at all values of a parameter that changes R_C.
+Scene with_field_lengths_of(const Scene& first, Scene scene);
+
 /// Fields on the current meshes of all members. Without any field, states consist only of the control nets of the shapes, and this object stores
 /// nothing.
 class SurfaceFields {
