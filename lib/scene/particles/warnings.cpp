@@ -79,6 +79,8 @@ std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
     if (!sentence.empty() && fresh(warning)) sentences.push_back(warning.sentence);
   };
   add("choice", choice());
+  add("fields", fields());
+  add("snapshots", snapshots());
   add("compression", compression(signs));
   add("stiffness", stiffness(signs));
   add("fold", fold(signs));
@@ -100,6 +102,20 @@ std::string Warnings::choice() const {
     return "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as "
            "well";
   return {};
+}
+
+std::string Warnings::fields() const {
+  const auto forgets = [](const Scene& one) {
+    return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
+  };
+  if (!std::ranges::any_of(scene_.alone(), forgets)) return {};
+  return "surfactant and other surface fields start as in a new run: Particle/initial shape/run gives the shape only";
+}
+
+std::string Warnings::snapshots() const {
+  const double interval = scene_.snapshot_interval(), step = scene_.time.fixed_step.value_or(0);
+  if (scene_.lands_on_snapshots() || step <= interval * (1 + 1e-9)) return {};
+  return formatted("Time/fixed step %g is longer than Output/interval %g: each step has at most one snapshot", step, interval);
 }
 
 /// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave

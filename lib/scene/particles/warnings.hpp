@@ -56,6 +56,8 @@ class Warnings {
 
  private:
   std::string choice() const;
+  std::string fields() const;     ///< about surface fields that do not continue those of an earlier run
+  std::string snapshots() const;  ///< about snapshots that are left out
   std::string compression(const StepFindings& signs);
   std::string stiffness(const StepFindings& signs);
   std::string fold(const StepFindings& signs) const;
