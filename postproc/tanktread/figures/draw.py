@@ -106,7 +106,6 @@ def draw_sections(axis, runs, shots):
             axis.add_collection(LineCollection(section(rest, x2), colors=style.FAINT, linewidths=1, linestyles="-"))
         pieces = section(shot, x2)
         axis.add_collection(LineCollection(pieces, colors=color, linewidths=1.8, capstyle="round"))
-        middle = (pieces.min((0, 1)) + pieces.max((0, 1))) / 2
         name = f"{run.name}: " if len(runs) > 1 else ""
         if "taylor_inertia" not in run.series:  # a rigid particle
             axis.plot([], [], color=color, linewidth=1.8, label=f"{name}t = {shot.time:g}")
@@ -117,6 +116,7 @@ def draw_sections(axis, runs, shots):
             axis.plot([], [], color=color, linewidth=1.8, label=f"{name}t = {shot.time:g}, D = {deformation:.4f}")
             continue
         along = numpy.array([numpy.cos(numpy.radians(angle)), numpy.sin(numpy.radians(angle))])
+        middle = (pieces.min((0, 1)) + pieces.max((0, 1))) / 2
         reach = numpy.abs((pieces - middle) @ along).max()
         words = f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}"
         axis.plot(*(middle + numpy.outer([-reach, reach], along)).T,
