@@ -6,10 +6,9 @@ from matplotlib.cm import ScalarMappable
 
 from ..mistakes import expect
 from . import style
-from .draw import VIEW, draw_surface, draw_triad, view_axes
+from .draw import VIEW, draw_surface, draw_triad, middle, view_axes
 from .register import figure
 from .series import unbroken
-from .style import plt
 from .surfaces import field_of
 
 LEAST_WIDTH = 100  # pixels
@@ -38,10 +37,10 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     film = Film(axes, run, every, field, view, width * 2 // 3)
     if frame is not None:
         film.show(run.snapshot_at(frame).scaled(run))
-        return film.figure
-    film.figure.set_dpi(width / film.figure.get_figwidth())
-    film.figure.film = FuncAnimation(film.figure, film.show, frames=every)
-    film.figure.film.rate = rate
+    else:
+        film.figure.set_dpi(width / film.figure.get_figwidth())
+        film.figure.film = FuncAnimation(film.figure, film.show, frames=every)
+        film.figure.film.rate = rate
     return film.figure
 
 
@@ -54,11 +53,12 @@ class Film:
 
     def __init__(self, axes, run, shots, field, view, pixels):
         self.run, self.field, self.view, self.pixels = run, field, view, pixels
-        places = numpy.concatenate([shot.frame - middle(shot) for shot in shots]) @ view_axes(*view)[:2].T
-        self.window = places.min(0), places.max(0)
+        places = numpy.concatenate([shot.frame - middle(shot.frame) for shot in shots]) @ view_axes(*view)[:2].T
+        self.window = numpy.array([places.min(0), places.max(0)])
         self.norm, self.colours, pattern = field_of(shots, field)
         extent = self.window[1] - self.window[0]
-        with plt.rc_context({"figure.constrained_layout.use": False}):  # it would move the axes from frame to frame
+        # constrained layout would move the axes from frame to frame
+        with style.plt.rc_context({"figure.constrained_layout.use": False}):
             self.figure = style.canvas(axes, 7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1)
         height = self.figure.get_figheight()
         self.surface = self.figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
@@ -66,21 +66,20 @@ class Film:
         self.figure.colorbar(ScalarMappable(self.norm, self.colours), cax=bar, label=run.label(field, pattern))
         upper = self.figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
         self.panels = [upper, self.figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper)]
-        self.shown = shown(run)
         self.marks = self.draw_series()
 
     def draw_series(self):
-        marks = []
-        for axis, (label, names), color in zip(self.panels, self.shown.items(), style.RUNS):
+        """Draws the series, and returns {name: mark of the present value}."""
+        marks = {}
+        for axis, (label, names), color in zip(self.panels, shown(self.run).items(), style.RUNS):
+            width, size = (1.8, 4.5) if len(names) < 9 else (0.6, 1.5)
             for name in names:
-                values = self.run.series[name]
-                drawn = unbroken(self.run.time, values) if name == "inclination" else (self.run.time, values)
-                axis.plot(*drawn, color=color, linewidth=1.8 if len(names) < 9 else 0.6, drawstyle="steps-post"
-                          if name == "n_control_points" else "default")
-                marks.append(axis.plot([], [], "o", color=style.INK, markersize=4.5 if len(names) < 9 else 1.5,
-                                       clip_on=False)[0])
+                drawn = self.run.time, self.run.series[name]
+                axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=color, linewidth=width,
+                          drawstyle="steps-post" if name == "n_control_points" else "default")
+                marks[name], = axis.plot([], [], "o", color=style.INK, markersize=size, clip_on=False)
             axis.set_ylabel(label)
-            values = numpy.concatenate([self.run.series[name][~numpy.isnan(self.run.series[name])] for name in names])
+            values = numpy.concatenate([self.run.defined(name)[1] for name in names])
             if len(values) and values.min() >= 0:
                 axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
         self.panels[0].tick_params(labelbottom=False)
@@ -88,22 +87,19 @@ class Film:
         return marks
 
     def show(self, shot):
+        view, series = view_axes(*self.view), self.run.series
         self.surface.clear()
-        draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view, pixels=self.pixels,
-                     triad=False)
-        middle_seen = view_axes(*self.view)[:2] @ middle(shot)
-        room = 0.11 * (self.window[1] - self.window[0])[0]
-        (left, low), (right, high) = self.window + middle_seen
-        draw_triad(self.surface, view_axes(*self.view), numpy.array([left, right, low, high]))
-        self.surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room))
+        draw_surface(self.surface, shot, self.field, self.norm, self.colours, *self.view, self.pixels, triad=False)
+        (left, low), (right, high) = self.window + view[:2] @ middle(shot.frame)
+        room = 0.11 * numpy.ptp(self.window[:, 0])
+        draw_triad(self.surface, view, numpy.array([left, right, low, high]))
         # of this saved step, the last one if none came after
-        row = numpy.searchsorted(self.run.series["time"], shot.time * (1 - 1e-12))
-        row = min(row, len(self.run.time) - 1)
-        self.surface.set_title(f"{self.run.name}, t = {shot.time:.4g}: {self.run.series['n_control_points'][row]:.0f} "
-                               "control points")
-        for mark, name in zip(self.marks, (name for names in self.shown.values() for name in names)):
-            mark.set_data([self.run.time[row]], [self.run.series[name][row]])
-        return self.marks
+        row = min(numpy.searchsorted(series["time"], shot.time * (1 - 1e-12)), len(series["time"]) - 1)
+        title = f"{self.run.name}, t = {shot.time:.4g}: {series['n_control_points'][row]:.0f} control points"
+        self.surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room), title=title)
+        for name, mark in self.marks.items():
+            mark.set_data([self.run.time[row]], [series[name][row]])
+        return list(self.marks.values())
 
 
 def shown(run):
@@ -113,7 +109,3 @@ def shown(run):
         return DEFORMABLE if "taylor_inertia" in run.series else RIGID | {rate: ["angular_velocity_x2"]}
     deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
     return ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}
-
-
-def middle(shot):
-    return (shot.frame.min(0) + shot.frame.max(0)) / 2

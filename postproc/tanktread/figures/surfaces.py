@@ -6,7 +6,7 @@ from matplotlib.cm import ScalarMappable
 from ..mistakes import expect, log
 from ..results import field_label
 from . import style
-from .draw import VIEW, draw_sections, draw_surface, magnitude, scale, section_variation, share_window, view_axes
+from .draw import VIEW, draw_sections, draw_surface, magnitude, middle, scale, section_variation, share_window, view_axes
 from .register import figure
 
 
@@ -28,15 +28,14 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
     view: azimuth and elevation of the eye, in degrees"""
     shots = [run.snapshot_at(time).scaled(run) for run in runs]
     norm, colours, pattern = field_of(shots, field)
-    n = len(runs)
-    figure, axes = style.panels(axes, 1, n + 1, 4.4 * n + 4.6, 4.4)
+    figure, axes = style.panels(axes, 1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
     figure.colorbar(ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
                     orientation="horizontal", label=label)
-    draw_sections(axes[n], runs, shots)
+    draw_sections(axes[-1], runs, shots)
     return figure
 
 
@@ -56,35 +55,33 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         pairs = [(run, times[-1] if times else end) for run in runs]
     else:
         pairs = [(runs[0], moment) for moment in times or [0, end / 2, end]]
-    shots = [(run, run.snapshot_at(moment).scaled(run)) for run, moment in pairs]
-    norm, colours, pattern = field_of([shot for _, shot in shots], field)
-    seen = numpy.concatenate([(shot.points - (shot.points.min(0) + shot.points.max(0)) / 2) @ view_axes(*view)[:2].T
-                              for _, shot in shots])
+    shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
+    norm, colours, pattern = field_of(shots, field)
+    seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
     tall = 1.15 * numpy.ptp(seen[:, 1]) / numpy.ptp(seen[:, 0])
     figure = style.canvas(axes, 4 * len(shots), 4 * tall + 5.2)
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
-    surfaces, tops = [], []
-    for k, (run, shot) in enumerate(shots):
-        surfaces.append(figure.add_subplot(grid[0, k]))
-        draw_surface(surfaces[-1], shot, field, norm, colours, *view)
+    surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
+                             for k in range(len(shots))])
+    for (run, _), shot, surface in zip(pairs, shots, surfaces):
+        draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
-        surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
-        polar = figure.add_subplot(grid[2, k], projection="polar")
-        tops.append((draw_variation(polar, shot, field), polar))
+        surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
     share_window(surfaces)
-    for _, polar in tops:
-        polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
+    reach = max([draw_variation(polar, shot, field) for polar, shot in zip(polars, shots)])
+    for polar in polars:
+        polar.set_ylim(0, 1.05 * reach)
     figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
 
 
 def draw_variation(axis, shot, field):
-    """Returns how far out it reaches."""
+    """Draws the variation of a field along the section, and returns the largest."""
     angle, variation = section_variation(shot, field)
-    closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
-    axis.plot(closed, numpy.append(variation, variation[0]), color=style.RUNS[0], linewidth=1)
+    axis.plot(numpy.append(angle, angle[0] + 2 * numpy.pi), numpy.append(variation, variation[0]),
+              color=style.RUNS[0], linewidth=1)
     axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
     axis.set_rlabel_position(55)
     axis.tick_params(labelsize=7.5)
