@@ -1,14 +1,13 @@
 """Figures of drops with surfactant, and of vesicles at rest."""
 
 import numpy
-from matplotlib.collections import LineCollection
 
 from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study
 from ..runs import run as run_of
 from . import style
-from .draw import section
+from .draw import draw_pieces, section
 from .register import figure
 from .vesicles import Energy, at_rest
 
@@ -19,31 +18,27 @@ def surfactant(runs, axes=None):
 
     A clean drop among the runs is drawn for comparison."""
     figure, (cut, along, deformation, extremes) = style.panels(axes, 2, 2, 7.2, 5.6)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         last = run.snapshot_at(None)
-        pieces = section(last, last.points[:, 1].mean()) / run.radius
-        cut.add_collection(LineCollection(pieces, colors=color, linewidths=1.4, capstyle="round"))
+        draw_pieces(cut, section(last, last.points[:, 1].mean()) / run.radius, color, 1.4)
         deformation.plot(run.time, run.series["taylor_inertia"], color=color, label=run.name)
         line = f"{run.name}: D = {run.series['taylor_inertia'][-1]:.6f}"
         if "surfactant_mass" in run.series:
             order = numpy.argsort(last.points[:, 2])
             along.plot(last.points[order, 2] / run.radius, last.fields["concentration"][order], ".", color=color,
                        markersize=2)
-            smallest, largest = (run.series[f"{name}_concentration"] for name in ("smallest", "largest"))
+            smallest, largest, mass = (run.series[name] for name in ("smallest_concentration", "largest_concentration",
+                                                                     "surfactant_mass"))
             extremes.plot(run.time, largest, color=color)
-            extremes.plot(run.time, smallest, color=color, linestyle=(0, (4, 2)))
-            mass = run.series["surfactant_mass"]
+            extremes.plot(run.time, smallest, color=color, linestyle=style.DASHES)
             line += (f", concentration from {smallest[-1]:.5f} to {largest[-1]:.5f}, "
                      f"mass kept to {abs(mass / mass[0] - 1).max():.1e}")
         log.info(line)
     cut.autoscale()
     cut.set(aspect="equal", xlabel="$x_1$ / R$_C$", ylabel="$x_3$ / R$_C$")
     along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
-    deformation.set_ylabel("D")
-    deformation.legend()
-    extremes.set_ylabel("largest, smallest concentration")
-    for axis in deformation, extremes:
-        axis.set_xlabel(time_label(runs))
+    style.finish(deformation, xlabel=time_label(runs), ylabel="D")
+    extremes.set(xlabel=time_label(runs), ylabel="largest, smallest concentration")
     return figure
 
 
@@ -58,30 +53,33 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
     meshes: elements per side of further runs"""
     run = run_of(deck)
-    series = run.series
-    outline, energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])
-    log.info(f"{run.name}: energy {series['energy'][-1]:.9g}, relative error {series['energy'][-1] / energy - 1:.1e}")
+    outline, energy, error = least(run)
+    log.info(f"{run.name}: energy {run.series['energy'][-1]:.9g}, relative error {error:.1e}")
     figure, axes = style.panels(axes, 1, 3 if meshes else 2, 10 if meshes else 7, 3.2)
     last = run.snapshot_at(None)
-    middle = last.points.mean(0)
-    axes[0].add_collection(LineCollection(section(last, middle[1]) - middle[[0, 2]], colors=style.RUNS[0],
-                                          linewidths=1.6))
+    centre = last.points.mean(0)
+    draw_pieces(axes[0], section(last, centre[1]) - centre[[0, 2]], style.RUNS[0], ends="butt")
     for side in (-1, 1):
-        axes[0].plot(side * outline[0], outline[1], color=style.FAINT, linestyle=(0, (4, 3)), linewidth=1)
+        axes[0].plot(side * outline[0], outline[1], linewidth=1, **style.GUIDE)
     length = run.in_units("length")
     axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
-    axes[1].semilogy(run.time, abs(series["energy"] - energy), color=style.RUNS[0])
+    axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])
     axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|" + run.in_units("force length"))
     if meshes:
         points, error, seconds = numpy.array(list(errors(deck, meshes, "results/vesicles"))).T
         for row in zip(points, error, seconds):
             log.info("control points {:.0f}: relative error {:.2e}, {:.2g} processor seconds".format(*row))
         axes[2].loglog(points, abs(error), "o-", color=style.RUNS[0], label="fixed meshes")
-        axes[2].loglog(points, abs(error[0]) * (points / points[0]) ** -2, color=style.FAINT, linestyle=(0, (4, 3)),
-                       label="fourth order")
-        axes[2].set(xlabel="control points", ylabel="relative error of the energy")
-        axes[2].legend()
+        axes[2].loglog(points, abs(error[0]) * (points / points[0]) ** -2, label="fourth order", **style.GUIDE)
+        style.finish(axes[2], xlabel="control points", ylabel="relative error of the energy")
     return figure
+
+
+def least(run):
+    """Returns the section and the energy of the axisymmetric shape at rest, and the relative error of the run's
+    energy."""
+    outline, energy = at_rest(Energy(run), run.series["length_x3"][-1] / run.series["length_x1"][-1])
+    return outline, energy, run.series["energy"][-1] / energy - 1
 
 
 def errors(path, meshes, output):
@@ -90,6 +88,4 @@ def errors(path, meshes, output):
     for n in meshes:
         outcome = runs.run(path, {"Surface/elements per side": n})
         expect(outcome.done, outcome.message)
-        run, series = outcome.run, outcome.series
-        energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])[1]
-        yield series["n_control_points"][-1], series["energy"][-1] / energy - 1, outcome.processor_seconds
+        yield outcome.series["n_control_points"][-1], least(outcome.run)[2], outcome.processor_seconds

@@ -16,9 +16,9 @@ class Shape:
     a surface, by complex numbers too."""
 
     def __init__(self, degree):
-        self.bases = [numpy.array([legendre.legval(COSINE, legendre.legder(numpy.eye(l + 1)[l], order))
-                                   if l >= order else 0 * COSINE
-                                   for l in range(0, degree + 1, 2)]).T for order in (0, 1, 2)]
+        even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
+        self.bases = [numpy.array([(one.deriv(order) if order else one)(COSINE) for one in even]).T
+                      for order in (0, 1, 2)]
         self.size = degree // 2 + 1
 
     def measures(self, c):
@@ -42,25 +42,23 @@ class Energy:
     """Of a run's membrane, a function of the measures, and its derivatives by them."""
 
     def __init__(self, run):
-        def of(key, default=0.0):
-            return float(run.value(f"Membrane/{key}", default))
-
-        expect(run.value("Membrane/law", "") == "surface tension"
-               and run.value("Membrane/bending reference", "") == "flat",
-                     f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
+        expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),
+               f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
         expect(run.summary, f"{run.name} has not come to its end")
         last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
         expect(abs(last[0] / last[1] - 1) < ROUND,
-                     f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
-                     "axisymmetric about x3")
-        expect(run.value("Flow/type", "") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
+               f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
+               "axisymmetric about x3")
+        expect(run.value("Flow/type") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
         numbers = run.summary["numbers"]
         self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
-        names = "surface tension", "bending modulus", "spontaneous curvature"
-        self.tension, self.bending, self.curvature = (of(name) for name in names)
-        self.of_area = of("global area dilatation") * self.tension / self.area
-        self.of_leaves = numpy.pi * of("area difference modulus") * self.bending / self.area
-        self.leaves = of("area difference") * 4 * numpy.sqrt(numpy.pi * self.area)
+        names = ("surface tension", "bending modulus", "spontaneous curvature", "global area dilatation",
+                 "area difference modulus", "area difference")
+        self.tension, self.bending, self.curvature, dilatation, modulus, leaves = (
+            float(run.value(f"Membrane/{name}", 0)) for name in names)
+        self.of_area = dilatation * self.tension / self.area
+        self.of_leaves = numpy.pi * modulus * self.bending / self.area
+        self.leaves = leaves * 4 * numpy.sqrt(numpy.pi * self.area)
         expect(self.of_leaves == 0 or self.leaves > 0, f"{run.name}: give Membrane/area difference")
 
     def __call__(self, measures):
