@@ -1,22 +1,25 @@
 """An axisymmetric neo-Hookean membrane at rest that closes a round constriction without friction."""
 
 import numpy
+import scipy.integrate
 
 from ..mistakes import Mistake, expect
 
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
 
 
+def of_flow(run):
+    """Returns viscosity times mean velocity."""
+    return run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0)
+
+
 def capillary_number(run):
-    told, viscosity, velocity = (run.value(key) for key in ("Membrane/capillary number", "Flow/viscosity",
-                                                            "Flow/mean velocity"))
-    return told or (viscosity or 1.0) * (velocity or 1.0) / run.value("Membrane/shear modulus")
+    return run.value("Membrane/capillary number") or of_flow(run) / run.value("Membrane/shear modulus")
 
 
 def drop_of_velocity(run):
     """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
-    viscosity, velocity = run.value("Flow/viscosity", 1.0), run.value("Flow/mean velocity", 1.0)
-    return run.series["channel_pressure_drop"][0] / (viscosity * velocity)
+    return run.series["channel_pressure_drop"][0] / of_flow(run)
 
 
 def highest(way, pressure):
@@ -27,9 +30,11 @@ def highest(way, pressure):
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
 
 
-def hessians(gradient, at):
-    """Returns the derivatives (n, 4, 4) of a gradient (n, 4), exact to round-off (complex step)."""
-    return numpy.stack([gradient(at + 1e-30j * one).imag / 1e-30 for one in numpy.eye(4)], axis=2)
+def derivatives(function, at):
+    """Returns the derivatives (..., k) of a function (...) by each of k numbers, which are the last axis of `at`, exact
+    to round-off (complex step)."""
+    steps = 1e-30j * numpy.eye(at.shape[-1])
+    return numpy.stack([function(at + step).imag / 1e-30 for step in steps], axis=-1)
 
 
 class Pushed:
@@ -42,7 +47,8 @@ class Pushed:
         self.radius = radius or run.value("Particle/radius", 1.0)
         unstressed = self.radius / (1 + run.value("Membrane/pre-inflation", 0.0))
         angle = numpy.linspace(0, numpy.pi, n + 1)
-        x, r = -unstressed * numpy.cos(angle), unstressed * numpy.sin(angle)
+        self.sphere = numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)  # of radius 1
+        x, r = unstressed * self.sphere.T
         self.length, self.ring = numpy.hypot(numpy.diff(x), numpy.diff(r)), (r[1:] + r[:-1]) / 2
         self.area = 2 * numpy.pi * self.ring * self.length
         self.share = (numpy.append(self.area, 0) + numpy.append(0, self.area)) / 2
@@ -53,16 +59,14 @@ class Pushed:
 
     def wall(self, x):
         """Returns the radius of the wall at x and its first two derivatives."""
-        k, inside = numpy.pi / self.width, numpy.abs(x) < self.width
-        half = self.mouth * self.depth / 2
-        return (self.mouth - inside * half * (1 + numpy.cos(k * x)), inside * half * k * numpy.sin(k * x),
-                inside * half * k * k * numpy.cos(k * x))
+        k, half = numpy.pi / self.width, (numpy.abs(x) < self.width) * self.mouth * self.depth / 2
+        return self.mouth - half * (1 + numpy.cos(k * x)), half * k * numpy.sin(k * x), half * k * k * numpy.cos(k * x)
 
     def by_energy(self, ends):
         """Returns the gradient (cones, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed
         area of each cone by the coordinates x, r of its two rings (cones, 4)."""
         d = ends[:, 2:] - ends[:, :2]
-        length = numpy.sqrt((d**2).sum(1))
+        length = numpy.sqrt((d**2).sum(1))  # of complex numbers too
         s, t = length / self.length, (ends[:, 1] + ends[:, 3]) / (2 * self.ring)
         by_s = numpy.hstack([-d, d]) / (length * self.length)[:, None]
         by_t = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
@@ -82,9 +86,7 @@ class Pushed:
 
     def channel(self, x):
         """Returns the volume of the channel from the mouth to x."""
-        places, weights = numpy.polynomial.legendre.leggauss(20)
-        at = -self.width + (x + self.width) * (places + 1) / 2
-        return numpy.pi * (x + self.width) / 2 * (weights @ self.wall(at)[0]**2)
+        return scipy.integrate.fixed_quad(lambda at: numpy.pi * self.wall(at)[0] ** 2, -self.width, x, n=20)[0]
 
     def behind(self, x, r, closed):
         """Returns the volume of the fluid behind the ring that closes the channel."""
@@ -94,26 +96,24 @@ class Pushed:
         """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
         coordinates, the volume, and gap and push of the wall at each ring."""
         x, r = z.T
-        size = z.size
-        gradient, matrix = numpy.zeros((3, size)), numpy.zeros((3, size, size))
+        gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
         before = -1.0 * (numpy.arange(self.n) < closed)[:, None]
         ends = numpy.hstack([z[:-1], z[1:]])
         rows, columns = numpy.broadcast_arrays(self.numbers[:, :, None], self.numbers[:, None, :])
         for k, by in enumerate((self.by_energy, self.by_volumes, lambda ends: before * self.by_volumes(ends))):
             numpy.add.at(gradient[k], self.numbers, by(ends))
-            numpy.add.at(matrix[k], (rows, columns), hessians(by, ends))
+            numpy.add.at(matrix[k], (rows, columns), derivatives(by, ends))
         w, dw, ddw = self.wall(x)
         gradient[2][2 * closed] += numpy.pi * w[closed]**2
         matrix[2][2 * closed, 2 * closed] += 2 * numpy.pi * w[closed] * dw[closed]
         gap = w - r
         push, stiff = BARRIER * self.share / gap, BARRIER * self.share / gap**2
         i = 2 * numpy.arange(self.n + 1)
-        gradient[0][i] -= push * dw
-        gradient[0][i + 1] += push
+        gradient[0] += numpy.column_stack([-push * dw, push]).ravel()
         matrix[0][i, i] += stiff * dw**2 - push * ddw
         matrix[0][i + 1, i + 1] += stiff
-        matrix[0][i, i + 1] -= stiff * dw
-        matrix[0][i + 1, i] -= stiff * dw
+        for row, column in (i, i + 1), (i + 1, i):
+            matrix[0][row, column] -= stiff * dw
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], self.volumes(x, r).sum(), gap, push
 
     def rest(self, z, pressures, closed, behind):
@@ -143,13 +143,11 @@ class Pushed:
 
     def through(self):
         """Returns centroids (m,) from the first touch to the throat, and the pressure drops (m,) there."""
-        angle = numpy.linspace(0, numpy.pi, self.n + 1)
-        z = self.radius * numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)
+        z = self.radius * self.sphere
         places = numpy.linspace(-self.width - self.radius, 0, 4000)
-        near = (x for x in places if (self.wall(z[:, 0] + x)[0] - z[:, 1]).min() < 0.005 * self.radius)
-        touch = next(near, None)
-        expect(touch is not None, "the particle does not touch the wall of the constriction")
-        z[:, 0] += touch
+        near = (self.wall(z[:, 0] + places[:, None])[0] - z[:, 1]).min(axis=1) < 0.005 * self.radius
+        expect(near.any(), "the particle does not touch the wall of the constriction")
+        z[:, 0] += places[near.argmax()]
         closed = numpy.argmin((self.wall(z[:, 0])[0] - z[:, 1])[1:-1]) + 1
         pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume
         found = []

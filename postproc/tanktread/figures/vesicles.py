@@ -5,6 +5,7 @@ from numpy.polynomial import legendre
 from scipy import optimize
 
 from ..mistakes import expect, log
+from .pushed import derivatives
 
 DEGREES = 16, 30, 40  # of the polynomials; each solution starts from that of the degree before
 ROUND = 1e-2  # by which the extents across the axis may differ
@@ -33,9 +34,8 @@ class Shape:
         return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
 
     def gradients(self, c):
-        """Returns the derivatives of the measures by the coefficients, shape (4, size), exact to round-off (complex
-        step)."""
-        return numpy.array([self.measures(c + 1e-30j * one).imag / 1e-30 for one in numpy.eye(self.size)]).T
+        """Returns the derivatives of the measures by the coefficients, shape (4, size)."""
+        return derivatives(self.measures, c)
 
 
 class Energy:
@@ -68,9 +68,7 @@ class Energy:
                 + self.bending * (bent - self.curvature * leaves + self.curvature**2 / 2 * area))
 
     def by_measures(self, measures):
-        area, _, leaves, _ = measures
-        return numpy.array([self.tension + self.of_area * (area - self.area) + self.bending * self.curvature**2 / 2, 0,
-                            self.of_leaves * (leaves - self.leaves) - self.bending * self.curvature, self.bending])
+        return derivatives(self, measures)
 
 
 @numpy.errstate(all="ignore")  # trial shapes of the search may overflow
@@ -102,6 +100,5 @@ def at_rest(energy, aspect):
                f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
         c, pressure = solved.x[:-1], solved.x[-1]
         values.append(energy(now.measures(c)))
-    r, sine = numpy.exp(now.bases[0] @ c), numpy.sqrt(1 - COSINE**2)
     log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
-    return numpy.array([r * sine, r * COSINE]), values[-1]
+    return numpy.exp(now.bases[0] @ c) * [numpy.sqrt(1 - COSINE**2), COSINE], values[-1]
