@@ -3,15 +3,13 @@
 from typing import Literal
 
 import numpy
-from matplotlib.collections import LineCollection
 
 from ..files import arrays_of
 from ..mistakes import expect, log
 from . import style
-from .draw import section
+from .draw import draw_pieces, middle, section
 from .pushed import Pushed, capillary_number, drop_of_velocity, highest
 from .register import figure
-from .style import plt
 
 
 @figure
@@ -30,8 +28,9 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
     else:
         figure, axes = style.panels(axes, 5, 1, 10.5, 9.5)
         panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
-    cut_open(panels["cut"], run, c, shapes, across - 1)
-    along_the_way(panels, run, c)
+    way = way_along(run, c)
+    cut_open(panels["cut"], run, c, way, shapes, across - 1)
+    along_the_way(panels, run, c, way)
     panels["wall"].plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
     panels["wall"].set(xlabel="arc length along the centre line" + run.in_units("length"),
                        title="shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
@@ -47,61 +46,47 @@ def way_along(run, c):
     return c["s"][nearest] + numpy.sum((places - c["centre"][nearest]) * along, axis=1)
 
 
-def cut_open(axis, run, c, n, across):
+def cut_open(axis, run, c, way, n, across):
     bent = numpy.ptp(c["centre"][:, 1]) > 0
     across = 2 if bent else across  # in its plane
+    up = 3 - across
     lines = c["wall"][2:] if across == 1 else c["wall"][:2]
-    for line in lines:
-        axis.plot(line[:, 0], line[:, 2 if across == 1 else 1], color=style.INK, linewidth=1.6)
-    way, reach = way_along(run, c), run.series["length_x1"].max()
-    shots, labelled = {}, []  # places of the times
-    for x in numpy.linspace(way[0], way[-1], n):
-        shot = run.snapshot_at(numpy.interp(x, way, run.series["time"]))
-        shots[shot.path] = shot
-    for shot, colour in zip(shots.values(), plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))):
-        middle = (shot.points.min(0) + shot.points.max(0)) / 2
-        axis.add_collection(LineCollection(section(shot, middle[across], across), colors=[colour], linewidths=1.6,
-                                           capstyle="round"))
-        at = middle[:2] if bent else (middle[0], lines[:, :, 1:].min() * 0.97)
-        if any(numpy.hypot(*numpy.subtract(at, other)) < reach / 8 for other in labelled):
-            continue
-        labelled.append(at)
-        axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
-    axis.set_aspect("equal")
+    axis.plot(lines[:, :, 0].T, lines[:, :, up].T, color=style.INK, linewidth=1.6)
+    reach, labelled = run.series["length_x1"].max(), []  # places of the times
+    shots = [run.snapshot_at(numpy.interp(x, way, run.series["time"])) for x in numpy.linspace(way[0], way[-1], n)]
+    for shot, colour in style.shaded({shot.path: shot for shot in shots}.values()):
+        centre = middle(shot.points)
+        draw_pieces(axis, section(shot, centre[across], across), colour)
+        at = centre[:2] if bent else (centre[0], lines[:, :, 1:].min() * 0.97)
+        if all(numpy.hypot(*numpy.subtract(at, other)) >= reach / 8 for other in labelled):
+            labelled.append(at)
+            axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
     axis.grid(False)
     shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
-    axis.set_xlim(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0))
+    axis.set(aspect="equal", xlim=(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0)),
+             xlabel="x₁" + run.in_units("length"), ylabel=("x₂", "x₃")[up - 1] + run.in_units("length"),
+             title=f"{run.name}: cut open at x{across + 1} = centroid; times "
+                   f"{'inside' if bent else 'below'}{run.in_units('time')}")
     if bent:
         axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
-    axis.set_xlabel("x₁" + run.in_units("length"))
-    axis.set_ylabel(("x₃" if across == 1 else "x₂") + run.in_units("length"))
-    axis.set_title(f"{run.name}: cut open at x{across + 1} = centroid; times "
-                   f"{'inside' if bent else 'below'}{run.in_units('time')}")
 
 
-def along_the_way(axes, run, c):
-    s, way = run.series, way_along(run, c)
+def along_the_way(panels, run, c, way):
+    s, label = run.series, "arc length of the centroid along the centre line" + run.in_units("length")
+    extents, velocity, pressure = panels["extents"], panels["velocity"], panels["pressure"]
+    for k, color, line in zip((1, 2, 3), style.RUNS, ("-", "-", "--")):
+        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label="along x" + " ₁₂₃"[k])
+    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
     speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
-    for k, name in enumerate(("x₁", "x₂", "x₃"), 1):
-        axes["extents"].plot(way, s[f"length_x{k}"], color=style.RUNS[k - 1], label=f"along {name}", linestyle="--"
-                             if k == 3 else "-")
-    axes["extents"].legend()
-    axes["extents"].set_title("extents of the particle" + run.in_units("length"))
-    axes["velocity"].plot(way, speed, color=style.RUNS[0], label="of the centroid")
-    axes["velocity"].plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
-                          label="on the centre line, empty channel")
-    axes["velocity"].set_xlim(way.min(), way.max())
-    axes["velocity"].legend()
-    axes["velocity"].set_title("velocity" + run.in_units("length/time"))
-    axes["pressure"].plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
+                  label="on the centre line, empty channel")
+    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
+    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
     if "pressure_drop_by_flux" in s:
-        axes["pressure"].plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":",
-                              label="by the flow rate")
-    axes["pressure"].legend()
-    added = f"pressure drop that the particle adds{run.in_units('force/length^2')}"
-    axes["pressure"].set_title(f"{added} (empty channel: {c['pressure_drop']:.5g})")
-    for name in "extents", "velocity", "pressure":
-        axes[name].set_xlabel("arc length of the centroid along the centre line" + run.in_units("length"))
+        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
+    style.finish(pressure, xlabel=label, title=f"pressure drop that the particle adds{run.in_units('force/length^2')} "
+                                               f"(empty channel: {c['pressure_drop']:.5g})")
 
 
 @figure
@@ -125,7 +110,7 @@ def stuck(runs, axes=None, *, elements: int = 160):
              f"pressure drop {largest:.5g} G_s / length")
     figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
     upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         x, ca, speed = run.series["centroid_x1"], capillary_number(run), run.series["velocity_x1"]
         near = x > way[0] - 0.2
         expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
@@ -135,8 +120,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
         lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
         log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
                  f"smallest film {run.series['gap'].min():.4g}")
-    upper.set(ylim=(0, None), ylabel="Ca")
-    upper.legend()
-    lower.set(yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
-    lower.legend()
+    style.finish(upper, ylim=(0, None), ylabel="Ca")
+    style.finish(lower, yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
     return figure
