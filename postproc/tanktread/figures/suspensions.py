@@ -25,17 +25,15 @@ def rheology(runs, axes=None):
     [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
     particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
         lower.plot(run.time, n1, color=color, label="N₁" if run is runs[0] else None)
-        lower.plot(run.time, n2, color=color, linestyle=(0, (4, 2)), label="N₂" if run is runs[0] else None)
+        lower.plot(run.time, n2, color=color, linestyle=style.DASHES, label="N₂" if run is runs[0] else None)
         log.info(f"{run.name}, t = {run.time[-1]:g}: [η] = {viscosity[-1]:.5f}, N1 = {n1[-1]:.5f}, N2 = {n2[-1]:.5f}")
-    upper.set_ylabel("intrinsic viscosity [η]")
-    upper.legend()
+    style.finish(upper, ylabel="intrinsic viscosity [η]")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set(ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
-    lower.legend()
+    style.finish(lower, ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
     return figure
 
 
@@ -59,25 +57,21 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     from_: strain at which averages begin
     blocks: number of parts of an average"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         strain, words = run.time, []
-        label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
-        for name, symbol in SERIES.items():
-            values, is_upper = run.series[name], name == "relative_viscosity"
-            axis, line = (upper, "-") if is_upper else (lower, "-" if name.endswith("1") else "--")
-            axis.plot(strain, values, color=color, linestyle=line,
-                      label=label if is_upper else symbol if run is runs[0] else None)
-            mean, error = average(strain, values, from_, blocks)
+        labels = [f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}",
+                  *(("N₁", "N₂") if run is runs[0] else (None, None))]
+        for (name, symbol), axis, line, label in zip(SERIES.items(), (upper, lower, lower), ("-", "-", "--"), labels):
+            axis.plot(strain, run.series[name], color=color, linestyle=line, label=label)
+            mean, error = average(strain, run.series[name], from_, blocks)
             if numpy.isfinite(mean):
                 axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
             words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
         log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
-    upper.set_ylabel("effective viscosity μ_eff/μ")
-    upper.legend()
+    style.finish(upper, ylabel="effective viscosity μ_eff/μ")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
-    lower.set(ylabel="normal stress differences" + stress, xlabel="strain")
-    lower.legend()
+    style.finish(lower, ylabel="normal stress differences" + stress, xlabel="strain")
     return figure
 
 
@@ -117,8 +111,9 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
             rows.setdefault(settings[CA], []).append(row)
     expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
-    for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
-        alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
+    deck = next(one for one in runs.outcomes if one.done).run.deck
+    for (ca, found), color in style.coloured(rows.items()):
+        alone = intrinsic(made, single, ca, deck)
         fraction, mean, error = numpy.array(sorted(found)).T
         look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
         upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
@@ -131,8 +126,7 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
                                                    cov="unscaled")
             log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
                      f"one capsule: {alone:.4f}")
-    upper.set_ylabel("relative viscosity μ_eff/μ")
-    upper.legend()
+    style.finish(upper, ylabel="relative viscosity μ_eff/μ")
     lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
     return figure
 
@@ -152,9 +146,8 @@ def averages(outcome, first, blocks):
     return (series["volume_fraction"][0], *average(strain, series["relative_viscosity"], first, blocks))
 
 
-def intrinsic(study, single, ca, one):
-    """Returns [η] of one capsule, on the mesh and to the strain of the suspension's run `one`."""
-    deck = one.run.deck
+def intrinsic(study, single, ca, deck):
+    """Returns [η] of one capsule, on the mesh and to the strain of a suspension's deck."""
     outcome = study.run(single, {
         "Membrane/capillary number": ca, "Time/final time": deck["Time"]["final time"],
         "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]})
@@ -174,26 +167,24 @@ def drift(run, axes=None, *, from_: int = 10):
     stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]
-    expect(phase[-1] / 360 >= from_ + 3,
-           f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {from_} on needs {from_ + 3}: "
-           "a later Time/final time, or --from an earlier one")
+    made = phase[-1] / 360
+    expect(made >= from_ + 3, f"{run.directory} has {max(made, 0):.1f} turns; a line from turn {from_} on needs "
+                              f"{from_ + 3}: a later Time/final time, or --from an earlier one")
     figure, axes = style.panels(axes, len(DRIFTS), 1, 6.4, 7.6, sharex=True)
-    log.info(f"{phase[-1] / 360:.1f} turns, {len(time)} steps; "
+    log.info(f"{made:.1f} turns, {len(time)} steps; "
              f"the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
-    for (name, label), plot in zip(DRIFTS.items(), axes):
+    for (name, label), axis in zip(DRIFTS.items(), axes):
         values = run.series[name][flows]
         means = turns(time, values, phase)
-        scale = {"area": values[0], "energy": means.mean()}.get(name)
-        if scale:
+        if scale := {"area": values[0], "energy": means.mean()}.get(name):
             values, means = values / scale - 1, means / scale - 1
         change, error = line(means, from_)
         later, within = means[from_:], values[(phase > 360 * from_) & ~numpy.isnan(values)]
-        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; "
-                 f"their means {later.min():.6g} to {later.max():.6g}, "
-                 f"within turns {within.min():.6g} to {within.max():.6g}")
-        plot.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
-        plot.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
-        plot.set_ylabel(label, fontsize=8)
+        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; their means {later.min():.6g} "
+                 f"to {later.max():.6g}, within turns {within.min():.6g} to {within.max():.6g}")
+        axis.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
+        axis.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
+        axis.set_ylabel(label, fontsize=8)
     axes[-1].set_xlabel("turns of the membrane")
     energy = run.series["energy"][run.series["time"] >= rest]
     if len(energy) > 1:
