@@ -3,7 +3,7 @@
 import numpy
 import scipy.integrate
 
-from ..mistakes import Mistake, expect
+from ..mistakes import expect
 
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
 
@@ -38,8 +38,7 @@ def derivatives(function, at):
 
 
 class Pushed:
-    """The membrane as cones between rings: x and r of each, from the rear to the front; in units of the shear
-    modulus."""
+    """The membrane as n cones between rings `z` (n + 1, 2) (x, r) from the rear to the front; unit: shear modulus."""
 
     def __init__(self, run, n, radius=None):
         self.mouth, self.depth = run.value("Channel/radius", 1.0), run.value("Channel/depth", 0.5)
@@ -53,14 +52,26 @@ class Pushed:
         self.area = 2 * numpy.pi * self.ring * self.length
         self.share = (numpy.append(self.area, 0) + numpy.append(0, self.area)) / 2
         self.n, self.volume = n, 4 / 3 * numpy.pi * self.radius**3
-        free = numpy.arange(2 * n + 2).reshape(n + 1, 2)
-        self.numbers = numpy.hstack([free[:-1], free[1:]])  # of the four of each cone
-        self.loose = numpy.setdiff1d(free.ravel(), free[[0, -1], 1])  # the poles stay on the axis
+        self.rings = numpy.arange(2 * n + 2).reshape(n + 1, 2)  # numbers of the coordinates of each ring
+        self.numbers = numpy.hstack([self.rings[:-1], self.rings[1:]])  # of the four of each cone
+        self.loose = numpy.setdiff1d(self.rings, self.rings[[0, -1], 1])  # the poles stay on the axis
 
     def wall(self, x):
-        """Returns the radius of the wall at x and its first two derivatives."""
+        """Returns the radius of the wall at x and its derivative."""
         k, half = numpy.pi / self.width, (numpy.abs(x) < self.width) * self.mouth * self.depth / 2
-        return self.mouth - half * (1 + numpy.cos(k * x)), half * k * numpy.sin(k * x), half * k * k * numpy.cos(k * x)
+        return self.mouth - half * (1 + numpy.cos(k * x)), half * k * numpy.sin(k * x)
+
+    def gap(self, z):
+        """Returns the distance from the wall, along r, of each ring (n + 1, 2)."""
+        return self.wall(z[:, 0])[0] - z[:, 1]
+
+    def push(self, z):
+        """Returns the force of the wall on each ring."""
+        return BARRIER * self.share / self.gap(z)
+
+    def by_barrier(self, z):
+        """Returns the gradient (n + 1, 2) of the energy by which the membrane keeps off the wall."""
+        return self.push(z)[:, None] * numpy.column_stack([-self.wall(z[:, 0])[1], numpy.ones(len(z))])
 
     def by_energy(self, ends):
         """Returns the gradient (cones, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed
@@ -94,51 +105,39 @@ class Pushed:
 
     def system(self, z, closed):
         """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
-        coordinates, the volume, and gap and push of the wall at each ring."""
-        x, r = z.T
+        coordinates."""
         gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
-        before = -1.0 * (numpy.arange(self.n) < closed)[:, None]
-        ends = numpy.hstack([z[:-1], z[1:]])
-        rows, columns = numpy.broadcast_arrays(self.numbers[:, :, None], self.numbers[:, None, :])
-        for k, by in enumerate((self.by_energy, self.by_volumes, lambda ends: before * self.by_volumes(ends))):
-            numpy.add.at(gradient[k], self.numbers, by(ends))
-            numpy.add.at(matrix[k], (rows, columns), derivatives(by, ends))
-        w, dw, ddw = self.wall(x)
-        gradient[2][2 * closed] += numpy.pi * w[closed]**2
-        matrix[2][2 * closed, 2 * closed] += 2 * numpy.pi * w[closed] * dw[closed]
-        gap = w - r
-        push, stiff = BARRIER * self.share / gap, BARRIER * self.share / gap**2
-        i = 2 * numpy.arange(self.n + 1)
-        gradient[0] += numpy.column_stack([-push * dw, push]).ravel()
-        matrix[0][i, i] += stiff * dw**2 - push * ddw
-        matrix[0][i + 1, i + 1] += stiff
-        for row, column in (i, i + 1), (i + 1, i):
-            matrix[0][row, column] -= stiff * dw
-        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], self.volumes(x, r).sum(), gap, push
+        ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
+        cones, rings = self.numbers, self.rings
+        for k, by, numbers, at in ((0, self.by_energy, cones, ends), (0, self.by_barrier, rings, z),
+                                   (1, self.by_volumes, cones, ends),
+                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind]),
+                                   (2, lambda x: numpy.pi * self.wall(x)[0]**2, rings[ring, :1], z[ring, :1])):
+            numpy.add.at(gradient[k], numbers, by(at))
+            numpy.add.at(matrix[k], (numbers[:, :, None], numbers[:, None, :]), derivatives(by, at))
+        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
 
     def rest(self, z, pressures, closed, behind):
         """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
         Newton's method; None if it is not found."""
         z, pressures, n = z.copy(), pressures.copy(), self.loose.size
         for _ in range(60):
-            gradient, matrix, volume, gap, _ = self.system(z, closed)
-            residual = numpy.concatenate([gradient[0] - pressures @ gradient[1:],
-                                          [volume - self.volume, self.behind(*z.T, closed) - behind]])
+            gradient, matrix = self.system(z, closed)
+            residual = numpy.append(gradient[0] - pressures @ gradient[1:],
+                                    [self.volumes(*z.T).sum() - self.volume, self.behind(*z.T, closed) - behind])
             if abs(residual).max() < 1e-10:
                 return z, pressures
-            whole = numpy.zeros((n + 2, n + 2))
-            whole[:n, :n] = matrix[0] - numpy.tensordot(pressures, matrix[1:], 1)
-            whole[:n, n:], whole[n:, :n] = -gradient[1:].T, gradient[1:]
+            whole = numpy.block([[matrix[0] - numpy.tensordot(pressures, matrix[1:], 1), -gradient[1:].T],
+                                 [gradient[1:], numpy.zeros((2, 2))]])
             step = -numpy.linalg.solve(whole, residual)
             part = min(1, 0.05 / abs(step[:n]).max())
             while part > 1e-6:
-                trial = z.ravel().copy()
-                trial[self.loose] += part * step[:n]
-                x, r = trial.reshape(-1, 2).T
-                if (self.wall(x)[0] - r > 0.1 * gap)[1:-1].all() and (r[1:-1] > 0).all():
+                trial = z.copy()
+                trial.flat[self.loose] += part * step[:n]
+                if (self.gap(trial) > 0.1 * self.gap(z))[1:-1].all() and (trial[1:-1, 1] > 0).all():
                     break
                 part *= 0.7
-            z, pressures = trial.reshape(-1, 2), pressures + part * step[n:]
+            z, pressures = trial, pressures + part * step[n:]
         return None
 
     def through(self):
@@ -148,25 +147,21 @@ class Pushed:
         near = (self.wall(z[:, 0] + places[:, None])[0] - z[:, 1]).min(axis=1) < 0.005 * self.radius
         expect(near.any(), "the particle does not touch the wall of the constriction")
         z[:, 0] += places[near.argmax()]
-        closed = numpy.argmin((self.wall(z[:, 0])[0] - z[:, 1])[1:-1]) + 1
+        closed = numpy.argmin(self.gap(z)[1:-1]) + 1
         pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume
-        found = []
-        while True:
+        found: list = []
+        while not found or found[-1][0] <= 0:
             rest = self.rest(z, pressures, closed, behind)
             if rest is None:
                 step /= 2
                 behind -= step
-                if step < 1e-5 * self.volume:
-                    raise Mistake("the membrane at rest was not found; change --elements")
+                expect(step >= 1e-5 * self.volume, "the membrane at rest was not found; change --elements")
                 continue
             z, pressures = rest
-            gradient, _, _, _, push = self.system(z, closed)
-            volume = self.volumes(*z.T)
-            centroid = volume @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
+            centroid = self.volumes(*z.T) @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
             found.append((centroid, pressures[1]))
-            if centroid > 0:
-                return numpy.array(found).T
             area = 2 * numpy.pi * z[:, 1] * numpy.hypot(*numpy.gradient(z, axis=0).T)
-            on_wall = push / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
+            on_wall = self.push(z) / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
             moved = numpy.argmax(on_wall[2:-2]) + 2
             behind, closed = behind + self.behind(*z.T, moved) - self.behind(*z.T, closed) + step, moved
+        return numpy.array(found).T
