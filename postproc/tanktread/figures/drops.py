@@ -1,6 +1,8 @@
-"""Figures of drops with surfactant, and of vesicles at rest."""
+"""Figures of drops with surfactant, and of vesicles at rest beside axisymmetric ones by Legendre polynomials."""
 
 import numpy
+from numpy.polynomial import legendre
+from scipy import optimize
 
 from ..mistakes import expect, log
 from ..results import time_label
@@ -8,8 +10,12 @@ from ..runs import Study
 from ..runs import run as run_of
 from . import style
 from .draw import draw_pieces, section
+from .pushed import derivatives
 from .register import figure
-from .vesicles import Energy, at_rest
+
+DEGREES = 16, 30, 40  # of the polynomials; each solution starts from that of the degree before
+ROUND = 1e-2  # by which the extents across the axis may differ
+COSINE, WEIGHT = legendre.leggauss(400)
 
 
 @figure
@@ -89,3 +95,95 @@ def errors(path, meshes, output):
         outcome = runs.run(path, {"Surface/elements per side": n})
         expect(outcome.done, outcome.message)
         yield outcome.series["n_control_points"][-1], least(outcome.run)[2], outcome.processor_seconds
+
+
+class Shape:
+    """exp(sum c_k P_2k): values, first and second derivatives of the polynomials at the points, and what is measured of
+    a surface, by complex numbers too."""
+
+    def __init__(self, degree):
+        even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
+        self.bases = [numpy.array([(one.deriv(order) if order else one)(COSINE) for one in even]).T
+                      for order in (0, 1, 2)]
+        self.size = degree // 2 + 1
+
+    def measures(self, c):
+        """Returns area, volume, the integral of twice the mean curvature, and half the integral of its square: shape
+        (4,)."""
+        _, first, second = (basis @ c for basis in self.bases)
+        r, sine2 = numpy.exp(self.bases[0] @ c), 1 - COSINE**2
+        slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
+        g = numpy.sqrt(r**2 + slope2)
+        curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
+        ring = 2 * numpy.pi * WEIGHT * r * g
+        return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
+
+    def gradients(self, c):
+        """Returns the derivatives of the measures by the coefficients, shape (4, size)."""
+        return derivatives(self.measures, c)
+
+
+class Energy:
+    """Of a run's membrane, a function of the measures, and its derivatives by them."""
+
+    def __init__(self, run):
+        expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),
+               f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
+        expect(run.summary, f"{run.name} has not come to its end")
+        last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
+        expect(abs(last[0] / last[1] - 1) < ROUND,
+               f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
+               "axisymmetric about x3")
+        expect(run.value("Flow/type") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
+        numbers = run.summary["numbers"]
+        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
+        names = ("surface tension", "bending modulus", "spontaneous curvature", "global area dilatation",
+                 "area difference modulus", "area difference")
+        self.tension, self.bending, self.curvature, dilatation, modulus, leaves = (
+            float(run.value(f"Membrane/{name}", 0)) for name in names)
+        self.of_area = dilatation * self.tension / self.area
+        self.of_leaves = numpy.pi * modulus * self.bending / self.area
+        self.leaves = leaves * 4 * numpy.sqrt(numpy.pi * self.area)
+        expect(self.of_leaves == 0 or self.leaves > 0, f"{run.name}: give Membrane/area difference")
+
+    def __call__(self, measures):
+        area, _, leaves, bent = measures
+        return (self.tension * area + self.of_area / 2 * (area - self.area) ** 2
+                + self.of_leaves / 2 * (leaves - self.leaves) ** 2
+                + self.bending * (bent - self.curvature * leaves + self.curvature**2 / 2 * area))
+
+    def by_measures(self, measures):
+        return derivatives(self, measures)
+
+
+@numpy.errstate(all="ignore")  # trial shapes of the search may overflow
+def at_rest(energy, aspect):
+    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid whose
+    axis is `aspect` times its equator."""
+    first = Shape(DEGREES[0])
+    logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
+    c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])
+    c[0] += numpy.log(energy.volume / first.measures(c)[1]) / 3
+    found = optimize.minimize(lambda c: energy(first.measures(c)), c,
+                              jac=lambda c: energy.by_measures(first.measures(c)) @ first.gradients(c), method="SLSQP",
+                              constraints={"type": "eq", "fun": lambda c: first.measures(c)[1] / energy.volume - 1,
+                                           "jac": lambda c: first.gradients(c)[1] / energy.volume},
+                              options={"maxiter": 500, "ftol": 1e-12})
+    c, values = found.x, []
+    slopes = first.gradients(c)
+    pressure = energy.by_measures(first.measures(c)) @ slopes @ slopes[1] / (slopes[1] @ slopes[1])
+    for degree in DEGREES[1:]:
+        now = Shape(degree)
+
+        def balance(y):
+            gradients, measures = now.gradients(y[:-1]), now.measures(y[:-1])
+            return numpy.append(energy.by_measures(measures) @ gradients - y[-1] * gradients[1],
+                                measures[1] - energy.volume)
+
+        solved = optimize.root(balance, numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure), tol=1e-13)
+        expect(abs(solved.fun).max() < 1e-8 * energy.bending,
+               f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
+        c, pressure = solved.x[:-1], solved.x[-1]
+        values.append(energy(now.measures(c)))
+    log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
+    return numpy.exp(now.bases[0] @ c) * [numpy.sqrt(1 - COSINE**2), COSINE], values[-1]

@@ -1,11 +1,49 @@
-"""An axisymmetric neo-Hookean membrane at rest that closes a round constriction without friction."""
+"""Whether a capsule passes a constriction, and an axisymmetric membrane at rest that closes it without friction."""
 
 import numpy
 import scipy.integrate
 
-from ..mistakes import expect
+from ..mistakes import expect, log
+from . import style
+from .register import figure
 
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
+
+
+@figure
+def stuck(runs, axes=None, *, elements: int = 160):
+    """Whether a capsule passes a round constriction at a given pressure drop: runs, and the drop without friction.
+
+    Without friction an axisymmetric neo-Hookean membrane touches the wall and closes the channel, at rest. Its largest
+    pressure drop, over that of the empty channel at the mean velocity V, gives the critical Ca of any viscosity ratio.
+    The runs are drawn with the positions that they came to, and their velocities there.
+
+    elements: elements of the membrane, from pole to pole"""
+    first = runs[0]
+    needed = {"Channel/profile": "constriction", "Channel/section": "circle", "Membrane/law": "neo-Hookean",
+              "Particle/shape": "sphere"}
+    for key, wanted in needed.items():
+        expect(first.value(key) == wanted, f"{key} must be {wanted}, but is {first.value(key)}")
+    drop = drop_of_velocity(first)
+    way, pressure = Pushed(first, elements).through()
+    largest, there = highest(way, pressure)
+    log.info(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, "
+             f"pressure drop {largest:.5g} G_s / length")
+    figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
+    upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
+    for run, color in style.coloured(runs):
+        x, ca, speed = run.series["centroid_x1"], capillary_number(run), run.series["velocity_x1"]
+        near = x > way[0] - 0.2
+        expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
+        upper.plot(x[near], numpy.full(near.sum(), ca), color=color)
+        upper.plot(x[-1], ca, "o", color=color, markersize=4)
+        label = f"Ca = {ca:g}, {run.value('Flow/held', 'flow rate')} held"
+        lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
+        log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
+                 f"smallest film {run.series['gap'].min():.4g}")
+    style.finish(upper, ylim=(0, None), ylabel="Ca")
+    style.finish(lower, yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
+    return figure
 
 
 def of_flow(run):
