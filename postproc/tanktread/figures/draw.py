@@ -1,8 +1,9 @@
 """Drawing of surfaces, and of their sections, on axes."""
 
+import itertools
+
 import numpy
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 
 from . import render, style
 
@@ -13,12 +14,6 @@ GRID = 12          # facets along a side of a cell where a field is followed alo
 
 def magnitude(values):
     return numpy.linalg.norm(values, axis=-1) if values.ndim > 1 else values
-
-
-def scale(fields):
-    low, high = min(f.min() for f in fields), max(f.max() for f in fields)
-    bound = max(-low, high)
-    return (Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)
 
 
 def middle(points):
@@ -35,27 +30,22 @@ def view_axes(azimuth, elevation):
 
 
 def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=640, triad=True):
-    """Draws the visible part of the surface with the edges of its elements, and the directions of the axes."""
+    """Draws the visible part of the surface with the edges of its elements, the cell of a lattice, and the axes."""
     view, paint = view_axes(azimuth, elevation), style.plt.get_cmap(colours)
     image, extent = render.picture(shot, magnitude(shot.fields[field]), view, lambda seen: paint(norm(seen)), pixels)
     axis.imshow(image, extent=extent, aspect="equal", interpolation="antialiased", zorder=2)
     if shot.cell is not None:
-        draw_cell(axis, shot.frame @ view.T)
+        corners = shot.frame @ view.T
+        front = corners[:, 2].argmax()  # the edges that meet in the foremost corner lie above the particles
+        for k, other in itertools.product(range(8), (1, 2, 4)):
+            if k | other > k:
+                axis.plot(*corners[[k, k | other], :2].T, color=style.INK, linewidth=0.8,
+                          zorder=3 if front in (k, k | other) else 1)
     if triad:
         draw_triad(axis, view, numpy.array(extent))
     axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")
-
-
-def draw_cell(axis, corners):
-    """Draws the edges of a cell from its corners (8, 3) (right, up, towards the eye); the three that meet in the
-    foremost corner lie above the particles, the others below."""
-    front = corners[:, 2].argmax()
-    for k in range(8):
-        for other in {k | 1, k | 2, k | 4} - {k}:
-            axis.plot(*corners[[k, other], :2].T, color=style.INK, linewidth=0.8,
-                      zorder=3 if front in (k, other) else 1)
 
 
 def draw_triad(axis, view, extent):
@@ -71,9 +61,8 @@ def draw_triad(axis, view, extent):
 
 
 def cut(grid, across, place):
-    """Returns the ends of the line pieces in which the plane x_{across+1} = place cuts a surface, shape (pieces, 2, k),
-    from fine grids of position and further values, shape (patches, m, m, k). Values are linear on the triangles of the
-    grids."""
+    """Returns the ends (pieces, 2, k) of the line pieces in which the plane x_{across+1} = place cuts a surface, from
+    fine grids of position and further values (patches, m, m, k). Values are linear on the triangles of the grids."""
     a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
     triangles = numpy.concatenate([numpy.stack(corners, 3).reshape(-1, 3, grid.shape[-1])
                                    for corners in ((a, b, c), (a, c, d))])
@@ -91,8 +80,7 @@ def cut(grid, across, place):
 
 
 def section(shot, place, across=1):
-    """Returns the line pieces (pieces, 2, 2) in which the plane x_{across+1} = place cuts the surface: their ends in
-    the other two coordinates."""
+    """Returns the ends of the pieces in which the plane cuts the surface, in the other two coordinates (pieces, 2, 2)."""
     return numpy.delete(cut(shot.sampled(shot.positions, SECTION_GRID), across, place), across, axis=2)
 
 
@@ -133,14 +121,14 @@ def draw_sections(axis, runs, shots):
 def share_window(axes):
     """Sets the limits of all axes so that their surfaces have one scale, each in the middle of its panel."""
     limits = numpy.array([[axis.get_xlim(), axis.get_ylim()] for axis in axes])
-    half = numpy.ptp(limits, axis=2).max(0) / 2
+    width, height = numpy.ptp(limits, axis=2).max(0) / 2
     for axis, (x, y) in zip(axes, limits.mean(2)):
-        axis.set(xlim=(x - half[0], x + half[0]), ylim=(y - half[1], y + half[1]), anchor="C")
+        axis.set(xlim=(x - width, x + width), ylim=(y - height, y + height), anchor="C")
 
 
 def field_cut(shot, field):
-    """Returns the ends of the short pieces in which the plane x2 = middle cuts the surface: rows of position (from the
-    middle) and field, shape (pieces, 2, 3 + k)."""
+    """Returns the ends (pieces, 2, 3 + k) of the pieces in which the plane x2 = middle cuts the surface: rows of
+    position (from the middle) and field."""
     grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID)
     grid[..., :3] -= middle(shot.points)
     return cut(grid, 1, 0)
@@ -150,20 +138,19 @@ def near_tip(shot, field):
     """Returns x1 (n,), x3 (n,) and the magnitude of a field (n,) along the half of the section where x1 is above the
     middle, by x3; positions from the middle."""
     place = field_cut(shot, field).mean(axis=1)
-    place = place[place[:, 0] > 0]
     place = place[numpy.argsort(place[:, 2])]
-    return place[:, 0], place[:, 2], numpy.linalg.norm(place[:, 3:], axis=1)
+    x, _, z, *values = place[place[:, 0] > 0].T
+    return x, z, numpy.linalg.norm(values, axis=0)
 
 
 def section_variation(shot, field):
     """Returns angle (n,) and |d field / dl| (n,) along the section x2 = middle. The angle is that of the section's
     ellipse, stretched to a circle."""
     ends = field_cut(shot, field)
-    length = numpy.linalg.norm(ends[:, 1, :3] - ends[:, 0, :3], axis=1)
-    # slivers give rounding
-    ends, length = ends[length > 0.2 * numpy.median(length)], length[length > 0.2 * numpy.median(length)]
-    variation = numpy.linalg.norm(ends[:, 1, 3:] - ends[:, 0, 3:], axis=1) / length
-    x, _, z = ends.mean(axis=1)[:, :3].T
+    length, change = (numpy.linalg.norm(ends[:, 1, columns] - ends[:, 0, columns], axis=1)
+                      for columns in (slice(3), slice(3, None)))
+    kept = length > 0.2 * numpy.median(length)  # slivers give rounding
+    x, _, z = ends[kept, :, :3].mean(axis=1).T
     angle = numpy.arctan2(z / abs(z).max(), x / abs(x).max())
     order = numpy.argsort(angle)
-    return angle[order], variation[order]
+    return angle[order], (change[kept] / length[kept])[order]

@@ -3,12 +3,13 @@
 import numpy
 from matplotlib.animation import FuncAnimation
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 from ..mistakes import expect, log
 from ..results import field_label
 from . import style
-from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, middle, scale, section_variation,
-                   share_window, view_axes)
+from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, middle, section_variation, share_window,
+                   view_axes)
 from .register import figure
 from .series import unbroken
 
@@ -16,12 +17,13 @@ LEAST_WIDTH = 100  # pixels
 
 
 def field_of(shots, field):
-    """Raises Mistake unless the snapshots hold a field. Returns the colour scale of all of them and its label
-    pattern."""
+    """Raises Mistake unless the snapshots hold a field. Returns norm and colour map of all of them and label pattern."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
-    norm, colours = scale([magnitude(shot.fields[field]) for shot in shots])
-    return norm, colours, "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
+    values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
+    low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
+    bound = max(-low, high)
+    return *((Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)), pattern
 
 
 @figure
