@@ -19,8 +19,8 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
     series: what is drawn against the parameter
     exact: a known point, as parameter and value (repeatable)"""
     rated = all("leading_rate" in run.series for run in runs)
-    figure, axes = style.panels(axes, 1 + rated, 1, 5.2, 3.4 + 1.8 * rated, sharex=True,
-                                height_ratios=[3, 1.6][: 1 + rated])
+    heights = [3, 1.6] if rated else [3]
+    figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
     upper = axes[0]
     for run, color in style.coloured(runs):
         parameter, value, folds = run.series["parameter"], run.series[series], run.series["fold"] > 0
@@ -78,8 +78,8 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
         lower.plot(second, value, "o-", color=color, markersize=3.5)
         for at, p, d in zip(second, parameter, value):
             log.info(f"{run.name}: {name} {at:.7g}: fold at {p:.7g}, {series} = {d:.6f}")
-    expect(len(names) == 1, "one figure has one pair of parameters; these runs have "
-                            + "; ".join(" against ".join(pair[::-1]) for pair in sorted(names)))
+    pairs = "; ".join(f"{parameter} against {second}" for second, parameter in sorted(names))
+    expect(len(names) == 1, f"one figure has one pair of parameters; these runs have {pairs}")
     for point in exact or []:
         upper.plot(*point, "+", color=style.INK, markersize=9)
     second, parameter = names.pop()
@@ -108,10 +108,10 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
     parameter = run.series.get("parameter", numpy.array([run.value(path)]))
     rate = run.series["leading_rate"]
-    found = numpy.array([in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))])
+    found = [in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))]
     for p, one, other in zip(parameter, rate, found):
-        log.info(f"{path} {p:.8g}: rate {one:.6f}" + ("" if numpy.isnan(other) else
-                 f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"))
+        compared = f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"
+        log.info(f"{path} {p:.8g}: rate {one:.6f}{'' if numpy.isnan(other) else compared}")
     figure, (axis,) = style.panels(axes, 1, 1, 5.2, 3.6)
     draw(axis, run, parameter, rate, style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")

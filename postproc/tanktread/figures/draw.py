@@ -54,7 +54,7 @@ def draw_triad(axis, view, extent):
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     arrow = {"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
-    for arm, name in zip(view[:2].T * length, ("x₁", "x₂", "x₃")):
+    for arm, name in zip(view[:2].T * length, style.AXES):
         axis.annotate("", foot + arm, foot, arrowprops=arrow)
         axis.annotate(name, foot + 1.35 * arm, ha="center", va="center", fontsize=8.5)
     axis.plot(*zip(foot - 0.5 * length, foot + 1.5 * length), alpha=0)  # room for the letters

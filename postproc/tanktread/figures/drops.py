@@ -72,7 +72,12 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])
     axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|" + run.in_units("force length"))
     if meshes:
-        points, error, seconds = numpy.array(list(errors(deck, meshes, "results/vesicles"))).T
+        study = Study(directory="results/vesicles")
+        outcomes = [study.run(deck, {"Surface/elements per side": n}) for n in meshes]
+        for outcome in outcomes:
+            expect(outcome.done, outcome.message)
+        points, error, seconds = numpy.transpose([(one.series["n_control_points"][-1], least(one.run)[2],
+                                                   one.processor_seconds) for one in outcomes])
         for row in zip(points, error, seconds):
             log.info("control points {:.0f}: relative error {:.2e}, {:.2g} processor seconds".format(*row))
         axes[2].loglog(points, abs(error), "o-", color=style.RUNS[0], label="fixed meshes")
@@ -82,19 +87,9 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
 
 def least(run):
-    """Returns the section and the energy of the axisymmetric shape at rest, and the relative error of the run's
-    energy."""
+    """Returns section and energy of the axisymmetric shape at rest, and the relative error of the run's energy."""
     outline, energy = at_rest(Energy(run), run.series["length_x3"][-1] / run.series["length_x1"][-1])
     return outline, energy, run.series["energy"][-1] / energy - 1
-
-
-def errors(path, meshes, output):
-    """Yields control points, relative error of the energy at rest and processor seconds of the deck on each mesh."""
-    runs = Study(directory=output)
-    for n in meshes:
-        outcome = runs.run(path, {"Surface/elements per side": n})
-        expect(outcome.done, outcome.message)
-        yield outcome.series["n_control_points"][-1], least(outcome.run)[2], outcome.processor_seconds
 
 
 class Shape:
@@ -103,15 +98,13 @@ class Shape:
 
     def __init__(self, degree):
         even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
-        self.bases = [numpy.array([(one.deriv(order) if order else one)(COSINE) for one in even]).T
-                      for order in (0, 1, 2)]
-        self.size = degree // 2 + 1
+        self.bases = [numpy.array([one.deriv(order)(COSINE) for one in even]).T for order in (0, 1, 2)]
+        self.size = len(even)
 
     def measures(self, c):
-        """Returns area, volume, the integral of twice the mean curvature, and half the integral of its square: shape
-        (4,)."""
-        _, first, second = (basis @ c for basis in self.bases)
-        r, sine2 = numpy.exp(self.bases[0] @ c), 1 - COSINE**2
+        """Returns (4,): area, volume, integral of twice the mean curvature, and half the integral of its square."""
+        exponent, first, second = (basis @ c for basis in self.bases)
+        r, sine2 = numpy.exp(exponent), 1 - COSINE**2
         slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
         g = numpy.sqrt(r**2 + slope2)
         curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
@@ -158,8 +151,8 @@ class Energy:
 
 @numpy.errstate(all="ignore")  # trial shapes of the search may overflow
 def at_rest(energy, aspect):
-    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid whose
-    axis is `aspect` times its equator."""
+    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid of this
+    axis over equator."""
     first = Shape(DEGREES[0])
     logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
     c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])

@@ -59,7 +59,8 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
         film = run.series["gap"] / run.radius
         sections(figure.add_subplot(grid[k, :]), run, times)
         gap.plot(run.time, film, color=color, label=run.name)
-        away, along = velocities(run)
+        velocity = numpy.array([run.series[f"velocity_x{i}"] for i in (1, 2, 3)]) / run.scale("velocity")[0]
+        away, along = (direction @ velocity for direction in wall(run)[1:])
         speed.plot(run.time, away, color=color, label=None if k else "away")
         speed.plot(run.time, along, color=color, linestyle=style.DASHES, label=None if k else "along")
         log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
@@ -73,22 +74,14 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 
 
 def wall(run):
-    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
-    x1 is the normal."""
+    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): x1, or x3 if the normal
+    is x1."""
     expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
     along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]
     along -= along @ normal * normal
     return point, normal, along / numpy.linalg.norm(along)
-
-
-def velocities(run):
-    """Returns the velocities (rows,) of the centroid (a mean over particles) away from the wall and along it, without a
-    unit."""
-    _, normal, along = wall(run)
-    velocity = numpy.array([run.series[f"velocity_x{k}"] for k in (1, 2, 3)]) / run.scale("velocity")[0]
-    return normal @ velocity, along @ velocity
 
 
 def sections(axis, run, moments):

@@ -18,8 +18,7 @@ SAMPLES = 400  # along the way
 
 
 class Errors:
-    """Of one run: `times` and `errors` of the series within the curve, the `largest` error, and `costs`: `points`,
-    `seconds`, `evaluations`. `family`: scheme and tolerance."""
+    """Errors of one run at the times within the curve, its costs (`points` of the mesh, and others), and its family."""
 
     def __init__(self, run, curve, series):
         t = run.time
@@ -50,10 +49,13 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
                                                  or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
     found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
     figure, (over_time, *over_costs) = style.panels(axes, 2, 2, 9.6, 7)
-    draw_times(over_time, found)
-    for one in found:
+    for one, shade in zip(found, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))):
+        over_time.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
         log.info(f"{one.run.name}: {one.points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
                  f"{one.evaluations:.0f} evaluations, {one.seconds:.2f} s")
+    room = 0.1 * min(numpy.median(one.errors) for one in found), 30 * found[0].largest  # for the legend
+    over_time.set(xlabel=time_label([one.run for one in found]), ylabel="error", ylim=room)
+    over_time.legend(loc="upper left", ncols=2)
     for family, color in style.coloured(sorted({one.family for one in found})):
         members = [one for one in found if one.family == family]
         costs, largest = numpy.array([one.costs for one in members]).T, [one.largest for one in members]
@@ -68,15 +70,6 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
         over_costs[0].loglog(n, 0.3 * found[0].largest * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
     over_costs[0].legend(loc="lower left")
     return figure
-
-
-def draw_times(axis, found):
-    shades = style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))
-    for one, shade in zip(found, shades):
-        axis.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
-    axis.set_ylim(0.1 * min(numpy.median(one.errors) for one in found), 30 * found[0].largest)  # room for the legend
-    axis.set(xlabel=time_label([one.run for one in found]), ylabel="error")
-    axis.legend(loc="upper left", ncols=2)
 
 
 @figure
@@ -96,30 +89,31 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
     set_: other keys of all runs, each KEY=VALUE
     curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
     between: centroids between which extents are drawn"""
-    large, small = radii
-    words, finer = set_ or [], finer or []
+    (large, small), (begin, end), words, finer = radii, between, set_ or [], finer or []
     expect(0 < small < large,
            f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
-    expect(between[0] < between[1],
-           "--between needs two centroids that ascend, but is given {:g} and {:g}".format(*between))
+    expect(begin < end, f"--between needs two centroids that ascend, but is given {begin:g} and {end:g}")
     settings_of(words + finer)
-    known = [curve_of(path, between) for path in curves or []]
-    x, runs, deck = numpy.linspace(*between, SAMPLES), Study(directory="results/step"), deck_at(deck)
+    known = [table(path)[:, :2] for path in curves or []]
+    within = [curve[(curve[:, 0] > begin) & (curve[:, 0] < end)] for curve in known]
+    for path, rows in zip(curves or [], within):
+        expect(len(rows), f"{path} has no row between {begin:g} and {end:g}")
+    x, runs, deck = numpy.linspace(begin, end, SAMPLES), Study(directory="results/step"), deck_at(deck)
     of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
     sharp = sharp_edges(of_large, of_small, large / small)
-    names = ("x₁", "x₂", "x₃")
     figure, (axis,) = style.panels(axes, 1, 1, 7, 5)
-    for name, colour, dots, dashes, line in zip(names, style.RUNS, of_large, of_small, sharp):
+    for name, colour, dots, dashes, line in zip(style.AXES, style.RUNS, of_large, of_small, sharp):
         axis.plot(x, dots, ":", x, dashes, "--", color=colour)
         axis.plot(x, line, color=colour, label=f"along {name}")
         off = numpy.abs(line - dashes)
         log.info(f"along {name}: radii {large:g} and {small:g} differ by {numpy.abs(dots - dashes).max():.1e}, "
                  f"sharp edges from {small:g} by {off.max():.1e} at most, at {x[off.argmax()]:.2f}")
-    for (curve, inside), name, mark, line in zip(known, names, style.MARKS, sharp):
-        off = numpy.interp(inside[:, 0], x, line) - inside[:, 1]
+    for curve, (centroid, extent), name, mark, line in zip(known, (rows.T for rows in within), style.AXES, style.MARKS,
+                                                           sharp):
+        off = numpy.interp(centroid, x, line) - extent
         at = numpy.argmax(numpy.abs(off))
         axis.plot(*curve.T, mark, color=style.FAINT, markersize=3, label=f"published, {name}")
-        log.info(f"along {name}: {off[at]:+.4f} off the curve at most, at {inside[at, 0]:.3f}; "
+        log.info(f"along {name}: {off[at]:+.4f} off the curve at most, at {centroid[at]:.3f}; "
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
     style.finish(axis, xlabel="centroid $x_1$", ylabel="extent over 2a",
                  title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
@@ -159,11 +153,3 @@ def of_radius(runs, deck, words, finer, radius, x):
         log.info(f"radius {radius:g}, {one}: changes " + ", ".join(f"{value:.1e}" for value in abs(change).max(axis=1)))
         found = found + change
     return found
-
-
-def curve_of(path, between):
-    """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
-    curve = table(path)[:, :2]
-    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])]
-    expect(len(inside), "{} has no row between {:g} and {:g}".format(path, *between))
-    return curve, inside

@@ -20,9 +20,8 @@ def stuck(runs, axes=None, *, elements: int = 160):
 
     elements: elements of the membrane, from pole to pole"""
     first = runs[0]
-    needed = {"Channel/profile": "constriction", "Channel/section": "circle", "Membrane/law": "neo-Hookean",
-              "Particle/shape": "sphere"}
-    for key, wanted in needed.items():
+    for key, wanted in (("Channel/profile", "constriction"), ("Channel/section", "circle"),
+                        ("Membrane/law", "neo-Hookean"), ("Particle/shape", "sphere")):
         expect(first.value(key) == wanted, f"{key} must be {wanted}, but is {first.value(key)}")
     drop = drop_of_velocity(first)
     way, pressure = Pushed(first, elements).through()
@@ -32,7 +31,8 @@ def stuck(runs, axes=None, *, elements: int = 160):
     figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
     upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
     for run, color in style.coloured(runs):
-        x, ca, speed = run.series["centroid_x1"], capillary_number(run), run.series["velocity_x1"]
+        x, speed = run.series["centroid_x1"], run.series["velocity_x1"]
+        ca = run.value("Membrane/capillary number") or of_flow(run) / run.value("Membrane/shear modulus")
         near = x > way[0] - 0.2
         expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
         upper.plot(x[near], numpy.full(near.sum(), ca), color=color)
@@ -51,26 +51,20 @@ def of_flow(run):
     return run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0)
 
 
-def capillary_number(run):
-    return run.value("Membrane/capillary number") or of_flow(run) / run.value("Membrane/shear modulus")
-
-
 def drop_of_velocity(run):
     """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
     return run.series["channel_pressure_drop"][0] / of_flow(run)
 
 
 def highest(way, pressure):
-    """Returns the vertex of the parabola through the five values around the largest pressure: the pressure, and the
-    centroid there."""
+    """Returns the largest pressure, and the centroid there, of the parabola through the five values around it."""
     top = numpy.argmax(pressure)
     fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
 
 
 def derivatives(function, at):
-    """Returns the derivatives (..., k) of a function (...) by each of k numbers, which are the last axis of `at`, exact
-    to round-off (complex step)."""
+    """Returns the derivatives (..., k) of a function (...) by the last axis of `at`, exact to round-off (complex step)."""
     steps = 1e-30j * numpy.eye(at.shape[-1])
     return numpy.stack([function(at + step).imag / 1e-30 for step in steps], axis=-1)
 
@@ -142,8 +136,7 @@ class Pushed:
         return self.channel(x[closed]) - self.volumes(x, r)[:closed].sum()
 
     def system(self, z, closed):
-        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
-        coordinates."""
+        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind by the free coordinates."""
         gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
         ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
         cones, rings = self.numbers, self.rings

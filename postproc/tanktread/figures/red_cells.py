@@ -42,7 +42,13 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: 
     forces, narrow, wide, low, high = numpy.transpose(STRETCHED)
     plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
     plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across")
-    draw_outlines(outlines, runs)
+    around = numpy.linspace(0, 2 * numpy.pi, 361)
+    for (pn, *_), (run, color) in zip(STRETCHED, style.shaded(runs, 0.25)):  # convex outlines as seen along x3
+        points = run.snapshots()[-1].points[:, :2] * RADIUS
+        outline = points[(points @ [numpy.cos(around), numpy.sin(around)]).argmax(axis=0)]
+        outlines.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
+    outlines.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
+    outlines.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
     plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="Mills and others 2004", **BAR)
     plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none", label="across, measured")
     style.finish(plot, xlabel="force / pN", ylabel="diameter / µm")
@@ -53,18 +59,6 @@ def pulled(deck, force, more):
     """Returns the run of a deck with the force (over shear modulus and radius of the disc) along x1 at both ends."""
     ends = {"left": -force, "right": force}
     return run_of(deck, {f"Membrane/forces/{name}/force": [pull, 0, 0] for name, pull in ends.items()} | more)
-
-
-def draw_outlines(plot, runs):
-    """Draws the convex outlines as seen along x3, one per force."""
-    around = numpy.linspace(0, 2 * numpy.pi, 361)
-    directions = numpy.stack([numpy.cos(around), numpy.sin(around)])
-    for (pn, *_), (run, color) in zip(STRETCHED, style.shaded(runs, 0.25)):
-        points = run.snapshots()[-1].points[:, :2] * RADIUS
-        outline = points[(points @ directions).argmax(axis=0)]
-        plot.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
-    plot.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
-    plot.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
 
 
 @figure
@@ -139,8 +133,7 @@ def let_go(deck, elements, modulus, viscosity):
         "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
         "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit,
         "Particle/initial shape/run": str(start.directory.resolve())})
-    ratio = run.series["length_x1"] / run.series["length_x2"]
-    seconds = run.series["time"] * unit
+    seconds, ratio = run.series["time"] * unit, run.series["length_x1"] / run.series["length_x2"]
     first = numpy.interp(-RETURNING[0][1], -ratio, seconds)
     after = seconds >= first
     return seconds[after] - first, ratio[after]

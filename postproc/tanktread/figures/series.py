@@ -42,8 +42,12 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
                      for name, unit in words.items() if name in curve.dtype.names]
             log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
     draw_curves(axes, known, end=max(run.time[-1] for run in runs))
+    titles = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
+              for key in ("Membrane/law", "Flow/type")]
+    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
+        titles.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
     axes[0].set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""),
-                ylim=(0, None), title=title(runs))
+                ylim=(0, None), title=", ".join(filter(None, titles)))
     axes[0].legend(**{"loc": "lower right"} if len(runs) == 1 else {"loc": "upper left", "bbox_to_anchor": (1.01, 1)})
     if inclined:
         axes[1].set_ylabel("inclination, degrees")
@@ -51,17 +55,8 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
     return figure
 
 
-def title(runs):
-    words = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
-             for key in ("Membrane/law", "Flow/type")]
-    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
-        words.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
-    return ", ".join(word for word in words if word)
-
-
 def draw_series(axis, run, name, **pen):
-    """Draws a series, without the lines of an angle that passes from one end of its range to the other, and the band of
-    its estimated error, if the run has one."""
+    """Draws a series, an inclination as `unbroken`, and the band of its estimated error, if the run has one."""
     drawn = run.time, run.series[name]
     axis.plot(*unbroken(*drawn) if name.endswith("inclination") else drawn, zorder=3, **pen)
     if run.band(name) is not None:
@@ -94,8 +89,7 @@ def draw_particles(panels, run, deformation, colors):
 
 
 def unbroken(t, angle):
-    """Returns times and angles with a NaN where an axis passes from one end of its range of 180 degrees to the
-    other."""
+    """Returns times and angles with NaN where an axis passes from one end of its range of 180 degrees to the other."""
     passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
@@ -110,11 +104,10 @@ def curve_of(path):
 def draw_curves(axes, known, end):
     for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
         inside = curve[curve["t"] <= end * 1.001]
-        pen = {"linestyle": "none", "marker": mark, "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
-               "zorder": 2, "markevery": max(1, len(inside) // 40), "label": label}
         for axis, name in zip(axes, ("taylor_inertia", "inclination")):
             if name in curve.dtype.names:
-                axis.plot(inside["t"], inside[name], **pen)
+                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
+                          markevery=max(1, len(inside) // 40), label=label)
 
 
 @figure

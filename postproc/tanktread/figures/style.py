@@ -18,6 +18,7 @@ FIELD = "viridis"                                               # colour map of 
 SIGNED = "RdBu_r"                                               # colour map of a field with a sign
 TIME = "copper_r"                                               # colour map of times
 DASHES = (0, (4, 2))
+AXES = ("x₁", "x₂", "x₃")
 GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # a line to compare with, such as an order
 
 STYLE = {

@@ -12,7 +12,7 @@ from ..studies.sweep import Sweep
 from . import style
 from .register import figure
 
-SERIES = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
+SYMBOLS = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
 DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / its mean − 1",
           "taylor_inertia": "D", "inclination": "inclination / degrees"}
 CA = "Particles/capsule/Membrane/capillary number"
@@ -58,11 +58,10 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     blocks: number of parts of an average"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in style.coloured(runs):
-        strain, words = run.time, []
-        labels = [f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}",
-                  *(("N₁", "N₂") if run is runs[0] else (None, None))]
-        for (name, symbol), axis, line, label in zip(SERIES.items(), (upper, lower, lower), ("-", "-", "--"), labels):
-            axis.plot(strain, run.series[name], color=color, linestyle=line, label=label)
+        strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
+        for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
+            axis.plot(strain, run.series[name], color=color, linestyle=line,
+                      label=label if axis is upper else symbol if run is runs[0] else None)
             mean, error = average(strain, run.series[name], from_, blocks)
             if numpy.isfinite(mean):
                 axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
@@ -76,8 +75,7 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 
 
 def average(strain, values, first, blocks):
-    """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
-    blocks."""
+    """Returns the mean over strain from `first` on, by the trapezoidal rule, and its standard error by equal blocks."""
     expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
@@ -112,8 +110,12 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
     deck = next(one for one in runs.outcomes if one.done).run.deck
+    alike = {"Time/final time": deck["Time"]["final time"],
+             "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]}
     for (ca, found), color in style.coloured(rows.items()):
-        alone = intrinsic(made, single, ca, deck)
+        outcome = made.run(single, {"Membrane/capillary number": ca} | alike)
+        expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
+        alone = stresses(outcome.run)[0][-1]
         fraction, mean, error = numpy.array(sorted(found)).T
         look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
         upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
@@ -136,23 +138,14 @@ def averages(outcome, first, blocks):
     if not outcome.done:
         log.info(f"left out: {outcome.message.removeprefix('tanktread: ')}")
         return None
-    series, strain = outcome.series, outcome.run.time
+    name, series, strain = outcome.directory.name, outcome.series, outcome.run.time
     if strain[-1] <= first:
-        log.info(f"left out: {outcome.directory.name} ends at strain {strain[-1]:g}, before --from {first:g}")
+        log.info(f"left out: {name} ends at strain {strain[-1]:g}, before --from {first:g}")
         return None
-    if series["contact_impulse"][-1] > 0:
-        log.info(f"{outcome.directory.name}, φ = {series['volume_fraction'][0]:.3g}: "
-                 f"the limiter's impulse is {series['contact_impulse'][-1]:.3g}")
-    return (series["volume_fraction"][0], *average(strain, series["relative_viscosity"], first, blocks))
-
-
-def intrinsic(study, single, ca, deck):
-    """Returns [η] of one capsule, on the mesh and to the strain of a suspension's deck."""
-    outcome = study.run(single, {
-        "Membrane/capillary number": ca, "Time/final time": deck["Time"]["final time"],
-        "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]})
-    expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
-    return stresses(outcome.run)[0][-1]
+    fraction, impulse = series["volume_fraction"][0], series["contact_impulse"][-1]
+    if impulse > 0:
+        log.info(f"{name}, φ = {fraction:.3g}: the limiter's impulse is {impulse:.3g}")
+    return fraction, *average(strain, series["relative_viscosity"], first, blocks)
 
 
 @figure
@@ -200,16 +193,14 @@ def turns(time, values, phase):
 
 
 def line(means, first):
-    """Returns the change of the straight line through the means over all turns from `first` on, and its standard
-    error."""
+    """Returns the change of the line through the means over all turns from `first` on, and its standard error."""
     number = numpy.arange(first, len(means))
     (slope, _), covariance = numpy.polyfit(number, means[first:], 1, cov=True)
     return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
 
 
 def flow_of(run):
-    """Returns the times at which the flow begins to end and from which it is at rest; infinity if its history does not
-    end at rest."""
+    """Returns the times at which the flow begins to end and from which it is at rest; infinity if it does not rest."""
     amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
     on = numpy.flatnonzero(amplitudes)
     if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):

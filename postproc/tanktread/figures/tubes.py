@@ -26,18 +26,18 @@ def duct(runs, axes=None):
     """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
     it."""
     ducts = [duct_of(run) for run in runs]
-    top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
+    largest = [d["maximum"][2] / d["mean_velocity"] for d in ducts]
     outlines = numpy.concatenate([d["outline"] for d in ducts])
     margin = 0.02 * numpy.ptp(outlines, axis=0).max()
     low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
-    levels = numpy.append(numpy.arange(0, top, STEP), top)
+    levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
     figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
-    for axis, d, run in zip(axes, ducts, runs):
+    for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
         if "centroid_x2" in run.series:
             draw_path(axis, run, d, style.RUNS[1], 4, linewidth=1.6, label="path of the centroid")
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
+        axis.set_title(f"{run.name}: largest {most:.4f}", pad=10)
     axes[0].set_ylabel(UP)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
     figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
@@ -89,7 +89,9 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
     for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
-        shots = shots_of(run, times)
+        reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
+        expect(reached, f"{run.directory} ends before the first of these times")
+        shots = list({shot.path: shot for shot in reached}.values())  # each once
         shaded = style.shaded(shots)
         upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
         largest = max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots)
@@ -101,54 +103,41 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         left, right = lower.subplots(1, 2, width_ratios=[2.1, 1])
-        along(left, run, d, shaded)
-        across(right, run, d, shaded)
+        draw_along(left, run, d, shaded)
+        draw_across(right, run, d, shaded)
         upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
 
-def shots_of(run, times):
-    """Returns the saved steps nearest to the times, each once."""
-    reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
-    expect(reached, f"{run.directory} ends before the first of these times")
-    return list({shot.path: shot for shot in reached}.values())
-
-
 def tube_section(run, d, shot, across):
-    """Returns the section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid and the centroid (3,),
-    over R_T."""
+    """Returns section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid, and centroid (3,), over R_T."""
     c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
     return section(shot, c[across], across) / d["radius"], c / d["radius"]
 
 
-def along(axis, run, d, shaded):
-    """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
-    along x1."""
+def draw_along(axis, run, d, shaded):
+    """Draws sections in the plane x2 = centroid, side by side as the particle travels, about their centroids along x1,
+    with the wall as the line at the last centroid's x2 meets it."""
     place = 0.0
     for shot, colour in shaded:
         pieces, c = tube_section(run, d, shot, 1)
         draw_pieces(axis, pieces - [c[0] - place, 0], colour)
         axis.plot(place, c[2], marker=".", color=colour, markersize=4)
         place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
-    for height in wall_heights(d["outline"], c[1]):
-        axis.axhline(height, color=style.INK, linewidth=1.4)
+    a, b = d["outline"][:-1], d["outline"][1:]
+    met = (a[:, 0] - c[1]) * (b[:, 0] - c[1]) <= 0
+    (x, height), (dx, rise) = a[met].T, (b - a)[met].T
+    heights = height + (c[1] - x) / numpy.where(dx == 0, 1, dx) * rise
+    for wall in heights.min(), heights.max():
+        axis.axhline(wall, color=style.INK, linewidth=1.4)
     axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
     axis.autoscale_view()
     axis.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
     axis.grid(False)
 
 
-def wall_heights(outline, x2):
-    """Returns the lowest and highest x3 at which the line of given x2 meets the wall."""
-    a, b = outline[:-1], outline[1:]
-    cut = (a[:, 0] - x2) * (b[:, 0] - x2) <= 0
-    share = (x2 - a[cut, 0]) / numpy.where(b[cut, 0] == a[cut, 0], 1, b[cut, 0] - a[cut, 0])
-    heights = a[cut, 1] + share * (b[cut, 1] - a[cut, 1])
-    return heights.min(), heights.max()
-
-
-def across(axis, run, d, shaded):
+def draw_across(axis, run, d, shaded):
     """Draws sections in the plane x1 = centroid inside the wall."""
     axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     for shot, colour in shaded:
@@ -234,7 +223,7 @@ def cut_open(axis, run, c, way, n, across):
     axis.grid(False)
     shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
     axis.set(aspect="equal", xlim=(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0)),
-             xlabel="x₁" + run.in_units("length"), ylabel=("x₂", "x₃")[up - 1] + run.in_units("length"),
+             xlabel="x₁" + run.in_units("length"), ylabel=style.AXES[up] + run.in_units("length"),
              title=f"{run.name}: cut open at x{across + 1} = centroid; times "
                    f"{'inside' if bent else 'below'}{run.in_units('time')}")
     if bent:
@@ -244,8 +233,8 @@ def cut_open(axis, run, c, way, n, across):
 def along_the_way(panels, run, c, way):
     s, label = run.series, "arc length of the centroid along the centre line" + run.in_units("length")
     extents, velocity, pressure = panels["extents"], panels["velocity"], panels["pressure"]
-    for k, color, line in zip((1, 2, 3), style.RUNS, ("-", "-", "--")):
-        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label="along x" + " ₁₂₃"[k])
+    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
+        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
     style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
     speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
     velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
