@@ -23,10 +23,10 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
     figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
     upper = axes[0]
     for run, color in style.coloured(runs):
-        parameter, value, folds = run.series["parameter"], run.series[series], run.series["fold"] > 0
+        parameter, value, fold = run.series["parameter"], run.series[series], run.series["fold"] > 0
         draw(upper, run, parameter, value, color, run.name)
-        upper.plot(parameter[folds], value[folds], "o", color=color, markerfacecolor="white")
-        for p, d in zip(parameter[folds], value[folds]):
+        upper.plot(parameter[fold], value[fold], "o", color=color, markerfacecolor="white")
+        for p, d in zip(parameter[fold], value[fold]):
             log.info(f"{run.name}: fold at {p:.7g}, {series} = {d:.6f}")
         if rated:
             draw(axes[1], run, parameter, run.series["leading_rate"], color)
@@ -88,7 +88,7 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set(ylabel=label_of(runs[0], series) + " there" * series.startswith("taylor"), xlabel=second)
+    lower.set(ylabel=label_of(runs[0], series) + (" there" if series.startswith("taylor") else ""), xlabel=second)
     return figure
 
 

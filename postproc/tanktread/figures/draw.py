@@ -80,7 +80,7 @@ def cut(grid, across, place):
 
 
 def section(shot, place, across=1):
-    """Returns the ends of the pieces in which the plane cuts the surface, in the other two coordinates (pieces, 2, 2)."""
+    """Returns the ends (pieces, 2, 2) of the pieces in which the plane cuts the surface, in its two coordinates."""
     return numpy.delete(cut(shot.sampled(shot.positions, SECTION_GRID), across, place), across, axis=2)
 
 

@@ -111,13 +111,9 @@ class Shape:
         ring = 2 * numpy.pi * WEIGHT * r * g
         return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
 
-    def gradients(self, c):
-        """Returns the derivatives of the measures by the coefficients, shape (4, size)."""
-        return derivatives(self.measures, c)
-
 
 class Energy:
-    """Of a run's membrane, a function of the measures, and its derivatives by them."""
+    """Of a run's membrane, a function of the measures."""
 
     def __init__(self, run):
         expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),
@@ -145,9 +141,6 @@ class Energy:
                 + self.of_leaves / 2 * (leaves - self.leaves) ** 2
                 + self.bending * (bent - self.curvature * leaves + self.curvature**2 / 2 * area))
 
-    def by_measures(self, measures):
-        return derivatives(self, measures)
-
 
 @numpy.errstate(all="ignore")  # trial shapes of the search may overflow
 def at_rest(energy, aspect):
@@ -157,23 +150,27 @@ def at_rest(energy, aspect):
     logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
     c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])
     c[0] += numpy.log(energy.volume / first.measures(c)[1]) / 3
-    found = optimize.minimize(lambda c: energy(first.measures(c)), c,
-                              jac=lambda c: energy.by_measures(first.measures(c)) @ first.gradients(c), method="SLSQP",
-                              constraints={"type": "eq", "fun": lambda c: first.measures(c)[1] / energy.volume - 1,
-                                           "jac": lambda c: first.gradients(c)[1] / energy.volume},
-                              options={"maxiter": 500, "ftol": 1e-12})
-    c, values = found.x, []
-    slopes = first.gradients(c)
-    pressure = energy.by_measures(first.measures(c)) @ slopes @ slopes[1] / (slopes[1] @ slopes[1])
+
+    def of_energy(c):
+        return energy(first.measures(c))
+
+    def excess(c):
+        return first.measures(c)[1] / energy.volume - 1
+
+    c = optimize.minimize(of_energy, c, jac=lambda c: derivatives(of_energy, c), method="SLSQP",
+                          constraints={"type": "eq", "fun": excess, "jac": lambda c: derivatives(excess, c)},
+                          options={"maxiter": 500, "ftol": 1e-12}).x
+    slopes = energy.volume * derivatives(excess, c)
+    pressure, values = derivatives(of_energy, c) @ slopes / (slopes @ slopes), []
     for degree in DEGREES[1:]:
         now = Shape(degree)
 
-        def balance(y):
-            gradients, measures = now.gradients(y[:-1]), now.measures(y[:-1])
-            return numpy.append(energy.by_measures(measures) @ gradients - y[-1] * gradients[1],
-                                measures[1] - energy.volume)
+        def lagrangian(y):
+            measures = now.measures(y[:-1])
+            return energy(measures) - y[-1] * (measures[1] - energy.volume)
 
-        solved = optimize.root(balance, numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure), tol=1e-13)
+        start = numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure)
+        solved = optimize.root(lambda y: derivatives(lagrangian, y), start, tol=1e-13)
         expect(abs(solved.fun).max() < 1e-8 * energy.bending,
                f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
         c, pressure = solved.x[:-1], solved.x[-1]

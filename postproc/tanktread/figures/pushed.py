@@ -64,7 +64,7 @@ def highest(way, pressure):
 
 
 def derivatives(function, at):
-    """Returns the derivatives (..., k) of a function (...) by the last axis of `at`, exact to round-off (complex step)."""
+    """Returns the derivatives (..., k) of a function (...) by the last axis of `at`, to round-off (complex step)."""
     steps = 1e-30j * numpy.eye(at.shape[-1])
     return numpy.stack([function(at + step).imag / 1e-30 for step in steps], axis=-1)
 
@@ -116,8 +116,9 @@ class Pushed:
         return self.area[:, None] * ((s - 1 / (s**3 * t**2))[:, None] * by_s + (t - 1 / (t**3 * s**2))[:, None] * by_t)
 
     @staticmethod
-    def volumes(x, r):
+    def volumes(z):
         """Returns the volume of each cone (cones,)."""
+        x, r = z.T
         return numpy.pi / 3 * numpy.diff(x) * (r[1:]**2 + r[1:] * r[:-1] + r[:-1]**2)
 
     @staticmethod
@@ -127,23 +128,24 @@ class Pushed:
         square = a * a + a * b + b * b
         return numpy.pi / 3 * numpy.stack([-square, h * (2 * a + b), square, h * (a + 2 * b)], 1)
 
-    def channel(self, x):
-        """Returns the volume of the channel from the mouth to x."""
-        return scipy.integrate.fixed_quad(lambda at: numpy.pi * self.wall(at)[0] ** 2, -self.width, x, n=20)[0]
+    def area_at(self, x):
+        """Returns the area of the channel's section at x."""
+        return numpy.pi * self.wall(x)[0] ** 2
 
-    def behind(self, x, r, closed):
-        """Returns the volume of the fluid behind the ring that closes the channel."""
-        return self.channel(x[closed]) - self.volumes(x, r)[:closed].sum()
+    def behind(self, z, closed):
+        """Returns the volume of the fluid in the channel behind the ring that closes it."""
+        whole = scipy.integrate.fixed_quad(self.area_at, -self.width, z[closed, 0], n=20)[0]
+        return whole - self.volumes(z)[:closed].sum()
 
     def system(self, z, closed):
-        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind by the free coordinates."""
+        """Returns gradients (3, n), Hessians (3, n, n) of energy, volume and fluid behind by the free coordinates."""
         gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
         ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
         cones, rings = self.numbers, self.rings
         for k, by, numbers, at in ((0, self.by_energy, cones, ends), (0, self.by_barrier, rings, z),
                                    (1, self.by_volumes, cones, ends),
                                    (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind]),
-                                   (2, lambda x: numpy.pi * self.wall(x)[0]**2, rings[ring, :1], z[ring, :1])):
+                                   (2, self.area_at, rings[ring, :1], z[ring, :1])):
             numpy.add.at(gradient[k], numbers, by(at))
             numpy.add.at(matrix[k], (numbers[:, :, None], numbers[:, None, :]), derivatives(by, at))
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
@@ -155,7 +157,7 @@ class Pushed:
         for _ in range(60):
             gradient, matrix = self.system(z, closed)
             residual = numpy.append(gradient[0] - pressures @ gradient[1:],
-                                    [self.volumes(*z.T).sum() - self.volume, self.behind(*z.T, closed) - behind])
+                                    [self.volumes(z).sum() - self.volume, self.behind(z, closed) - behind])
             if abs(residual).max() < 1e-10:
                 return z, pressures
             whole = numpy.block([[matrix[0] - numpy.tensordot(pressures, matrix[1:], 1), -gradient[1:].T],
@@ -179,7 +181,7 @@ class Pushed:
         expect(near.any(), "the particle does not touch the wall of the constriction")
         z[:, 0] += places[near.argmax()]
         closed = numpy.argmin(self.gap(z)[1:-1]) + 1
-        pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume
+        pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(z, closed), 0.01 * self.volume
         found: list = []
         while not found or found[-1][0] <= 0:
             rest = self.rest(z, pressures, closed, behind)
@@ -189,10 +191,10 @@ class Pushed:
                 expect(step >= 1e-5 * self.volume, "the membrane at rest was not found; change --elements")
                 continue
             z, pressures = rest
-            centroid = self.volumes(*z.T) @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
+            centroid = self.volumes(z) @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
             found.append((centroid, pressures[1]))
             area = 2 * numpy.pi * z[:, 1] * numpy.hypot(*numpy.gradient(z, axis=0).T)
             on_wall = self.push(z) / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
             moved = numpy.argmax(on_wall[2:-2]) + 2
-            behind, closed = behind + self.behind(*z.T, moved) - self.behind(*z.T, closed) + step, moved
+            behind, closed = behind + self.behind(z, moved) - self.behind(z, closed) + step, moved
         return numpy.array(found).T

@@ -17,7 +17,7 @@ LEAST_WIDTH = 100  # pixels
 
 
 def field_of(shots, field):
-    """Raises Mistake unless the snapshots hold a field. Returns norm and colour map of all of them and label pattern."""
+    """Returns norm, colour map and label pattern of a field of snapshots. Raises Mistake if one does not hold it."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
@@ -76,7 +76,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         points = run.series["n_control_points"][row]
         surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
     share_window(surfaces)
-    reach = max([draw_variation(polar, shot, field) for polar, shot in zip(polars, shots)])
+    reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
     for polar in polars:
         polar.set_ylim(0, 1.05 * reach)
     figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),

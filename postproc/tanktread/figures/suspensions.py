@@ -173,8 +173,8 @@ def drift(run, axes=None, *, from_: int = 10):
             values, means = values / scale - 1, means / scale - 1
         change, error = line(means, from_)
         later, within = means[from_:], values[(phase > 360 * from_) & ~numpy.isnan(values)]
-        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; their means {later.min():.6g} "
-                 f"to {later.max():.6g}, within turns {within.min():.6g} to {within.max():.6g}")
+        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; their means "
+                 f"{later.min():.6g} to {later.max():.6g}, within turns {within.min():.6g} to {within.max():.6g}")
         axis.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
         axis.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
         axis.set_ylabel(label, fontsize=8)
@@ -200,7 +200,7 @@ def line(means, first):
 
 
 def flow_of(run):
-    """Returns the times at which the flow begins to end and from which it is at rest; infinity if it does not rest."""
+    """Returns the times at which the flow begins to end and from which it rests; infinity if it does not rest."""
     amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
     on = numpy.flatnonzero(amplitudes)
     if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):

@@ -111,14 +111,14 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
 
 
 def tube_section(run, d, shot, across):
-    """Returns section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid, and centroid (3,), over R_T."""
+    """Returns the section (pieces, 2, 2) of the particle at x_{across+1} = centroid and the centroid (3,), over R_T."""
     c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
     return section(shot, c[across], across) / d["radius"], c / d["radius"]
 
 
 def draw_along(axis, run, d, shaded):
-    """Draws sections in the plane x2 = centroid, side by side as the particle travels, about their centroids along x1,
-    with the wall as the line at the last centroid's x2 meets it."""
+    """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
+    along x1, and the wall's lowest and highest x3 on the line of the last centroid's x2."""
     place = 0.0
     for shot, colour in shaded:
         pieces, c = tube_section(run, d, shot, 1)
