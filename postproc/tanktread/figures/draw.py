@@ -127,8 +127,7 @@ def share_window(axes):
 
 
 def field_cut(shot, field):
-    """Returns the ends (pieces, 2, 3 + k) of the pieces in which the plane x2 = middle cuts the surface: rows of
-    position (from the middle) and field."""
+    """Returns the ends (pieces, 2, 3 + k) of the pieces at x2 = middle, as position from the middle and field."""
     grid = shot.sampled(numpy.column_stack([shot.points, shot.fields[field]]), GRID)
     grid[..., :3] -= middle(shot.points)
     return cut(grid, 1, 0)

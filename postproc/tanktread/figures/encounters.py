@@ -74,8 +74,7 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
 
 
 def wall(run):
-    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): x1, or x3 if the normal
-    is x1."""
+    """Returns a point of the wall, its unit normal, and the direction along it: x1, or x3 if the normal is x1; (3,)."""
     expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)

@@ -18,19 +18,17 @@ SAMPLES = 400  # along the way
 
 
 class Errors:
-    """Errors of one run at the times within the curve, its costs (`points` of the mesh, and others), and its family."""
+    """Errors of one run at the times within the curve, its `costs` (control points, seconds, velocity evaluations), and
+    its family."""
 
     def __init__(self, run, curve, series):
-        t = run.time
-        inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
+        inside = (run.time >= curve["t"][0]) & (run.time <= curve["t"][-1])
         expect(inside.any(), f"{run.directory} has no row within the times of the curve")
-        self.run, self.times, values = run, t[inside], run.series[series][inside]
+        self.run, self.times, values = run, run.time[inside], run.series[series][inside]
         self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
                                    for time, value in zip(self.times, values)])
         self.largest = self.errors.max()
-        self.points = run.series["n_control_points"][-1]
-        self.seconds, self.evaluations = run.series["wall_seconds"][-1], run.series["evaluations"][-1]
-        self.costs = self.points, self.seconds, self.evaluations
+        self.costs = [run.series[name][-1] for name in ("n_control_points", "wall_seconds", "evaluations")]
         self.family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
 
 
@@ -47,12 +45,13 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     known = table(curve, ("t", series))
     expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
                                                  or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
-    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
+    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.costs[0])
     figure, (over_time, *over_costs) = style.panels(axes, 2, 2, 9.6, 7)
     for one, shade in zip(found, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))):
         over_time.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
-        log.info(f"{one.run.name}: {one.points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
-                 f"{one.evaluations:.0f} evaluations, {one.seconds:.2f} s")
+        points, seconds, evaluations = one.costs
+        log.info(f"{one.run.name}: {points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
+                 f"{evaluations:.0f} evaluations, {seconds:.2f} s")
     room = 0.1 * min(numpy.median(one.errors) for one in found), 30 * found[0].largest  # for the legend
     over_time.set(xlabel=time_label([one.run for one in found]), ylabel="error", ylim=room)
     over_time.legend(loc="upper left", ncols=2)
@@ -65,7 +64,7 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
             log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(largest), 1)[0]:.2f}")
     for axis, label in zip(over_costs, ("control points", "seconds", "velocity evaluations")):
         axis.set(xlabel=label, ylabel=f"largest error of {series}")
-    n = numpy.array([found[0].points, found[-1].points])
+    n = numpy.array([found[0].costs[0], found[-1].costs[0]])
     if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
         over_costs[0].loglog(n, 0.3 * found[0].largest * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
     over_costs[0].legend(loc="lower left")

@@ -87,8 +87,7 @@ def _samples(shot, places, values, lattice=None):
 
 
 def _normals(grid):
-    """Returns at the points of grids the cosine between normal and direction to the eye, the area of a facet, and the
-    lengths of its sides along t and along s."""
+    """Returns at points of grids the cosine of normal and eye, the area of a facet, its lengths along t and along s."""
     t, s = numpy.gradient(grid, axis=(1, 2))
     normal = numpy.cross(s, t)
     area, length_t, length_s = (numpy.maximum(numpy.linalg.norm(x, axis=-1), 1e-12) for x in (normal, t, s))

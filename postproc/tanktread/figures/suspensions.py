@@ -117,15 +117,15 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
         alone = stresses(outcome.run)[0][-1]
         fraction, mean, error = numpy.array(sorted(found)).T
+        slope = (mean - 1) / fraction
         look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
         upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
         upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
-        lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
+        lower.errorbar(fraction, slope, error / fraction, **look)
         lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
-            (_, limit), covariance = numpy.polyfit(fraction, (mean - 1) / fraction, 1, w=fraction / error,
-                                                   cov="unscaled")
+            (_, limit), covariance = numpy.polyfit(fraction, slope, 1, w=fraction / error, cov="unscaled")
             log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
                      f"one capsule: {alone:.4f}")
     style.finish(upper, ylabel="relative viscosity μ_eff/μ")
