@@ -182,7 +182,7 @@ class Pushed:
         z[:, 0] += places[near.argmax()]
         closed = numpy.argmin(self.gap(z)[1:-1]) + 1
         pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(z, closed), 0.01 * self.volume
-        found: list = []
+        found = []
         while not found or found[-1][0] <= 0:
             rest = self.rest(z, pressures, closed, behind)
             if rest is None:

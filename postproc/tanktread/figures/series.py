@@ -48,7 +48,8 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
         titles.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
     axes[0].set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""),
                 ylim=(0, None), title=", ".join(filter(None, titles)))
-    axes[0].legend(**{"loc": "lower right"} if len(runs) == 1 else {"loc": "upper left", "bbox_to_anchor": (1.01, 1)})
+    place, corner = ("lower right", None) if len(runs) == 1 else ("upper left", (1.01, 1))
+    axes[0].legend(loc=place, bbox_to_anchor=corner)
     if inclined:
         axes[1].set_ylabel("inclination, degrees")
     axes[-1].set(xlabel=time_label(runs), xlim=(0, None))
