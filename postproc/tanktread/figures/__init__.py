@@ -5,17 +5,16 @@ axes, and returns a matplotlib figure. `tanktread-figure --list` prints all of t
 Numbers that a figure reports as text are logged to the logger "tanktread" (level INFO); the command prints them."""
 
 from .accuracy import work
-from .animations import animation
 from .branches import branch, folds, growth_rates
-from .channels import channel, stuck
 from .drops import surfactant, vesicle
 from .encounters import encounter, plane_wall
 from .errors import convergence, step
+from .pushed import stuck
 from .red_cells import recovery, treading, tweezers
 from .register import FIGURES, caption, command, figure, parser_of
 from .series import deformation, refinement
-from .surfaces import meshes, shape
+from .surfaces import animation, meshes, shape
 from .suspensions import drift, rheology, suspension, viscosity
-from .tubes import duct, tube, tube_motion
+from .tubes import channel, duct, tube, tube_motion
 
 __all__ = ["FIGURES", "caption", "command", "figure", "parser_of", *FIGURES]

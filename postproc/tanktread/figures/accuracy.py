@@ -23,10 +23,10 @@ class Levels:
         found = (run.summary or {}).get("accuracy")
         expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
         expect(found.get("levels"), f"{run.directory} has no finished level")
-        self.requests = found["requests"]
-        self.settings = [settings_of(one["settings"]) for one in found["levels"]]
-        self.seconds = numpy.array([one["seconds"] for one in found["levels"]])
-        self.runs = [Run(run.directory / f"level_{one['level']}") for one in found["levels"]]
+        self.requests, levels = found["requests"], found["levels"]
+        self.settings = [settings_of(level["settings"]) for level in levels]
+        self.seconds = numpy.array([level["seconds"] for level in levels])
+        self.runs = [Run(run.directory / f"level_{level['level']}") for level in levels]
 
     def errors(self, request):
         """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
@@ -42,12 +42,12 @@ class Levels:
             deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
             deck.write_text(self.runs[k].deck_text, encoding="utf-8")
             for part, keys in PARTS.items():
-                finer = {key: value for key, value in self.settings[k + 1].items() if key.startswith(keys)}
-                if finer == {key: value for key, value in self.settings[k].items() if key.startswith(keys)}:
-                    continue
-                outcome = study.run(deck, finer)
-                expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
-                found[part] = largest(values(outcome.run, request), base)
+                coarse, finer = ({key: value for key, value in settings.items() if key.startswith(keys)}
+                                 for settings in self.settings[k:k + 2])
+                if finer != coarse:
+                    outcome = study.run(deck, finer)
+                    expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
+                    found[part] = largest(values(outcome.run, request), base)
         return found
 
 
@@ -81,20 +81,19 @@ def work(run, axes=None, *, parts: bool = True):
     levels = Levels(run)
     study = Study(directory=run.directory / "parts")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
-    for request, color in zip(levels.requests, style.RUNS * len(levels.requests)):
+    for request, color in style.coloured(levels.requests):
         errors = levels.errors(request)
         known = numpy.isfinite(errors) & (errors > 0)
         if known.sum() < 2:
             log.info(f"{request['request']}: {request.get('untrusted', 'the error is unknown')}")
             continue
-        slope = numpy.polyfit(numpy.log(levels.seconds[known]), numpy.log(errors[known]), 1)[0]
+        seconds, errors = levels.seconds[known], errors[known]
+        slope = numpy.polyfit(numpy.log(seconds), numpy.log(errors), 1)[0]
         found = levels.parts(request, study) if parts else {}
-        dominant = max(found, key=found.get) if found else None
-        words = f"{request['request']}: slope {slope:.1f}" + (f", mostly {dominant}" if dominant else "")
-        axis.loglog(levels.seconds[known], errors[known], "o-", ms=4, color=color, label=words)
-        axis.axhline(request["allowed"], color=color, linewidth=0.8, linestyle=(0, (4, 3)))
+        words = f"{request['request']}: slope {slope:.1f}" + (f", mostly {max(found, key=found.get)}" if found else "")
+        axis.loglog(seconds, errors, "o-", ms=4, color=color, label=words)
+        axis.axhline(request["allowed"], linewidth=0.8, **style.GUIDE | {"color": color})
         changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
         log.info(words + (f"; change by refinement of {changes}" if changes else ""))
-    axis.set(xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
-    axis.legend(loc="best")
+    style.finish(axis, xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
     return figure

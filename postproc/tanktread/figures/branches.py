@@ -1,7 +1,5 @@
 """Figures of branches of steady shapes."""
 
-import pathlib
-
 import numpy
 import yaml
 
@@ -21,20 +19,20 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
     series: what is drawn against the parameter
     exact: a known point, as parameter and value (repeatable)"""
     rated = all("leading_rate" in run.series for run in runs)
-    figure, axes = style.panels(axes, 1 + rated, 1, 5.2, 3.4 + 1.8 * rated, sharex=True,
-                                height_ratios=[3, 1.6][: 1 + rated])
+    heights = [3, 1.6] if rated else [3]
+    figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
     upper = axes[0]
-    for run, color in zip(runs, style.RUNS * len(runs)):
-        parameter, value, folds = run.series["parameter"], run.series[series], run.series["fold"] > 0
-        draw(upper, parameter, value, unstable(run), color, run.name)
-        upper.plot(parameter[folds], value[folds], "o", color=color, markerfacecolor="white")
-        for p, d in zip(parameter[folds], value[folds]):
+    for run, color in style.coloured(runs):
+        parameter, value, fold = run.series["parameter"], run.series[series], run.series["fold"] > 0
+        draw(upper, run, parameter, value, color, run.name)
+        upper.plot(parameter[fold], value[fold], "o", color=color, markerfacecolor="white")
+        for p, d in zip(parameter[fold], value[fold]):
             log.info(f"{run.name}: fold at {p:.7g}, {series} = {d:.6f}")
         if rated:
-            draw(axes[1], parameter, run.series["leading_rate"], unstable(run), color)
-    for p, d in exact or []:
-        upper.plot(p, d, "+", color=style.INK)
-    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else runs[0].axis(series))
+            draw(axes[1], run, parameter, run.series["leading_rate"], color)
+    for point in exact or []:
+        upper.plot(*point, "+", color=style.INK)
+    upper.set_ylabel(label_of(runs[0], series))
     if len(runs) > 1:
         upper.legend()
     if rated:
@@ -44,13 +42,13 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
     return figure
 
 
-def unstable(run):
-    """Returns for each point (n,) whether a mode grows there."""
-    return run.series.get("unstable_modes", numpy.zeros(len(run.time))) > 0
+def label_of(run, series):
+    return "Taylor parameter D" if series.startswith("taylor") else run.axis(series)
 
 
-def draw(axes, x, y, broken, color, label=None):
-    """Draws a curve point by point, with a broken line between two points of which one is `broken` (n,)."""
+def draw(axes, run, x, y, color, label=None):
+    """Draws a curve of a branch point by point, with a broken line between two points if a mode grows at one."""
+    broken = run.series.get("unstable_modes", 0 * x) > 0
     axes.plot([], [], color=color, label=label)
     for k in range(len(x) - 1):
         axes.plot(x[k:k + 2], y[k:k + 2], color=color, linestyle="--" if broken[k:k + 2].any() else "-")
@@ -67,22 +65,21 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     exact: a known fold, as second parameter and value (repeatable)"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
     names, reached = set(), []
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         found = numpy.flatnonzero(run.series["fold"] > 0)
         expect(len(found) and "second_parameter" in run.series,
                f"{run.directory} has no folds along a Continuation/second parameter")
-        continuation = run.deck["Continuation"]
-        names.add((continuation["second parameter"], continuation["parameter"]))
+        name = run.deck["Continuation"]["second parameter"]
+        names.add((name, run.deck["Continuation"]["parameter"]))
         found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
-        second, parameter, value = (run.series[name][found] for name in ("second_parameter", "parameter", series))
+        second, parameter, value = (run.series[key][found] for key in ("second_parameter", "parameter", series))
         reached += list(second)
         upper.plot(second, parameter, "o-", color=color, markersize=3.5, label=run.name)
         lower.plot(second, value, "o-", color=color, markersize=3.5)
-        for row in zip(second, parameter, value):
-            log.info(f"{run.name}: {continuation['second parameter']} {row[0]:.7g}: fold at {row[1]:.7g}, "
-                     f"{series} = {row[2]:.6f}")
-    expect(len(names) == 1, "one figure has one pair of parameters; these runs have "
-                            + "; ".join(" against ".join(pair[::-1]) for pair in sorted(names)))
+        for at, p, d in zip(second, parameter, value):
+            log.info(f"{run.name}: {name} {at:.7g}: fold at {p:.7g}, {series} = {d:.6f}")
+    pairs = "; ".join(f"{parameter} against {second}" for second, parameter in sorted(names))
+    expect(len(names) == 1, f"one figure has one pair of parameters; these runs have {pairs}")
     for point in exact or []:
         upper.plot(*point, "+", color=style.INK, markersize=9)
     second, parameter = names.pop()
@@ -91,7 +88,7 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set(ylabel="Taylor parameter D there" if series.startswith("taylor") else runs[0].axis(series), xlabel=second)
+    lower.set(ylabel=label_of(runs[0], series) + (" there" if series.startswith("taylor") else ""), xlabel=second)
     return figure
 
 
@@ -111,52 +108,48 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
     parameter = run.series.get("parameter", numpy.array([run.value(path)]))
     rate = run.series["leading_rate"]
-    found = numpy.array([in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))])
+    found = [in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))]
     for p, one, other in zip(parameter, rate, found):
-        log.info(f"{path} {p:.8g}: rate {one:.6f}" + ("" if numpy.isnan(other) else
-                 f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"))
+        compared = f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"
+        log.info(f"{path} {p:.8g}: rate {one:.6f}{'' if numpy.isnan(other) else compared}")
     figure, (axis,) = style.panels(axes, 1, 1, 5.2, 3.6)
-    draw(axis, parameter, rate, unstable(run), style.RUNS[0], "eigenvalue")
+    draw(axis, run, parameter, rate, style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
-    axis.set(xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
-    axis.legend()
+    style.finish(axis, xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
     return figure
 
 
 def deck_in_time(run, directory):
     """Writes the deck of a run without the sections that replace time, and returns its path."""
-    lists = {name: keys for name, keys in run.deck.items()
-             if name not in ("Steady", "Continuation", "Spectrum", "Expect")}
-    lists["Particle"] = {key: value for key, value in lists.get("Particle", {}).items() if key != "initial shape"}
+    sections = {name: keys for name, keys in run.deck.items()
+                if name not in ("Steady", "Continuation", "Spectrum", "Expect")}
+    sections["Particle"] = {key: value for key, value in run.deck.get("Particle", {}).items() if key != "initial shape"}
     directory.mkdir(parents=True, exist_ok=True)
     path = directory.resolve() / f"{run.name}.yaml"
-    path.write_text(yaml.safe_dump({"Tanktread": lists}, sort_keys=False), encoding="utf-8")
+    path.write_text(yaml.safe_dump({"Tanktread": sections}, sort_keys=False), encoding="utf-8")
     return path
 
 
 def in_time(study, deck, run, k, path, series, amplitude, length):
     """Returns the rate from two runs in time at point k; NaN at a fold, of a complex mode, or if a run fails."""
-    rate = run.series["leading_rate"][k]
+    here = {name: values[k] for name, values in run.series.items()}
     number = 1
-    while f"rate_{number}" in run.series and run.series[f"rate_{number}"][k] != rate:
+    while here.get(f"rate_{number}", here["leading_rate"]) != here["leading_rate"]:
         number += 1
-    if run.series.get("fold", numpy.zeros(k + 1))[k] or run.series.get(f"frequency_{number}", numpy.ones(k + 1))[k]:
+    if here.get("fold", 0) or here.get(f"frequency_{number}", 1):
         return numpy.nan
-    end, values = length / abs(rate), []
+    end, start, values = length / abs(here["leading_rate"]), run.snapshots()[k].path.resolve(), []
     settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
-                "Particle/initial shape/mode": number,
-                "Particle/initial shape/run": pathlib.Path(run.snapshots()[k].path).resolve()}
+                "Particle/initial shape/mode": number, "Particle/initial shape/run": start}
     keys = {"parameter": path, "second_parameter": run.value("Continuation/second parameter")}
-    settings |= {key: run.series[name][k] for name, key in keys.items() if name in run.series}
+    settings |= {key: here[name] for name, key in keys.items() if name in here}
     times = numpy.linspace(end / 2, end, 11)
     for sign in 1, -1:
         outcome = study.run(deck, settings | {"Particle/initial shape/mode amplitude": sign * amplitude})
-        if not outcome.done:
-            log.info(f"from {settings['Particle/initial shape/run']}: {outcome.message}")
-            return numpy.nan
-        values.append(numpy.interp(times, outcome.series["time"], outcome.series[series]))
-        if numpy.isnan(values[-1]).any():
-            log.info(f"from {settings['Particle/initial shape/run']}: {series} is undefined (NaN)")
+        if outcome.done:
+            values.append(numpy.interp(times, outcome.series["time"], outcome.series[series]))
+        if not outcome.done or numpy.isnan(values[-1]).any():
+            log.info(f"from {start}: {f'{series} is undefined (NaN)' if outcome.done else outcome.message}")
             return numpy.nan
     return numpy.polyfit(times, numpy.log(abs(values[0] - values[1])), 1)[0]

@@ -1,16 +1,21 @@
-"""Figures of drops with surfactant, and of vesicles at rest."""
+"""Figures of drops with surfactant, and of vesicles at rest beside axisymmetric ones by Legendre polynomials."""
 
 import numpy
-from matplotlib.collections import LineCollection
+from numpy.polynomial import legendre
+from scipy import optimize
 
 from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study
 from ..runs import run as run_of
 from . import style
-from .draw import section
+from .draw import draw_pieces, section
+from .pushed import derivatives
 from .register import figure
-from .vesicles import Energy, at_rest
+
+DEGREES = 16, 30, 40  # of the polynomials; each solution starts from that of the degree before
+ROUND = 1e-2  # by which the extents across the axis may differ
+COSINE, WEIGHT = legendre.leggauss(400)
 
 
 @figure
@@ -19,31 +24,27 @@ def surfactant(runs, axes=None):
 
     A clean drop among the runs is drawn for comparison."""
     figure, (cut, along, deformation, extremes) = style.panels(axes, 2, 2, 7.2, 5.6)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         last = run.snapshot_at(None)
-        pieces = section(last, last.points[:, 1].mean()) / run.radius
-        cut.add_collection(LineCollection(pieces, colors=color, linewidths=1.4, capstyle="round"))
+        draw_pieces(cut, section(last, last.points[:, 1].mean()) / run.radius, color, 1.4)
         deformation.plot(run.time, run.series["taylor_inertia"], color=color, label=run.name)
         line = f"{run.name}: D = {run.series['taylor_inertia'][-1]:.6f}"
         if "surfactant_mass" in run.series:
             order = numpy.argsort(last.points[:, 2])
             along.plot(last.points[order, 2] / run.radius, last.fields["concentration"][order], ".", color=color,
                        markersize=2)
-            smallest, largest = (run.series[f"{name}_concentration"] for name in ("smallest", "largest"))
+            smallest, largest, mass = (run.series[name] for name in ("smallest_concentration", "largest_concentration",
+                                                                     "surfactant_mass"))
             extremes.plot(run.time, largest, color=color)
-            extremes.plot(run.time, smallest, color=color, linestyle=(0, (4, 2)))
-            mass = run.series["surfactant_mass"]
+            extremes.plot(run.time, smallest, color=color, linestyle=style.DASHES)
             line += (f", concentration from {smallest[-1]:.5f} to {largest[-1]:.5f}, "
                      f"mass kept to {abs(mass / mass[0] - 1).max():.1e}")
         log.info(line)
     cut.autoscale()
     cut.set(aspect="equal", xlabel="$x_1$ / R$_C$", ylabel="$x_3$ / R$_C$")
     along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
-    deformation.set_ylabel("D")
-    deformation.legend()
-    extremes.set_ylabel("largest, smallest concentration")
-    for axis in deformation, extremes:
-        axis.set_xlabel(time_label(runs))
+    style.finish(deformation, xlabel=time_label(runs), ylabel="D")
+    extremes.set(xlabel=time_label(runs), ylabel="largest, smallest concentration")
     return figure
 
 
@@ -58,38 +59,121 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
 
     meshes: elements per side of further runs"""
     run = run_of(deck)
-    series = run.series
-    outline, energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])
-    log.info(f"{run.name}: energy {series['energy'][-1]:.9g}, relative error {series['energy'][-1] / energy - 1:.1e}")
+    outline, energy, error = least(run)
+    log.info(f"{run.name}: energy {run.series['energy'][-1]:.9g}, relative error {error:.1e}")
     figure, axes = style.panels(axes, 1, 3 if meshes else 2, 10 if meshes else 7, 3.2)
     last = run.snapshot_at(None)
-    middle = last.points.mean(0)
-    axes[0].add_collection(LineCollection(section(last, middle[1]) - middle[[0, 2]], colors=style.RUNS[0],
-                                          linewidths=1.6))
+    centre = last.points.mean(0)
+    draw_pieces(axes[0], section(last, centre[1]) - centre[[0, 2]], style.RUNS[0], ends="butt")
     for side in (-1, 1):
-        axes[0].plot(side * outline[0], outline[1], color=style.FAINT, linestyle=(0, (4, 3)), linewidth=1)
+        axes[0].plot(side * outline[0], outline[1], linewidth=1, **style.GUIDE)
     length = run.in_units("length")
     axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
-    axes[1].semilogy(run.time, abs(series["energy"] - energy), color=style.RUNS[0])
+    axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])
     axes[1].set(xlabel=time_label([run]), ylabel="|energy - axisymmetric shape's|" + run.in_units("force length"))
     if meshes:
-        points, error, seconds = numpy.array(list(errors(deck, meshes, "results/vesicles"))).T
+        study = Study(directory="results/vesicles")
+        outcomes = [study.run(deck, {"Surface/elements per side": n}) for n in meshes]
+        for outcome in outcomes:
+            expect(outcome.done, outcome.message)
+        points, error, seconds = numpy.transpose([(one.series["n_control_points"][-1], least(one.run)[2],
+                                                   one.processor_seconds) for one in outcomes])
         for row in zip(points, error, seconds):
             log.info("control points {:.0f}: relative error {:.2e}, {:.2g} processor seconds".format(*row))
         axes[2].loglog(points, abs(error), "o-", color=style.RUNS[0], label="fixed meshes")
-        axes[2].loglog(points, abs(error[0]) * (points / points[0]) ** -2, color=style.FAINT, linestyle=(0, (4, 3)),
-                       label="fourth order")
-        axes[2].set(xlabel="control points", ylabel="relative error of the energy")
-        axes[2].legend()
+        axes[2].loglog(points, abs(error[0]) * (points / points[0]) ** -2, label="fourth order", **style.GUIDE)
+        style.finish(axes[2], xlabel="control points", ylabel="relative error of the energy")
     return figure
 
 
-def errors(path, meshes, output):
-    """Yields control points, relative error of the energy at rest and processor seconds of the deck on each mesh."""
-    runs = Study(directory=output)
-    for n in meshes:
-        outcome = runs.run(path, {"Surface/elements per side": n})
-        expect(outcome.done, outcome.message)
-        run, series = outcome.run, outcome.series
-        energy = at_rest(Energy(run), series["length_x3"][-1] / series["length_x1"][-1])[1]
-        yield series["n_control_points"][-1], series["energy"][-1] / energy - 1, outcome.processor_seconds
+def least(run):
+    """Returns section and energy of the axisymmetric shape at rest, and the relative error of the run's energy."""
+    outline, energy = at_rest(Energy(run), run.series["length_x3"][-1] / run.series["length_x1"][-1])
+    return outline, energy, run.series["energy"][-1] / energy - 1
+
+
+class Shape:
+    """exp(sum c_k P_2k): values, first and second derivatives of the polynomials at the points, and what is measured of
+    a surface, by complex numbers too."""
+
+    def __init__(self, degree):
+        even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
+        self.bases = [numpy.array([one.deriv(order)(COSINE) for one in even]).T for order in (0, 1, 2)]
+        self.size = len(even)
+
+    def measures(self, c):
+        """Returns (4,): area, volume, integral of twice the mean curvature, and half the integral of its square."""
+        exponent, first, second = (basis @ c for basis in self.bases)
+        r, sine2 = numpy.exp(exponent), 1 - COSINE**2
+        slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
+        g = numpy.sqrt(r**2 + slope2)
+        curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
+        ring = 2 * numpy.pi * WEIGHT * r * g
+        return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
+
+
+class Energy:
+    """Of a run's membrane, a function of the measures."""
+
+    def __init__(self, run):
+        expect((run.value("Membrane/law"), run.value("Membrane/bending reference")) == ("surface tension", "flat"),
+               f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
+        expect(run.summary, f"{run.name} has not come to its end")
+        last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
+        expect(abs(last[0] / last[1] - 1) < ROUND,
+               f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
+               "axisymmetric about x3")
+        expect(run.value("Flow/type") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
+        numbers = run.summary["numbers"]
+        self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
+        names = ("surface tension", "bending modulus", "spontaneous curvature", "global area dilatation",
+                 "area difference modulus", "area difference")
+        self.tension, self.bending, self.curvature, dilatation, modulus, leaves = (
+            float(run.value(f"Membrane/{name}", 0)) for name in names)
+        self.of_area = dilatation * self.tension / self.area
+        self.of_leaves = numpy.pi * modulus * self.bending / self.area
+        self.leaves = leaves * 4 * numpy.sqrt(numpy.pi * self.area)
+        expect(self.of_leaves == 0 or self.leaves > 0, f"{run.name}: give Membrane/area difference")
+
+    def __call__(self, measures):
+        area, _, leaves, bent = measures
+        return (self.tension * area + self.of_area / 2 * (area - self.area) ** 2
+                + self.of_leaves / 2 * (leaves - self.leaves) ** 2
+                + self.bending * (bent - self.curvature * leaves + self.curvature**2 / 2 * area))
+
+
+@numpy.errstate(all="ignore")  # trial shapes of the search may overflow
+def at_rest(energy, aspect):
+    """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid of this
+    axis over equator."""
+    first = Shape(DEGREES[0])
+    logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
+    c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])
+    c[0] += numpy.log(energy.volume / first.measures(c)[1]) / 3
+
+    def of_energy(c):
+        return energy(first.measures(c))
+
+    def excess(c):
+        return first.measures(c)[1] / energy.volume - 1
+
+    c = optimize.minimize(of_energy, c, jac=lambda c: derivatives(of_energy, c), method="SLSQP",
+                          constraints={"type": "eq", "fun": excess, "jac": lambda c: derivatives(excess, c)},
+                          options={"maxiter": 500, "ftol": 1e-12}).x
+    slopes = energy.volume * derivatives(excess, c)
+    pressure, values = derivatives(of_energy, c) @ slopes / (slopes @ slopes), []
+    for degree in DEGREES[1:]:
+        now = Shape(degree)
+
+        def lagrangian(y):
+            measures = now.measures(y[:-1])
+            return energy(measures) - y[-1] * (measures[1] - energy.volume)
+
+        start = numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure)
+        solved = optimize.root(lambda y: derivatives(lagrangian, y), start, tol=1e-13)
+        expect(abs(solved.fun).max() < 1e-8 * energy.bending,
+               f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
+        c, pressure = solved.x[:-1], solved.x[-1]
+        values.append(energy(now.measures(c)))
+    log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
+    return numpy.exp(now.bases[0] @ c) * [numpy.sqrt(1 - COSINE**2), COSINE], values[-1]

@@ -3,16 +3,14 @@
 import pathlib
 
 import numpy
-from matplotlib.collections import LineCollection
 
 from ..files import table
 from ..mistakes import expect, log
 from ..results import time_label
 from ..snapshots import evenly
 from . import style
-from .draw import section
+from .draw import draw_pieces, section
 from .register import figure
-from .style import plt
 
 
 @figure
@@ -24,31 +22,27 @@ def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pa
     pair: names of the two particles (default: the first two)
     curve: a path of the literature, a CSV file with columns dx, dz over R_C"""
     figure, (path, gap, deformation) = style.panels(axes, 3, 1, 6.4, 8, sharex=True)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         names = pair or run.particles[:2]
         expect(len(names) == 2, f"{run.directory}: an encounter is of two particles, and this run has one")
-        first, second = names
-        dx, dz = ((run.of(first, f"centroid_x{k}") - run.of(second, f"centroid_x{k}")) / run.radius for k in (1, 3))
+        dx, dz = (numpy.subtract(*[run.of(name, f"centroid_x{k}") for name in names]) / run.radius for k in (1, 3))
         path.plot(dx, dz, color=color, label=run.name)
         smallest = run.series["smallest_gap"] / run.radius
         gap.plot(dx, smallest, color=color)
-        for name, line in (first, "-"), (second, (0, (4, 2))):
+        for name, line in zip(names, ("-", style.DASHES)):
             if f"{name}/taylor_inertia" in run.series:  # it is not rigid
                 deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line,
                                  label=name if color == style.RUNS[0] else None)
         least = numpy.argmin(smallest)
-        log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, largest dz "
-                 f"{dz.max():.5f}")
+        log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, "
+                 f"largest dz {dz.max():.5f}")
     if curve:
-        known = table(curve)
-        path.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
-    path.set_ylabel("dz / R$_C$")
-    path.legend()
+        path.plot(*table(curve).T[:2], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
+    style.finish(path, ylabel="dz / R$_C$")
     gap.set(ylabel="smallest gap / R$_C$", ylim=(0, None))
-    deformation.set_ylabel("D")
+    deformation.set(xlabel="dx / R$_C$", ylabel="D")
     if deformation.lines:
         deformation.legend()
-    deformation.set_xlabel("dx / R$_C$")
     return figure
 
 
@@ -61,30 +55,26 @@ def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = 
     figure = style.canvas(axes, 7.2, 2.6 * len(runs) + 2.8)
     grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
     gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
-    for k, (run, color) in enumerate(zip(runs, style.RUNS * len(runs))):
+    for k, (run, color) in enumerate(style.coloured(runs)):
         film = run.series["gap"] / run.radius
         sections(figure.add_subplot(grid[k, :]), run, times)
         gap.plot(run.time, film, color=color, label=run.name)
-        away, along = velocities(run)
-        speed.plot(run.time, away, color=color, label="away" if k == 0 else None)
-        speed.plot(run.time, along, color=color, linestyle=(0, (4, 2)), label="along" if k == 0 else None)
+        velocity = numpy.array([run.series[f"velocity_x{i}"] for i in (1, 2, 3)]) / run.scale("velocity")[0]
+        away, along = (direction @ velocity for direction in wall(run)[1:])
+        speed.plot(run.time, away, color=color, label=None if k else "away")
+        speed.plot(run.time, along, color=color, linestyle=style.DASHES, label=None if k else "along")
         log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
                  f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
     if curve:
-        known = table(curve)
-        gap.plot(known[:, 0], known[:, 1], style.MARKS[0], color=style.INK, markersize=3, label="exact")
-    gap.set(yscale="log", ylabel="gap / R$_C$")
+        gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="exact")
     speed.axhline(0, color=style.FAINT, linewidth=0.8)
-    speed.set_ylabel(runs[0].label("velocity", "centroid's {}"))
-    for axis in gap, speed:
-        axis.set_xlabel(time_label(runs))
-        axis.legend()
+    style.finish(gap, yscale="log", xlabel=time_label(runs), ylabel="gap / R$_C$")
+    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity", "centroid's {}"))
     return figure
 
 
 def wall(run):
-    """Returns a point of the wall (3,), its unit normal (3,), and the direction along it (3,): that of x1, or of x3 if
-    x1 is the normal."""
+    """Returns a point of the wall, its unit normal, and the direction along it: x1, or x3 if the normal is x1; (3,)."""
     expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
     point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
     normal /= numpy.linalg.norm(normal)
@@ -93,26 +83,15 @@ def wall(run):
     return point, normal, along / numpy.linalg.norm(along)
 
 
-def velocities(run):
-    """Returns the velocities (rows,) away from the wall and along it, of the centroid or the mean of all particles,
-    without a unit."""
-    _, normal, along = wall(run)
-    velocity = numpy.array([run.series[f"velocity_x{k}"] for k in (1, 2, 3)]) / run.scale("velocity")[0]
-    return normal @ velocity, along @ velocity
-
-
 def sections(axis, run, moments):
-    """Draws sections through the middle of the snapshots, in the plane of the normal and the direction along the
-    wall."""
+    """Draws sections of the snapshots through their middle, in the plane of the normal and along the wall."""
     point, normal, along = wall(run)
-    chosen = evenly(run.snapshots(), moments)
-    colours = plt.get_cmap(style.TIME)(numpy.linspace(0.15, 0.95, len(chosen)))
-    for shot, colour in zip(chosen, colours):
-        across = numpy.argmin(abs(normal) + abs(along))
+    across = numpy.argmin(abs(normal) + abs(along))
+    point[across] = 0  # as in the sections
+    for shot, colour in style.shaded(evenly(run.snapshots(), moments), 0.15, 0.95):
         pieces = section(shot, shot.points[:, across].mean(), across)
-        places = numpy.insert(pieces, across, 0, axis=2) - numpy.where(numpy.arange(3) == across, 0, point)
-        axis.add_collection(LineCollection(numpy.stack([places @ along, places @ normal], axis=2) / run.radius,
-                                           colors=colour))
+        places = numpy.insert(pieces, across, 0, axis=2) - point
+        draw_pieces(axis, numpy.stack([places @ along, places @ normal], axis=2) / run.radius, colour, ends="butt")
         axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
     axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
     axis.autoscale_view()

@@ -13,28 +13,23 @@ from ..results import time_label
 from ..runs import Study, deck_at, settings_of
 from . import style
 from .register import figure
-from .style import plt
 
 SAMPLES = 400  # along the way
 
 
 class Errors:
-    """Of one run: `times` and `errors` of the series within the curve, its largest error, its mesh and what it cost."""
+    """Errors of one run at the times within the curve, its `costs` (control points, seconds, velocity evaluations), and
+    its family."""
 
     def __init__(self, run, curve, series):
-        t = run.time
-        inside = (t >= curve["t"][0]) & (t <= curve["t"][-1])
+        inside = (run.time >= curve["t"][0]) & (run.time <= curve["t"][-1])
         expect(inside.any(), f"{run.directory} has no row within the times of the curve")
-        self.run, self.times = run, t[inside]
+        self.run, self.times, values = run, run.time[inside], run.series[series][inside]
         self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
-                                   for time, value in zip(t[inside], run.series[series][inside])])
+                                   for time, value in zip(self.times, values)])
         self.largest = self.errors.max()
-        self.points = run.series["n_control_points"][-1]
-        self.seconds, self.evaluations = run.series["wall_seconds"][-1], run.series["evaluations"][-1]
-
-    @property
-    def family(self):
-        return f"{self.run.value('Time/scheme')}, tolerance {self.run.value('Time/tolerance')}"
+        self.costs = [run.series[name][-1] for name in ("n_control_points", "wall_seconds", "evaluations")]
+        self.family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
 
 
 @figure
@@ -50,54 +45,30 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     known = table(curve, ("t", series))
     expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
                                                  or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
-    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.points)
-    families = sorted({one.family for one in found})
-    color = dict(zip(families, style.RUNS * len(families)))
-    figure, axes = style.panels(axes, 2, 2, 9.6, 7)
-    draw_times(axes[0], found)
-    for axis, cost, label in ((axes[1], "points", "control points"), (axes[2], "seconds", "seconds"),
-                              (axes[3], "evaluations", "velocity evaluations")):
-        for family in families:
-            members = [one for one in found if one.family == family]
-            axis.loglog([getattr(one, cost) for one in members], [one.largest for one in members], "o-",
-                        color=color[family], ms=4, label=family)
+    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.costs[0])
+    figure, (over_time, *over_costs) = style.panels(axes, 2, 2, 9.6, 7)
+    for one, shade in zip(found, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))):
+        over_time.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
+        points, seconds, evaluations = one.costs
+        log.info(f"{one.run.name}: {points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
+                 f"{evaluations:.0f} evaluations, {seconds:.2f} s")
+    room = 0.1 * min(numpy.median(one.errors) for one in found), 30 * found[0].largest  # for the legend
+    over_time.set(xlabel=time_label([one.run for one in found]), ylabel="error", ylim=room)
+    over_time.legend(loc="upper left", ncols=2)
+    for family, color in style.coloured(sorted({one.family for one in found})):
+        members = [one for one in found if one.family == family]
+        costs, largest = numpy.array([one.costs for one in members]).T, [one.largest for one in members]
+        for axis, cost in zip(over_costs, costs):
+            axis.loglog(cost, largest, "o-", color=color, ms=4, label=family)
+        if numpy.ptp(costs[0]) > 0:  # fitted in the mesh size, which is control points to the power -1/2
+            log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(largest), 1)[0]:.2f}")
+    for axis, label in zip(over_costs, ("control points", "seconds", "velocity evaluations")):
         axis.set(xlabel=label, ylabel=f"largest error of {series}")
-    draw_order(axes[1], found)
-    axes[1].legend(loc="lower left")
-    report(found, families)
+    n = numpy.array([found[0].costs[0], found[-1].costs[0]])
+    if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
+        over_costs[0].loglog(n, 0.3 * found[0].largest * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
+    over_costs[0].legend(loc="lower left")
     return figure
-
-
-def draw_times(axis, runs):
-    shades = plt.get_cmap("viridis")(numpy.linspace(0.1, 0.8, len(runs)))
-    for one, shade in zip(runs, shades):
-        axis.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
-    axis.set_ylim(0.1 * min(numpy.median(one.errors) for one in runs), 30 * runs[0].largest)  # room for the legend
-    axis.set_xlabel(time_label([one.run for one in runs]))
-    axis.set_ylabel("error")
-    axis.legend(loc="upper left", ncols=2)
-
-
-def draw_order(axis, runs):
-    """Draws the line of fourth order in the mesh size, from the coarsest mesh on."""
-    n = numpy.array([runs[0].points, runs[-1].points])
-    if n[1] > n[0]:
-        axis.loglog(n, 0.3 * runs[0].largest * (n / n[0]) ** -2.0, color=style.FAINT, linestyle=(0, (4, 3)),
-                    label="fourth order")
-
-
-def report(runs, families):
-    """Logs the largest errors and, for each family with several meshes, the order fitted in the mesh size (control
-    points to the power -1/2)."""
-    for one in runs:
-        log.info(f"{one.run.name}: {one.points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
-              f"{one.evaluations:.0f} evaluations, {one.seconds:.2f} s")
-    for family in families:
-        members = [one for one in runs if one.family == family]
-        if len({one.points for one in members}) > 1:
-            slope = numpy.polyfit(numpy.log([one.points for one in members]),
-                                  numpy.log([one.largest for one in members]), 1)[0]
-            log.info(f"{family}: order {-2 * slope:.2f}")
 
 
 @figure
@@ -117,35 +88,34 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
     set_: other keys of all runs, each KEY=VALUE
     curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
     between: centroids between which extents are drawn"""
-    large, small = radii
-    words, finer = set_ or [], finer or []
+    (large, small), (begin, end), words, finer = radii, between, set_ or [], finer or []
     expect(0 < small < large,
            f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
-    expect(between[0] < between[1],
-           "--between needs two centroids that ascend, but is given {:g} and {:g}".format(*between))
+    expect(begin < end, f"--between needs two centroids that ascend, but is given {begin:g} and {end:g}")
     settings_of(words + finer)
-    known = [curve_of(path, between) for path in curves or []]
-    x, runs, deck = numpy.linspace(*between, SAMPLES), Study(directory="results/step"), deck_at(deck)
+    known = [table(path)[:, :2] for path in curves or []]
+    within = [curve[(curve[:, 0] > begin) & (curve[:, 0] < end)] for curve in known]
+    for path, rows in zip(curves or [], within):
+        expect(len(rows), f"{path} has no row between {begin:g} and {end:g}")
+    x, runs, deck = numpy.linspace(begin, end, SAMPLES), Study(directory="results/step"), deck_at(deck)
     of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
     sharp = sharp_edges(of_large, of_small, large / small)
-    names = ("x₁", "x₂", "x₃")
     figure, (axis,) = style.panels(axes, 1, 1, 7, 5)
-    for k, (name, colour) in enumerate(zip(names, style.RUNS)):
-        for y, line in ((of_large, ":"), (of_small, "--"), (sharp, "-")):
-            axis.plot(x, y[k], line, color=colour, label=f"along {name}" if line == "-" else None)
-        at = numpy.argmax(numpy.abs(sharp[k] - of_small[k]))
-        log.info(f"along {name}: radii {large:g} and {small:g} differ by "
-                 f"{numpy.abs(of_large[k] - of_small[k]).max():.1e}, "
-                 f"sharp edges from {small:g} by {abs(sharp[k, at] - of_small[k, at]):.1e} at most, at {x[at]:.2f}")
-    for k, (curve, inside) in enumerate(known):
-        off = numpy.interp(inside[:, 0], x, sharp[k]) - inside[:, 1]
+    for name, colour, dots, dashes, line in zip(style.AXES, style.RUNS, of_large, of_small, sharp):
+        axis.plot(x, dots, ":", x, dashes, "--", color=colour)
+        axis.plot(x, line, color=colour, label=f"along {name}")
+        off = numpy.abs(line - dashes)
+        log.info(f"along {name}: radii {large:g} and {small:g} differ by {numpy.abs(dots - dashes).max():.1e}, "
+                 f"sharp edges from {small:g} by {off.max():.1e} at most, at {x[off.argmax()]:.2f}")
+    for curve, (centroid, extent), name, mark, line in zip(known, (rows.T for rows in within), style.AXES, style.MARKS,
+                                                           sharp):
+        off = numpy.interp(centroid, x, line) - extent
         at = numpy.argmax(numpy.abs(off))
-        axis.plot(*curve.T, style.MARKS[k], color=style.FAINT, markersize=3, label=f"published, {names[k]}")
-        log.info(f"along {names[k]}: {off[at]:+.4f} off the curve at most, at {inside[at, 0]:.3f}; "
+        axis.plot(*curve.T, mark, color=style.FAINT, markersize=3, label=f"published, {name}")
+        log.info(f"along {name}: {off[at]:+.4f} off the curve at most, at {centroid[at]:.3f}; "
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
-    axis.set(xlabel="centroid $x_1$", ylabel="extent over 2a",
-             title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
-    axis.legend()
+    style.finish(axis, xlabel="centroid $x_1$", ylabel="extent over 2a",
+                 title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
     return figure
 
 
@@ -162,14 +132,13 @@ def sharp_edges(of_large, of_small, ratio):
 def extents(outcome, x):
     """Returns the extents (3, x.size) over 2 a with the centroid at x1 = x, by cubic splines."""
     expect(outcome.done, f"{outcome.directory}: {outcome.message}")
-    series, a = outcome.series, outcome.run.value("Particle/radius", 1.0)
-    way = series["centroid_x1"]
+    series, way = outcome.series, outcome.series["centroid_x1"]
     expect((numpy.diff(way) > 0).all(),
            f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
     expect(way[0] <= x[0] and x[-1] <= way[-1],
            f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
-    lengths = numpy.transpose([series[f"length_x{k}"] for k in (1, 2, 3)])
-    return scipy.interpolate.CubicSpline(way, lengths)(x).T / (2 * a)
+    lengths = [series[f"length_x{k}"] for k in (1, 2, 3)]
+    return scipy.interpolate.CubicSpline(way, lengths, axis=1)(x) / (2 * outcome.run.value("Particle/radius", 1.0))
 
 
 def of_radius(runs, deck, words, finer, radius, x):
@@ -183,11 +152,3 @@ def of_radius(runs, deck, words, finer, radius, x):
         log.info(f"radius {radius:g}, {one}: changes " + ", ".join(f"{value:.1e}" for value in abs(change).max(axis=1)))
         found = found + change
     return found
-
-
-def curve_of(path, between):
-    """Returns a published curve (n, 2), a centroid and an extent per row, and its rows between these centroids."""
-    curve = table(path)[:, :2]
-    inside = curve[(curve[:, 0] > between[0]) & (curve[:, 0] < between[1])]
-    expect(len(inside), "{} has no row between {:g} and {:g}".format(path, *between))
-    return curve, inside

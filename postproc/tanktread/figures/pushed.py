@@ -1,40 +1,76 @@
-"""An axisymmetric neo-Hookean membrane at rest that closes a round constriction without friction."""
+"""Whether a capsule passes a constriction, and an axisymmetric membrane at rest that closes it without friction."""
 
 import numpy
+import scipy.integrate
 
-from ..mistakes import Mistake, expect
+from ..mistakes import expect, log
+from . import style
+from .register import figure
 
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
 
 
-def capillary_number(run):
-    told, viscosity, velocity = (run.value(key) for key in ("Membrane/capillary number", "Flow/viscosity",
-                                                            "Flow/mean velocity"))
-    return told or (viscosity or 1.0) * (velocity or 1.0) / run.value("Membrane/shear modulus")
+@figure
+def stuck(runs, axes=None, *, elements: int = 160):
+    """Whether a capsule passes a round constriction at a given pressure drop: runs, and the drop without friction.
+
+    Without friction an axisymmetric neo-Hookean membrane touches the wall and closes the channel, at rest. Its largest
+    pressure drop, over that of the empty channel at the mean velocity V, gives the critical Ca of any viscosity ratio.
+    The runs are drawn with the positions that they came to, and their velocities there.
+
+    elements: elements of the membrane, from pole to pole"""
+    first = runs[0]
+    for key, wanted in (("Channel/profile", "constriction"), ("Channel/section", "circle"),
+                        ("Membrane/law", "neo-Hookean"), ("Particle/shape", "sphere")):
+        expect(first.value(key) == wanted, f"{key} must be {wanted}, but is {first.value(key)}")
+    drop = drop_of_velocity(first)
+    way, pressure = Pushed(first, elements).through()
+    largest, there = highest(way, pressure)
+    log.info(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, "
+             f"pressure drop {largest:.5g} G_s / length")
+    figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
+    upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
+    for run, color in style.coloured(runs):
+        x, speed = run.series["centroid_x1"], run.series["velocity_x1"]
+        ca = run.value("Membrane/capillary number") or of_flow(run) / run.value("Membrane/shear modulus")
+        near = x > way[0] - 0.2
+        expect(near.any(), f"{run.directory}: its particle does not come to the constriction")
+        upper.plot(x[near], numpy.full(near.sum(), ca), color=color)
+        upper.plot(x[-1], ca, "o", color=color, markersize=4)
+        label = f"Ca = {ca:g}, {run.value('Flow/held', 'flow rate')} held"
+        lower.plot(x[near], speed[near] / run.value("Flow/mean velocity", 1.0), color=color, label=label)
+        log.info(f"{run.name}: Ca = {ca:g}, to x = {x[-1]:.4f}, there {speed[-1]:.4g}, "
+                 f"smallest film {run.series['gap'].min():.4g}")
+    style.finish(upper, ylim=(0, None), ylabel="Ca")
+    style.finish(lower, yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
+    return figure
+
+
+def of_flow(run):
+    """Returns viscosity times mean velocity."""
+    return run.value("Flow/viscosity", 1.0) * run.value("Flow/mean velocity", 1.0)
 
 
 def drop_of_velocity(run):
     """Returns the pressure drop of the empty channel divided by viscosity times mean velocity, in 1/length."""
-    viscosity, velocity = run.value("Flow/viscosity", 1.0), run.value("Flow/mean velocity", 1.0)
-    return run.series["channel_pressure_drop"][0] / (viscosity * velocity)
+    return run.series["channel_pressure_drop"][0] / of_flow(run)
 
 
 def highest(way, pressure):
-    """Returns the vertex of the parabola through the five values around the largest pressure: the pressure, and the
-    centroid there."""
+    """Returns the largest pressure, and the centroid there, of the parabola through the five values around it."""
     top = numpy.argmax(pressure)
     fold = numpy.polyfit(way[top - 2:top + 3] - way[top], pressure[top - 2:top + 3], 2)
     return fold[2] - fold[1]**2 / (4 * fold[0]), way[top] - fold[1] / (2 * fold[0])
 
 
-def hessians(gradient, at):
-    """Returns the derivatives (n, 4, 4) of a gradient (n, 4), exact to round-off (complex step)."""
-    return numpy.stack([gradient(at + 1e-30j * one).imag / 1e-30 for one in numpy.eye(4)], axis=2)
+def derivatives(function, at):
+    """Returns the derivatives (..., k) of a function (...) by the last axis of `at`, to round-off (complex step)."""
+    steps = 1e-30j * numpy.eye(at.shape[-1])
+    return numpy.stack([function(at + step).imag / 1e-30 for step in steps], axis=-1)
 
 
 class Pushed:
-    """The membrane as cones between rings: x and r of each, from the rear to the front; in units of the shear
-    modulus."""
+    """The membrane as n cones between rings `z` (n + 1, 2) (x, r) from the rear to the front; unit: shear modulus."""
 
     def __init__(self, run, n, radius=None):
         self.mouth, self.depth = run.value("Channel/radius", 1.0), run.value("Channel/depth", 0.5)
@@ -42,35 +78,47 @@ class Pushed:
         self.radius = radius or run.value("Particle/radius", 1.0)
         unstressed = self.radius / (1 + run.value("Membrane/pre-inflation", 0.0))
         angle = numpy.linspace(0, numpy.pi, n + 1)
-        x, r = -unstressed * numpy.cos(angle), unstressed * numpy.sin(angle)
+        self.sphere = numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)  # of radius 1
+        x, r = unstressed * self.sphere.T
         self.length, self.ring = numpy.hypot(numpy.diff(x), numpy.diff(r)), (r[1:] + r[:-1]) / 2
         self.area = 2 * numpy.pi * self.ring * self.length
         self.share = (numpy.append(self.area, 0) + numpy.append(0, self.area)) / 2
         self.n, self.volume = n, 4 / 3 * numpy.pi * self.radius**3
-        free = numpy.arange(2 * n + 2).reshape(n + 1, 2)
-        self.numbers = numpy.hstack([free[:-1], free[1:]])  # of the four of each cone
-        self.loose = numpy.setdiff1d(free.ravel(), free[[0, -1], 1])  # the poles stay on the axis
+        self.rings = numpy.arange(2 * n + 2).reshape(n + 1, 2)  # numbers of the coordinates of each ring
+        self.numbers = numpy.hstack([self.rings[:-1], self.rings[1:]])  # of the four of each cone
+        self.loose = numpy.setdiff1d(self.rings, self.rings[[0, -1], 1])  # the poles stay on the axis
 
     def wall(self, x):
-        """Returns the radius of the wall at x and its first two derivatives."""
-        k, inside = numpy.pi / self.width, numpy.abs(x) < self.width
-        half = self.mouth * self.depth / 2
-        return (self.mouth - inside * half * (1 + numpy.cos(k * x)), inside * half * k * numpy.sin(k * x),
-                inside * half * k * k * numpy.cos(k * x))
+        """Returns the radius of the wall at x and its derivative."""
+        k, half = numpy.pi / self.width, (numpy.abs(x) < self.width) * self.mouth * self.depth / 2
+        return self.mouth - half * (1 + numpy.cos(k * x)), half * k * numpy.sin(k * x)
+
+    def gap(self, z):
+        """Returns the distance from the wall, along r, of each ring (n + 1, 2)."""
+        return self.wall(z[:, 0])[0] - z[:, 1]
+
+    def push(self, z):
+        """Returns the force of the wall on each ring."""
+        return BARRIER * self.share / self.gap(z)
+
+    def by_barrier(self, z):
+        """Returns the gradient (n + 1, 2) of the energy by which the membrane keeps off the wall."""
+        return self.push(z)[:, None] * numpy.column_stack([-self.wall(z[:, 0])[1], numpy.ones(len(z))])
 
     def by_energy(self, ends):
         """Returns the gradient (cones, 4) of the energy (G_s/2)(l1^2 + l2^2 + 1/(l1 l2)^2 - 3) times the unstressed
         area of each cone by the coordinates x, r of its two rings (cones, 4)."""
         d = ends[:, 2:] - ends[:, :2]
-        length = numpy.sqrt((d**2).sum(1))
+        length = numpy.sqrt((d**2).sum(1))  # of complex numbers too
         s, t = length / self.length, (ends[:, 1] + ends[:, 3]) / (2 * self.ring)
         by_s = numpy.hstack([-d, d]) / (length * self.length)[:, None]
         by_t = numpy.array([0, 0.5, 0, 0.5]) / self.ring[:, None]
         return self.area[:, None] * ((s - 1 / (s**3 * t**2))[:, None] * by_s + (t - 1 / (t**3 * s**2))[:, None] * by_t)
 
     @staticmethod
-    def volumes(x, r):
+    def volumes(z):
         """Returns the volume of each cone (cones,)."""
+        x, r = z.T
         return numpy.pi / 3 * numpy.diff(x) * (r[1:]**2 + r[1:] * r[:-1] + r[:-1]**2)
 
     @staticmethod
@@ -80,95 +128,73 @@ class Pushed:
         square = a * a + a * b + b * b
         return numpy.pi / 3 * numpy.stack([-square, h * (2 * a + b), square, h * (a + 2 * b)], 1)
 
-    def channel(self, x):
-        """Returns the volume of the channel from the mouth to x."""
-        places, weights = numpy.polynomial.legendre.leggauss(20)
-        at = -self.width + (x + self.width) * (places + 1) / 2
-        return numpy.pi * (x + self.width) / 2 * (weights @ self.wall(at)[0]**2)
+    def area_at(self, x):
+        """Returns the area of the channel's section at x."""
+        return numpy.pi * self.wall(x)[0] ** 2
 
-    def behind(self, x, r, closed):
-        """Returns the volume of the fluid behind the ring that closes the channel."""
-        return self.channel(x[closed]) - self.volumes(x, r)[:closed].sum()
+    def behind(self, z, closed):
+        """Returns the volume of the fluid in the channel behind the ring that closes it."""
+        whole = scipy.integrate.fixed_quad(self.area_at, -self.width, z[closed, 0], n=20)[0]
+        return whole - self.volumes(z)[:closed].sum()
 
     def system(self, z, closed):
-        """Returns gradients (3, n) and Hessians (3, n, n) of energy, volume and fluid behind the particle by the free
-        coordinates, the volume, and gap and push of the wall at each ring."""
-        x, r = z.T
-        size = z.size
-        gradient, matrix = numpy.zeros((3, size)), numpy.zeros((3, size, size))
-        before = -1.0 * (numpy.arange(self.n) < closed)[:, None]
-        ends = numpy.hstack([z[:-1], z[1:]])
-        rows, columns = numpy.broadcast_arrays(self.numbers[:, :, None], self.numbers[:, None, :])
-        for k, by in enumerate((self.by_energy, self.by_volumes, lambda ends: before * self.by_volumes(ends))):
-            numpy.add.at(gradient[k], self.numbers, by(ends))
-            numpy.add.at(matrix[k], (rows, columns), hessians(by, ends))
-        w, dw, ddw = self.wall(x)
-        gradient[2][2 * closed] += numpy.pi * w[closed]**2
-        matrix[2][2 * closed, 2 * closed] += 2 * numpy.pi * w[closed] * dw[closed]
-        gap = w - r
-        push, stiff = BARRIER * self.share / gap, BARRIER * self.share / gap**2
-        i = 2 * numpy.arange(self.n + 1)
-        gradient[0][i] -= push * dw
-        gradient[0][i + 1] += push
-        matrix[0][i, i] += stiff * dw**2 - push * ddw
-        matrix[0][i + 1, i + 1] += stiff
-        matrix[0][i, i + 1] -= stiff * dw
-        matrix[0][i + 1, i] -= stiff * dw
-        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose], self.volumes(x, r).sum(), gap, push
+        """Returns gradients (3, n), Hessians (3, n, n) of energy, volume and fluid behind by the free coordinates."""
+        gradient, matrix = numpy.zeros((3, z.size)), numpy.zeros((3, z.size, z.size))
+        ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
+        cones, rings = self.numbers, self.rings
+        for k, by, numbers, at in ((0, self.by_energy, cones, ends), (0, self.by_barrier, rings, z),
+                                   (1, self.by_volumes, cones, ends),
+                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind]),
+                                   (2, self.area_at, rings[ring, :1], z[ring, :1])):
+            numpy.add.at(gradient[k], numbers, by(at))
+            numpy.add.at(matrix[k], (numbers[:, :, None], numbers[:, None, :]), derivatives(by, at))
+        return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
 
     def rest(self, z, pressures, closed, behind):
         """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
         Newton's method; None if it is not found."""
         z, pressures, n = z.copy(), pressures.copy(), self.loose.size
         for _ in range(60):
-            gradient, matrix, volume, gap, _ = self.system(z, closed)
-            residual = numpy.concatenate([gradient[0] - pressures @ gradient[1:],
-                                          [volume - self.volume, self.behind(*z.T, closed) - behind]])
+            gradient, matrix = self.system(z, closed)
+            residual = numpy.append(gradient[0] - pressures @ gradient[1:],
+                                    [self.volumes(z).sum() - self.volume, self.behind(z, closed) - behind])
             if abs(residual).max() < 1e-10:
                 return z, pressures
-            whole = numpy.zeros((n + 2, n + 2))
-            whole[:n, :n] = matrix[0] - numpy.tensordot(pressures, matrix[1:], 1)
-            whole[:n, n:], whole[n:, :n] = -gradient[1:].T, gradient[1:]
+            whole = numpy.block([[matrix[0] - numpy.tensordot(pressures, matrix[1:], 1), -gradient[1:].T],
+                                 [gradient[1:], numpy.zeros((2, 2))]])
             step = -numpy.linalg.solve(whole, residual)
             part = min(1, 0.05 / abs(step[:n]).max())
             while part > 1e-6:
-                trial = z.ravel().copy()
-                trial[self.loose] += part * step[:n]
-                x, r = trial.reshape(-1, 2).T
-                if (self.wall(x)[0] - r > 0.1 * gap)[1:-1].all() and (r[1:-1] > 0).all():
+                trial = z.copy()
+                trial.flat[self.loose] += part * step[:n]
+                if (self.gap(trial) > 0.1 * self.gap(z))[1:-1].all() and (trial[1:-1, 1] > 0).all():
                     break
                 part *= 0.7
-            z, pressures = trial.reshape(-1, 2), pressures + part * step[n:]
+            z, pressures = trial, pressures + part * step[n:]
         return None
 
     def through(self):
         """Returns centroids (m,) from the first touch to the throat, and the pressure drops (m,) there."""
-        angle = numpy.linspace(0, numpy.pi, self.n + 1)
-        z = self.radius * numpy.stack([-numpy.cos(angle), numpy.sin(angle)], 1)
+        z = self.radius * self.sphere
         places = numpy.linspace(-self.width - self.radius, 0, 4000)
-        near = (x for x in places if (self.wall(z[:, 0] + x)[0] - z[:, 1]).min() < 0.005 * self.radius)
-        touch = next(near, None)
-        expect(touch is not None, "the particle does not touch the wall of the constriction")
-        z[:, 0] += touch
-        closed = numpy.argmin((self.wall(z[:, 0])[0] - z[:, 1])[1:-1]) + 1
-        pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(*z.T, closed), 0.01 * self.volume
+        near = (self.wall(z[:, 0] + places[:, None])[0] - z[:, 1]).min(axis=1) < 0.005 * self.radius
+        expect(near.any(), "the particle does not touch the wall of the constriction")
+        z[:, 0] += places[near.argmax()]
+        closed = numpy.argmin(self.gap(z)[1:-1]) + 1
+        pressures, behind, step = numpy.array([1.0, 0.0]), self.behind(z, closed), 0.01 * self.volume
         found = []
-        while True:
+        while not found or found[-1][0] <= 0:
             rest = self.rest(z, pressures, closed, behind)
             if rest is None:
                 step /= 2
                 behind -= step
-                if step < 1e-5 * self.volume:
-                    raise Mistake("the membrane at rest was not found; change --elements")
+                expect(step >= 1e-5 * self.volume, "the membrane at rest was not found; change --elements")
                 continue
             z, pressures = rest
-            gradient, _, _, _, push = self.system(z, closed)
-            volume = self.volumes(*z.T)
-            centroid = volume @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
+            centroid = self.volumes(z) @ (z[1:, 0] + z[:-1, 0]) / 2 / self.volume
             found.append((centroid, pressures[1]))
-            if centroid > 0:
-                return numpy.array(found).T
             area = 2 * numpy.pi * z[:, 1] * numpy.hypot(*numpy.gradient(z, axis=0).T)
-            on_wall = push / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
+            on_wall = self.push(z) / area.clip(1e-9) + pressures[1] * (numpy.arange(self.n + 1) < closed)
             moved = numpy.argmax(on_wall[2:-2]) + 2
-            behind, closed = behind + self.behind(*z.T, moved) - self.behind(*z.T, closed) + step, moved
+            behind, closed = behind + self.behind(z, moved) - self.behind(z, closed) + step, moved
+        return numpy.array(found).T

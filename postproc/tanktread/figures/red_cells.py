@@ -6,12 +6,11 @@ from ..mistakes import log
 from ..runs import run as run_of
 from . import style
 from .register import figure
-from .style import plt
 
 # Mills, Qie, Dao, Lim & Suresh, Mech. Chem. Biosyst. 1, 2004: force in pN, transverse and axial diameter in um, the
-# bounds of the axial one where known.
-STRETCHED = ((0, 7.74, 7.74, None), (16, 6.71, 9.16, (8.34, 9.99)), (47, 5.40, 11.34, (10.06, 12.75)),
-             (88, 4.75, 13.03, (11.4, 14.7)), (151, 4.48, 14.55, (12.4, 16.7)), (193, 4.26, 15.26, (12.95, 17.65)))
+# bounds of the axial one, which are not known without force.
+STRETCHED = ((0, 7.74, 7.74, 7.74, 7.74), (16, 6.71, 9.16, 8.34, 9.99), (47, 5.40, 11.34, 10.06, 12.75),
+             (88, 4.75, 13.03, 11.4, 14.7), (151, 4.48, 14.55, 12.4, 16.7), (193, 4.26, 15.26, 12.95, 17.65))
 # Tran-Son-Tay, Sutera & Rao, Biophys. J. 46, 1984, tables 1 and 2: shear rate in 1/s, angular frequency and its bar in
 # radians per second; inclination in degrees, of all of them.
 TURNING = ((28.6, 6.22, 0.31), (42.9, 9.42, 0.57), (57.1, 12.7, 0.57), (114.3, 24.6, 1.07), (171.4, 37.4, 1.45))
@@ -22,6 +21,7 @@ RETURNING = ((0, 2.005), (0.032, 1.732), (0.065, 1.525), (0.115, 1.367), (0.184,
 RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # of the disc in um; Pa s outside; viscosity inside over that outside
 DRAWN = 5.6  # force that draws the cell out, over shear modulus and radius
 MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosity in uN s/m: in use, slowest, fastest
+BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # look of what was measured
 
 
 @figure
@@ -34,43 +34,31 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: 
     shear_modulus: in uN/m"""
     figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
     runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in STRETCHED]
-    sizes = RADIUS * numpy.array([[run.series["length_x2"][-1], run.series["length_x1"][-1]] for run in runs])
-    for (pn, across, along, bounds), (found_across, found_along) in zip(STRETCHED, sizes):
-        inside = bounds is None or bounds[0] <= found_along <= bounds[1]
-        within = "" if bounds is None else ", within its bar" if inside else ", OUTSIDE its bar"
-        log.info(f"{pn:4d} pN: along {found_along:.2f} um (measured {along}{within}), "
-                 f"across {found_across:.2f} um (measured {across})")
-    forces = [row[0] for row in STRETCHED]
-    plot.plot(forces, sizes[:, 1], color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
-    plot.plot(forces, sizes[:, 0], color=style.RUNS[0], linestyle=(0, (4, 2)), label="across")
-    draw_outlines(outlines, runs)
-    measured = numpy.array([row[2] for row in STRETCHED])
-    low, high = (numpy.array([row[2] if row[3] is None else row[3][k] for row in STRETCHED]) for k in (0, 1))
-    plot.errorbar(forces, measured, (measured - low, high - measured), fmt=style.MARKS[0], color=style.INK,
-                  markersize=4, linewidth=0.8, capsize=2, label="Mills and others 2004")
-    plot.plot(forces, [row[1] for row in STRETCHED], style.MARKS[1], color=style.INK, markersize=4, fillstyle="none",
-              label="across, measured")
-    plot.set(xlabel="force / pN", ylabel="diameter / µm")
-    plot.legend()
+    across, along = RADIUS * numpy.array([[run.series[f"length_x{k}"][-1] for run in runs] for k in (2, 1)])
+    for (pn, narrow, wide, low, high), here_across, here_along in zip(STRETCHED, across, along):
+        within = f", {'within' if low <= here_along <= high else 'OUTSIDE'} its bar" if low < high else ""
+        log.info(f"{pn:4d} pN: along {here_along:.2f} um (measured {wide}{within}), "
+                 f"across {here_across:.2f} um (measured {narrow})")
+    forces, narrow, wide, low, high = numpy.transpose(STRETCHED)
+    plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
+    plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across")
+    around = numpy.linspace(0, 2 * numpy.pi, 361)
+    for (pn, *_), (run, color) in zip(STRETCHED, style.shaded(runs, 0.25)):  # convex outlines as seen along x3
+        points = run.snapshots()[-1].points[:, :2] * RADIUS
+        outline = points[(points @ [numpy.cos(around), numpy.sin(around)]).argmax(axis=0)]
+        outlines.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
+    outlines.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
+    outlines.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
+    plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="Mills and others 2004", **BAR)
+    plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none", label="across, measured")
+    style.finish(plot, xlabel="force / pN", ylabel="diameter / µm")
     return figure
 
 
 def pulled(deck, force, more):
     """Returns the run of a deck with the force (over shear modulus and radius of the disc) along x1 at both ends."""
-    ends = (("left", -1), ("right", 1))
-    return run_of(deck, {f"Membrane/forces/{name}/force": [sign * force, 0, 0] for name, sign in ends} | more)
-
-
-def draw_outlines(plot, runs):
-    """Draws the convex outlines as seen along x3, one per force."""
-    for (pn, *_), run, shade in zip(STRETCHED, runs, numpy.linspace(0.25, 1, len(runs))):
-        points = numpy.asarray(run.snapshots()[-1].points)[:, :2] * RADIUS
-        around = numpy.linspace(0, 2 * numpy.pi, 361)
-        directions = numpy.stack([numpy.cos(around), numpy.sin(around)])
-        outline = points[(points @ directions).argmax(axis=0)]
-        plot.plot(*outline.T, color=plt.get_cmap(style.TIME)(shade), linewidth=1.1, label=f"{pn} pN")
-    plot.set(aspect="equal", xlabel="x$_1$ / µm", ylabel="x$_2$ / µm")
-    plot.legend(fontsize=7, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1))
+    ends = {"left": -force, "right": force}
+    return run_of(deck, {f"Membrane/forces/{name}/force": [pull, 0, 0] for name, pull in ends.items()} | more)
 
 
 @figure
@@ -84,27 +72,23 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
     viscosity: viscosities of the membrane, in uN s/m
     elements: elements per side"""
     figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
-    rates = numpy.array([row[0] for row in TURNING])
-    for value, color in zip(sorted(viscosity), style.RUNS * len(viscosity)):
-        found = numpy.array([last_turn(deck, rate, value, elements) for rate in rates])
-        label = f"{value:g} µN s/m"
-        plot.plot(rates, found[:, 0] / rates, "o-", markersize=3, color=color, label=label)
-        angles.plot(rates, found[:, 1], "o-", markersize=3, color=color, label=label)
-        angles.fill_between(rates, found[:, 2], found[:, 3], color=color, alpha=0.12, linewidth=0)
+    rates, frequencies, bars = numpy.transpose(TURNING)
+    for value, color in style.coloured(sorted(viscosity)):
+        found = [last_turn(deck, rate, value, elements) for rate in rates]
+        turning, angle, least, largest = numpy.transpose(found)
+        pen = {"color": color, "markersize": 3, "label": f"{value:g} µN s/m"}
+        plot.plot(rates, turning / rates, "o-", **pen)
+        angles.plot(rates, angle, "o-", **pen)
+        angles.fill_between(rates, least, largest, color=color, alpha=0.12, linewidth=0)
         for (rate, frequency, bar), (here, mean, low, high) in zip(TURNING, found):
-            within = "within its bar" if abs(here - frequency) <= bar else "OUTSIDE its bar"
-            log.info(f"{value:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, "
-                     f"{within}), "
-                     f"inclination {mean:.2f} ({low:.2f} to {high:.2f})")
-    plot.errorbar(rates, [row[1] / row[0] for row in TURNING], [row[2] / row[0] for row in TURNING],
-                  fmt=style.MARKS[1], color=style.INK, markersize=4, linewidth=0.8, capsize=2,
-                  label="Tran-Son-Tay and others 1984")
+            within = "within" if abs(here - frequency) <= bar else "OUTSIDE"
+            log.info(f"{value:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, {within} "
+                     f"its bar), inclination {mean:.2f} ({low:.2f} to {high:.2f})")
+    plot.errorbar(rates, frequencies / rates, bars / rates, fmt=style.MARKS[1], label="Tran-Son-Tay and others 1984",
+                  **BAR)
     angles.axhspan(*INCLINATION, color=style.FAINT, alpha=0.4, label="measured")
-    plot.set_ylabel("frequency / shear rate")
-    angles.set_ylabel("inclination / degrees")
-    for axis in plot, angles:
-        axis.set_xlabel("shear rate / s$^{-1}$")
-        axis.legend()
+    style.finish(plot, xlabel="shear rate / s$^{-1}$", ylabel="frequency / shear rate")
+    style.finish(angles, xlabel="shear rate / s$^{-1}$", ylabel="inclination / degrees")
     return figure
 
 
@@ -136,8 +120,7 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int =
                  f"from a length over width of {found[0]:.3f}")
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
     plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
-    plot.set(xlabel="time / s", ylabel="length over width")
-    plot.legend()
+    style.finish(plot, xlabel="time / s", ylabel="length over width")
     return figure
 
 
@@ -150,8 +133,7 @@ def let_go(deck, elements, modulus, viscosity):
         "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
         "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit,
         "Particle/initial shape/run": str(start.directory.resolve())})
-    ratio = run.series["length_x1"] / run.series["length_x2"]
-    seconds = run.series["time"] * unit
+    seconds, ratio = run.series["time"] * unit, run.series["length_x1"] / run.series["length_x2"]
     first = numpy.interp(-RETURNING[0][1], -ratio, seconds)
     after = seconds >= first
     return seconds[after] - first, ratio[after]

@@ -26,12 +26,12 @@ def figure(function):
 
     Parameters are `runs`, `run`, or a deck or study; `axes`; and options by keyword. The first paragraph of the
     docstring is the caption; lines `option: text` below it describe options on the command line."""
-    first = next(iter(inspect.signature(function).parameters))
-    convert = RUNS.get(first, (lambda given: given,))[0]
+    first = _parameters(function)[0]
+    convert = RUNS.get(first.name, (lambda given: given,))[0]
 
     @functools.wraps(function)
-    def drawn(given=inspect.signature(function).parameters[first].default, axes=None, **options):
-        expect(given is not inspect.Parameter.empty, f"{function.__name__} needs {first}")
+    def drawn(given=first.default, axes=None, **options):
+        expect(given is not first.empty, f"{function.__name__} needs {first.name}")
         given = convert(given)
         for run in given if isinstance(given, list) else [given]:
             expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
@@ -41,56 +41,55 @@ def figure(function):
     return drawn
 
 
+def _parameters(function):
+    return list(inspect.signature(function).parameters.values())
+
+
 def caption(function):
     """Returns the first paragraph of the docstring, on one line."""
     return " ".join(inspect.getdoc(function).split("\n\n")[0].split())
 
 
-def _options(function):
-    """Yields (name, default, type, help) of the keyword options."""
-    hints = typing.get_type_hints(function)
-    lines = dict(line.split(": ", 1) for line in inspect.getdoc(function).split("\n") if ": " in line)
-    for name, one in list(inspect.signature(function).parameters.items())[2:]:
-        kind = hints[name]
-        inner = [each for each in typing.get_args(kind) if each is not type(None)]
-        if type(None) in typing.get_args(kind):  # an optional one
-            kind = inner[0]
-        yield name, one.default, kind, lines.get(name, "")
+def _parsed_as(kind):
+    """Returns what argparse needs to know to parse an option of a type."""
+    arguments, origin = typing.get_args(kind), typing.get_origin(kind)
+    if type(None) in arguments:  # an optional one
+        return _parsed_as(arguments[0])
+    if kind is bool:
+        return {"action": "store_true"}
+    if origin is typing.Literal:
+        return {"choices": arguments}
+    if origin is tuple:
+        return {"nargs": len(arguments), "type": arguments[0]}
+    if origin is not list:
+        return {"type": kind}
+    if typing.get_origin(arguments[0]) is tuple:
+        return _parsed_as(arguments[0]) | {"action": "append"}
+    return {"nargs": "+", "type": arguments[0], "action": "extend", "default": None}
 
 
 def parser_of(name, program="tanktread-figure"):
     """Returns the parser of a figure's command line."""
     function = FIGURES[name]
-    parameter = next(iter(inspect.signature(function).parameters.values()))
-    parser = argparse.ArgumentParser(prog=f"{program} {name}", description=inspect.getdoc(function),
+    first, _, *options = _parameters(function)
+    hints, doc = typing.get_type_hints(function), inspect.getdoc(function)
+    texts = dict(line.split(": ", 1) for line in doc.split("\n") if ": " in line)
+    parser = argparse.ArgumentParser(prog=f"{program} {name}", description=doc,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    _, number, words = RUNS.get(parameter.name, (None, None, f"the {parameter.name}"))
-    if parameter.default is not parameter.empty:
-        number, words = "*" if number == "+" else "?", f"{words} (default: {parameter.default or 'runs made for it'})"
-    parser.add_argument("given", metavar=parameter.name, nargs=number, default=parameter.default, help=words)
+    _, number, words = RUNS.get(first.name, (None, None, f"the {first.name}"))
+    if first.default is not first.empty:
+        number, words = "?", f"{words} (default: {first.default})"
+    parser.add_argument("given", metavar=first.name, nargs=number, default=first.default, help=words)
     parser.add_argument("-o", "--output", default=getattr(function, "output", f"{name}.png"), metavar="FILE",
                         help="the picture: .png, .pdf, .svg, … (default: %(default)s)")
-    if parameter.name in RUNS:
+    if first.name in RUNS:
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                             help="a key of the deck (repeatable)")
-    for option, default, kind, text in _options(function):
-        more = {"default": default, "help": text + ("" if default in (None, False) else f" (default: {default})"),
-                "dest": option}
-        arguments, origin = typing.get_args(kind), typing.get_origin(kind)
-        if kind is bool:
-            more["action"] = "store_true"
-        elif origin is typing.Literal:
-            more["choices"] = arguments
-        elif origin is list and typing.get_origin(arguments[0]) is tuple:
-            pair = typing.get_args(arguments[0])
-            more |= {"nargs": len(pair), "type": pair[0], "action": "append"}
-        elif origin is list:
-            more |= {"nargs": "+", "type": arguments[0], "action": "extend", "default": None}
-        elif origin is tuple:
-            more |= {"nargs": len(arguments), "type": arguments[0]}
-        else:
-            more["type"] = kind
-        parser.add_argument("--" + option.replace("_", "-").removesuffix("-"), **more)
+    for option in options:
+        told = "" if option.default in (None, False) else f" (default: {option.default})"
+        parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), **(
+            {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told}
+            | _parsed_as(hints[option.name])))
     return parser
 
 
@@ -103,7 +102,7 @@ def measurements():
 
 def command():
     """Draws one of the figures from runs, or lists all."""
-    names = [name.replace("_", "-") for name in FIGURES]
+    figures = {name.replace("_", "-"): function for name, function in FIGURES.items()}
     listed = argparse.ArgumentParser(prog="tanktread-figure", description=command.__doc__,
                                      epilog="tanktread-figure FIGURE --help shows the options of one")
     listed.add_argument("figure", nargs="?", help="the name of a figure")
@@ -112,14 +111,14 @@ def command():
     if not words or words[0].startswith("-"):
         if not listed.parse_args(words).list:
             listed.error("name a figure, or give --list")
-        captions = {name.replace("_", "-"): caption(function) for name, function in FIGURES.items()} | measurements()
+        captions = {name: caption(function) for name, function in figures.items()} | measurements()
         for name, text in sorted(captions.items()):
             print(textwrap.fill(text, 118, initial_indent=f"{name:21} ", subsequent_indent=" " * 22))
         return 0
     name = words[0].removesuffix(".py").replace("-", "_")
     if name.replace("_", "-") in measurements():
         return subprocess.run([sys.executable, BENCHMARK / f"{name}.py", *words[1:]], check=False).returncode
-    expect(name in FIGURES, f"there is no figure {words[0]}; there are: {', '.join(sorted(names))}")
+    expect(name in FIGURES, f"there is no figure {words[0]}; there are: {', '.join(sorted(figures))}")
     parsed = vars(parser_of(name).parse_args(words[1:]))
     given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
     settings = settings_of(parsed.pop("set", []))

@@ -23,35 +23,38 @@ def picture(shot, values, view, colour_of, pixels=640):
     what is in the cell at the origin: particles with their images, cut at its faces. `pixels`: of the longer side.
     `colour_of`: maps values to RGBA."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
-    image = _coloured(depth, found, colour_of)
-    shape = numpy.array(depth.shape)
-    coarse = image.reshape(shape[0] // OVERSAMPLING, OVERSAMPLING, shape[1] // OVERSAMPLING, OVERSAMPLING,
-                           4).mean((1, 3))
+    columns, rows = numpy.array(depth.shape) // OVERSAMPLING
+    fine = _coloured(depth, found, colour_of).reshape(columns, OVERSAMPLING, rows, OVERSAMPLING, 4)
+    coarse = fine.mean((1, 3))
     coarse[..., :3] /= numpy.maximum(coarse[..., 3:], 1e-12)
-    end = corner + shape / size
+    end = corner + numpy.array(depth.shape) / size
     return numpy.clip(coarse.transpose(1, 0, 2)[::-1], 0, 1), (corner[0], end[0], corner[1], end[1])
 
 
 def seen(shot, values, view, pixels):
-    """Returns what is nearest to the eye in every pixel (right, up): the depth towards the eye in pixels, -inf outside
-    the surface; rows of value, cosine to the eye and distance from an element edge; the lower left corner; pixels per
-    length."""
+    """Returns of the sample nearest to the eye in every pixel (right, up) the depth towards the eye in pixels, -inf
+    outside the surface, and rows of value, cosine to the eye and distance from an element edge; the lower left corner;
+    pixels per length."""
     places, frame = shot.positions @ view.T, shot.frame @ view.T
     low, high = frame[:, :2].min(0), frame[:, :2].max(0)
     size = pixels / (high - low).max()
     shape = OVERSAMPLING * (numpy.ceil((high - low) * size / OVERSAMPLING).astype(int) + 4)
     corner = low - 2 * OVERSAMPLING / size
-    depth, found = numpy.full(shape[0] * shape[1], -numpy.inf,
-                              numpy.float32), numpy.zeros((shape[0] * shape[1], 3), numpy.float32)
-    if shot.cell is None:
-        for sample in _samples(shot, places * size, values):
-            _deposit(sample, corner * size, shape, depth, found)
-    else:
+    depth = numpy.full(shape.prod(), -numpy.inf, numpy.float32)
+    found = numpy.zeros((shape.prod(), 3), numpy.float32)
+    shifts, lattice = [numpy.zeros(3)], None
+    if shot.cell is not None:
         vectors = shot.cell @ view.T * size
-        for steps in itertools.product((-1, 0, 1), repeat=3):
-            for sample in _samples(shot, places * size + numpy.array(steps) @ vectors, values,
-                                   numpy.linalg.inv(vectors)):
-                _deposit(sample, corner * size, shape, depth, found)
+        shifts = [steps @ vectors for steps in itertools.product((-1, 0, 1), repeat=3)]
+        lattice = numpy.linalg.inv(vectors)
+    for shift in shifts:
+        for sample in _samples(shot, places * size + shift, values, lattice):
+            column, row = numpy.clip((sample[:, :2] - corner * size).astype(int), 0, shape - 1).T
+            place = column * shape[1] + row
+            order = numpy.argsort(sample[:, 2], kind="stable")  # the nearest one last, which stays
+            order = order[sample[order, 2] > depth[place[order]]]
+            depth[place[order]] = sample[order, 2]
+            found[place[order]] = sample[order, 3:]
     return depth.reshape(shape), found.reshape(*shape, 3), corner, size
 
 
@@ -61,15 +64,13 @@ def _samples(shot, places, values, lattice=None):
     samples in the cell at the origin, and those of inner sides too, whose value is NaN."""
     known = numpy.column_stack([places, values]).astype(numpy.float32)  # to a ten thousandth of a pixel
     grid = shot.sampled(places, COARSE)
-    if lattice is None:
-        seen = numpy.flatnonzero((_normals(grid)[0] > -0.2).any((1, 2)))
-    else:
-        seen = numpy.flatnonzero((numpy.abs(grid @ lattice) < 0.5).all(-1).any((1, 2)))
+    visible = _normals(grid)[0] > -0.2 if lattice is None else (numpy.abs(grid @ lattice) < 0.5).all(-1)
+    seen = numpy.flatnonzero(visible.any((1, 2)))
     if len(seen) == 0:
         return
-    # a cell is not sampled evenly by its parameters
-    wanted = numpy.maximum(_longest(grid[seen], 1), _longest(grid[seen], 2)) * 1.05 * COARSE / STEP
-    k = 8 * numpy.ceil(wanted / 8).astype(int)
+    # by the longest facet of each cell as seen, because a cell is not sampled evenly by its parameters
+    facets = [numpy.linalg.norm(numpy.diff(grid[seen, :, :, :2], axis=axis), axis=-1).max((1, 2)) for axis in (1, 2)]
+    k = 8 * numpy.ceil(numpy.maximum(*facets) * 1.05 * COARSE / STEP / 8).astype(int)
     for n in numpy.unique(k):
         for which in numpy.array_split(seen[k == n], max(1, (k == n).sum() * n * n // 500000)):
             sample = shot.sampled(known, n, which)
@@ -86,27 +87,11 @@ def _samples(shot, places, values, lattice=None):
 
 
 def _normals(grid):
-    """Returns at the points of grids the cosine between normal and direction to the eye, the area of a facet, and the
-    lengths of its sides along t and along s."""
+    """Returns at points of grids the cosine of normal and eye, the area of a facet, its lengths along t and along s."""
     t, s = numpy.gradient(grid, axis=(1, 2))
     normal = numpy.cross(s, t)
     area, length_t, length_s = (numpy.maximum(numpy.linalg.norm(x, axis=-1), 1e-12) for x in (normal, t, s))
     return normal[..., 2] / area, area, length_t, length_s
-
-
-def _longest(grid, axis):
-    """Returns the longest facet of each grid along an axis, as seen."""
-    return numpy.linalg.norm(numpy.diff(grid[..., :2], axis=axis), axis=-1).max((1, 2))
-
-
-def _deposit(sample, corner, shape, depth, found):
-    """Stores for each pixel the sample nearest to the eye."""
-    column, row = numpy.clip((sample[:, :2] - corner).astype(int), 0, numpy.array(shape) - 1).T
-    place = column * shape[1] + row
-    order = numpy.argsort(sample[:, 2], kind="stable")  # the nearest one last, which stays
-    order = order[sample[order, 2] > depth[place[order]]]
-    depth[place[order]] = sample[order, 2]
-    found[place[order]] = sample[order, 3:]
 
 
 def _coloured(depth, found, colour_of):

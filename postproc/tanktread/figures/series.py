@@ -25,86 +25,72 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
 
     curves: published curves, CSV files with the columns t, taylor_inertia and, if known, inclination
     deformation: which Taylor parameter"""
-    inclined = any(has_inclination(run) for run in runs)
-    width = 6.4 if len(runs) == 1 else 9.8
-    if inclined:
-        figure, (upper, lower) = style.panels(axes, 2, 1, width, 6.4, sharex=True, height_ratios=[3, 2])
-    else:
-        figure, (upper,) = style.panels(axes, 1, 1, width, 4.2)
-        lower = None
+    # the angle in the plane x1 x3 has no meaning if the flow is symmetric about an axis
+    inclined = [run for run in runs if run.value("Flow/type") != "uniaxial extension"]
+    height, layout = (6.4, {"sharex": True, "height_ratios": [3, 2]}) if inclined else (4.2, {})
+    figure, axes = style.panels(axes, 2 if inclined else 1, 1, 6.4 if len(runs) == 1 else 9.8, height, **layout)
+    panels = dict(zip((deformation, "inclination"), axes))
     known = {path.stem: curve_of(path) for path in map(pathlib.Path, curves or [])}
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         if run.several:
-            draw_particles(upper, lower, run, deformation, style.RUNS if len(runs) == 1 else [color])
-        else:
-            draw_run(upper, lower, run, deformation, color)
-            report(run, known)
-    draw_curves(upper, lower, known, end=max(run.time[-1] for run in runs))
-    upper.set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""), ylim=(0, None),
-              title=title(runs))
-    if len(runs) == 1:
-        upper.legend(loc="lower right")
-    else:
-        upper.legend(loc="upper left", bbox_to_anchor=(1.01, 1))
+            draw_particles(panels, run, deformation, style.RUNS if len(runs) == 1 else [color])
+            continue
+        draw_run(panels, run, color)
+        for label, curve in known.items():
+            words = {"taylor_inertia": "in D"} | ({"inclination": "degrees"} if run in inclined else {})
+            apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {unit}"
+                     for name, unit in words.items() if name in curve.dtype.names]
+            log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
+    draw_curves(axes, known, end=max(run.time[-1] for run in runs))
+    titles = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
+              for key in ("Membrane/law", "Flow/type")]
+    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
+        titles.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
+    axes[0].set(ylabel="Taylor parameter D" + (" (surface)" if deformation == "taylor_surface" else ""),
+                ylim=(0, None), title=", ".join(filter(None, titles)))
+    place, corner = ("lower right", None) if len(runs) == 1 else ("upper left", (1.01, 1))
+    axes[0].legend(loc=place, bbox_to_anchor=corner)
     if inclined:
-        lower.set_ylabel("inclination, degrees")
-    bottom = lower if inclined else upper
-    bottom.set(xlabel=time_label(runs), xlim=(0, None))
+        axes[1].set_ylabel("inclination, degrees")
+    axes[-1].set(xlabel=time_label(runs), xlim=(0, None))
     return figure
 
 
-def has_inclination(run):
-    """Returns False if the angle in the plane x1 x2 has no meaning, because the flow is symmetric about an axis."""
-    return run.value("Flow/type") != "uniaxial extension"
+def draw_series(axis, run, name, **pen):
+    """Draws a series, an inclination as `unbroken`, and the band of its estimated error, if the run has one."""
+    drawn = run.time, run.series[name]
+    axis.plot(*unbroken(*drawn) if name.endswith("inclination") else drawn, zorder=3, **pen)
+    if run.band(name) is not None:
+        axis.fill_between(run.time, *run.band(name), color=pen["color"], alpha=0.25, linewidth=0, zorder=2)
 
 
-def title(runs):
-    words = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
-             for key in ("Membrane/law", "Flow/type")]
-    if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
-        words.append(f"Ca = {runs[0].value('Membrane/capillary number'):g}")
-    return ", ".join(word for word in words if word)
-
-
-def label(run):
+def draw_run(panels, run, color):
+    """Draws the series on {name: axis}, and what the deck expects of them."""
     points = run.series.get("n_control_points")
-    mesh = f", {points[-1]:.0f} control points" if points is not None and len(points) else ""
-    return run.name + mesh
+    label = run.name + (f", {points[-1]:.0f} control points" if points is not None and len(points) else "")
+    for name, axis in panels.items():
+        draw_series(axis, run, name, color=color, label=label)
+        if expected := run.value(f"Expect/{name}"):
+            at = expected["at"] * run.rate[0] if "at" in expected else run.time[-1]
+            first = EXPECTED not in {line.get_label() for line in axis.lines}
+            axis.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6,
+                      label=EXPECTED if first else None)
 
 
-def draw_run(upper, lower, run, deformation, color):
-    t = run.time
-    upper.plot(t, run.series[deformation], color=color, label=label(run), zorder=3)
-    style.draw_band(upper, run, deformation, color)
-    if lower:
-        style.draw_band(lower, run, "inclination", color)
-        lower.plot(*unbroken(t, run.series["inclination"]), color=color, zorder=3)
-    for axes, name in [(upper, deformation)] + ([(lower, "inclination")] if lower else []):
-        expected = run.value(f"Expect/{name}")
-        if expected:
-            at = expected["at"] * run.rate[0] if "at" in expected else t[-1]
-            known = {text.get_label() for text in axes.lines}
-            axes.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6, label=EXPECTED
-                      if EXPECTED not in known else None)
-
-
-def draw_particles(upper, lower, run, deformation, colors):
+def draw_particles(panels, run, deformation, colors):
     """Draws deformation and inclination of several particles, with thin lines if they are many."""
     deforming = [name for name in run.particles if f"{name}/{deformation}" in run.series]
     expect(deforming, f"{run.directory}: none of its particles deforms")
     few = len(deforming) <= len(style.RUNS)
     for k, name in enumerate(deforming):
-        pen = {"color": colors[k % len(colors)] if few else colors[0], "linewidth": 1.8 if few else 0.5, "zorder": 3}
         words = f"{run.name}: {name}" if few else f"{run.name}: {len(deforming)} particles" if k == 0 else None
-        upper.plot(run.time, run.series[f"{name}/{deformation}"], label=words, **pen)
-        style.draw_band(upper, run, f"{name}/{deformation}", pen["color"])
-        if lower:
-            lower.plot(*unbroken(run.time, run.series[f"{name}/inclination"]), **pen)
+        for series, axis in panels.items():
+            draw_series(axis, run, f"{name}/{series}", color=colors[k % len(colors) if few else 0],
+                        linewidth=1.8 if few else 0.5, label=words)
 
 
 def unbroken(t, angle):
-    """Returns times and angles with a NaN where an axis passes from one end of its range of 180 degrees to the
-    other."""
+    """Returns times and angles with NaN where an axis passes from one end of its range of 180 degrees to the other."""
     passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
@@ -116,22 +102,13 @@ def curve_of(path):
     return numpy.sort(found, order="t")
 
 
-def draw_curves(upper, lower, known, end):
+def draw_curves(axes, known, end):
     for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
         inside = curve[curve["t"] <= end * 1.001]
-        pen = {"linestyle": "none", "marker": mark, "ms": 3.6, "mfc": "none", "mec": style.FAINT, "mew": 0.8,
-               "zorder": 2, "markevery": max(1, len(inside) // 40)}
-        upper.plot(inside["t"], inside["taylor_inertia"], label=label, **pen)
-        if lower and "inclination" in curve.dtype.names:
-            lower.plot(inside["t"], inside["inclination"], **pen)
-
-
-def report(run, known):
-    for label, curve in known.items():
-        names = [("taylor_inertia", "in D")] + [("inclination", "degrees")] * has_inclination(run)
-        apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {words}"
-                 for name, words in names if name in curve.dtype.names]
-        log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
+        for axis, name in zip(axes, ("taylor_inertia", "inclination")):
+            if name in curve.dtype.names:
+                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
+                          markevery=max(1, len(inside) // 40), label=label)
 
 
 @figure
@@ -141,21 +118,23 @@ def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     Of several runs of one scene, the difference of D from the first one stands below, at the times of snapshots.
 
     deformation: which Taylor parameter"""
-    compares = len(runs) > 1 and all(scene(run) == scene(runs[0]) for run in runs)
+    first = runs[0]
+    scenes = [[run.deck.get(name) for name in ("Flow", "Particle", "Membrane", "Tube")] for run in runs]
+    compares = len(runs) > 1 and all(scene == scenes[0] for scene in scenes)
     heights = [3, 1.5, 1.8] if compares else [3, 1.8]
     figure, axes = style.panels(axes, len(heights), 1, 6.4, 1.25 * sum(heights), sharex=True, height_ratios=heights)
     upper, lower = axes[0], axes[-1]
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         t, values, points = run.time, run.series[deformation], run.series["n_control_points"]
         changes = numpy.flatnonzero(numpy.diff(points)) + 1
         upper.plot(t, values, color=color,
                    label=f"{run.name}: {points[0]:.0f} → {points[-1]:.0f} control points, D = {values[-1]:.4f}")
         upper.plot(t[changes], values[changes], "o", color=color, markerfacecolor="white", markersize=4.5)
         lower.step(t, points, where="post", color=color)
-        if compares and run is not runs[0]:
-            both, mine, firsts = numpy.intersect1d(t.round(9), runs[0].time.round(9), return_indices=True)
-            axes[1].plot(both, 1e3 * (values[mine] - runs[0].series[deformation][firsts]), "o-", markersize=3,
-                         color=color)
+        if compares and run is not first:
+            both, mine, firsts = numpy.intersect1d(t.round(9), first.time.round(9), return_indices=True)
+            change = values[mine] - first.series[deformation][firsts]
+            axes[1].plot(both, 1e3 * change, "o-", markersize=3, color=color)
         log.info(f"{run.name}: {len(changes)} changes of the mesh, D({t[-1]:g}) = {values[-1]:.6f}, "
                  f"{points[-1]:.0f} control points")
     if compares:
@@ -165,8 +144,3 @@ def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     upper.legend(loc="lower right")
     lower.set(ylabel="control points", ylim=(0, None), xlabel=time_label(runs))
     return figure
-
-
-def scene(run):
-    """Returns the sections of the deck that do not depend on the mesh."""
-    return [run.deck.get(name) for name in ("Flow", "Particle", "Membrane", "Tube")]

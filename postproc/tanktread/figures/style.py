@@ -1,5 +1,6 @@
 """The look of the figures, and the axes that they are drawn in."""
 
+import itertools
 import pathlib
 
 import matplotlib.pyplot as plt
@@ -16,6 +17,9 @@ MARKS = ["o", "s", "^", "D", "v", "P"]                          # one per source
 FIELD = "viridis"                                               # colour map of a field without sign
 SIGNED = "RdBu_r"                                               # colour map of a field with a sign
 TIME = "copper_r"                                               # colour map of times
+DASHES = (0, (4, 2))
+AXES = ("x₁", "x₂", "x₃")
+GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # a line to compare with, such as an order
 
 STYLE = {
     "figure.dpi": 150, "figure.constrained_layout.use": True, "font.size": 9.5, "text.color": INK,
@@ -52,11 +56,20 @@ def draw(function, *arguments):
         return function(*arguments)
 
 
-def draw_band(axes, run, name, color):
-    """Draws the band of a series' estimated error, if the run has one."""
-    band = run.band(name)
-    if band is not None:
-        axes.fill_between(run.time, *band, color=color, alpha=0.25, linewidth=0, zorder=2)
+def coloured(runs):
+    """Returns pairs of a run, or of another item, and its colour."""
+    return zip(runs, itertools.cycle(RUNS))
+
+
+def shaded(items, first=0.12, last=1.0):
+    """Returns a list of pairs of an item and its colour; the items are ordered in time."""
+    return list(zip(items, plt.get_cmap(TIME)(numpy.linspace(first, last, len(items)))))
+
+
+def finish(axes, **properties):
+    """Sets properties of axes, such as xlabel, and draws their legend."""
+    axes.set(**properties)
+    axes.legend()
 
 
 def save(figure, path):

@@ -1,22 +1,29 @@
-"""Figures of surfaces and their sections."""
+"""Figures of surfaces and their sections, and the animation of a run."""
 
 import numpy
+from matplotlib.animation import FuncAnimation
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 from ..mistakes import expect, log
 from ..results import field_label
 from . import style
-from .draw import VIEW, draw_sections, draw_surface, magnitude, scale, section_variation, share_window, view_axes
+from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, middle, section_variation, share_window,
+                   view_axes)
 from .register import figure
+from .series import unbroken
+
+LEAST_WIDTH = 100  # pixels
 
 
 def field_of(shots, field):
-    """Raises Mistake unless the snapshots hold a field. Returns the colour scale of all of them and its label
-    pattern."""
+    """Returns norm, colour map and label pattern of a field of snapshots. Raises Mistake if one does not hold it."""
     for shot in shots:
         expect(field in shot.fields, f"{shot.path} holds no field {field}; there are: {', '.join(sorted(shot.fields))}")
-    norm, colours = scale([magnitude(shot.fields[field]) for shot in shots])
-    return norm, colours, "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
+    values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
+    low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
+    bound = max(-low, high)
+    return *((Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)), pattern
 
 
 @figure
@@ -28,15 +35,14 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
     view: azimuth and elevation of the eye, in degrees"""
     shots = [run.snapshot_at(time).scaled(run) for run in runs]
     norm, colours, pattern = field_of(shots, field)
-    n = len(runs)
-    figure, axes = style.panels(axes, 1, n + 1, 4.4 * n + 4.6, 4.4)
+    figure, axes = style.panels(axes, 1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
     figure.colorbar(ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
                     orientation="horizontal", label=label)
-    draw_sections(axes[n], runs, shots)
+    draw_sections(axes[-1], runs, shots)
     return figure
 
 
@@ -56,38 +62,125 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         pairs = [(run, times[-1] if times else end) for run in runs]
     else:
         pairs = [(runs[0], moment) for moment in times or [0, end / 2, end]]
-    shots = [(run, run.snapshot_at(moment).scaled(run)) for run, moment in pairs]
-    norm, colours, pattern = field_of([shot for _, shot in shots], field)
-    seen = numpy.concatenate([(shot.points - (shot.points.min(0) + shot.points.max(0)) / 2) @ view_axes(*view)[:2].T
-                              for _, shot in shots])
+    shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
+    norm, colours, pattern = field_of(shots, field)
+    seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
     tall = 1.15 * numpy.ptp(seen[:, 1]) / numpy.ptp(seen[:, 0])
     figure = style.canvas(axes, 4 * len(shots), 4 * tall + 5.2)
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
-    surfaces, tops = [], []
-    for k, (run, shot) in enumerate(shots):
-        surfaces.append(figure.add_subplot(grid[0, k]))
-        draw_surface(surfaces[-1], shot, field, norm, colours, *view)
+    surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
+                             for k in range(len(shots))])
+    for (run, _), shot, surface in zip(pairs, shots, surfaces):
+        draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
-        surfaces[-1].set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
-        polar = figure.add_subplot(grid[2, k], projection="polar")
-        tops.append((draw_variation(polar, shot, field), polar))
+        surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
     share_window(surfaces)
-    for _, polar in tops:
-        polar.set_ylim(0, 1.05 * max(top for top, _ in tops))
+    reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
+    for polar in polars:
+        polar.set_ylim(0, 1.05 * reach)
     figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
 
 
 def draw_variation(axis, shot, field):
-    """Returns how far out it reaches."""
+    """Draws the variation of a field along the section, and returns the largest."""
     angle, variation = section_variation(shot, field)
-    closed = numpy.append(angle, angle[0] + 2 * numpy.pi)
-    axis.plot(closed, numpy.append(variation, variation[0]), color=style.RUNS[0], linewidth=1)
+    axis.plot(numpy.append(angle, angle[0] + 2 * numpy.pi), numpy.append(variation, variation[0]),
+              color=style.RUNS[0], linewidth=1)
     axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
     axis.set_rlabel_position(55)
     axis.tick_params(labelsize=7.5)
     axis.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     log.info(f"{shot.path}: largest variation {variation.max():.3g}")
     return max(variation.max(), 1e-12)
+
+
+@figure
+def animation(run, axes=None, *, field: str = "traction", view: tuple[float, float] = VIEW, rate: float = 8,
+              width: int = 720, frame: float | None = None):
+    """The particle in motion, as a GIF: its surface with the elements and a field, and series over time below.
+
+    D and the number of control points; of a rigid particle inclination and angular velocity; of several particles D of
+    each that deforms and the smallest gap. A frame is a saved step: `Output/interval` sets their number. The figure has
+    the FuncAnimation as `film`.
+
+    field: field that colours the surface
+    view: azimuth and elevation of the eye, in degrees
+    rate: frames per second
+    width: of the animation, in pixels
+    frame: draw one picture of this time instead"""
+    expect(width >= LEAST_WIDTH and rate > 0,
+           f"--width must be at least {LEAST_WIDTH} and --rate positive, but they are {width} and {rate:g}")
+    shots = [shot.scaled(run) for shot in run.snapshots()]
+    expect(shots, f"{run.directory} holds no snapshots")
+    # one scale, one window and the same colours in all frames
+    directions, colouring = view_axes(*view), field_of(shots, field)
+    places = numpy.concatenate([shot.frame - middle(shot.frame) for shot in shots]) @ directions[:2].T
+    window = numpy.array([places.min(0), places.max(0)])
+    figure, surface, panels = arranged(axes, run, window[1] - window[0], field, *colouring)
+    marks = draw_series(panels, run)
+
+    def show(shot):
+        surface.clear()
+        draw_surface(surface, shot, field, *colouring[:2], *view, pixels=width * 2 // 3, triad=False)
+        (left, low), (right, high) = window + directions[:2] @ middle(shot.frame)
+        room = 0.11 * (right - left)
+        draw_triad(surface, directions, numpy.array([left, right, low, high]))
+        # of this saved step, the last one if none came after
+        row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
+        title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
+        surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room), title=title)
+        for name, mark in marks.items():
+            mark.set_data([run.time[row]], [run.series[name][row]])
+        return list(marks.values())
+
+    if frame is not None:
+        show(run.snapshot_at(frame).scaled(run))
+    else:
+        figure.set_dpi(width / figure.get_figwidth())
+        figure.film = FuncAnimation(figure, show, frames=shots)
+        figure.film.rate = rate
+    return figure
+
+
+animation.output = "animation.gif"
+
+
+def arranged(axes, run, extent, field, norm, colours, pattern):
+    """Returns the figure with its colour bar, the axes of the surface, and those of the two series."""
+    with style.plt.rc_context({"figure.constrained_layout.use": False}):  # it would move the axes from frame to frame
+        figure = style.canvas(axes, 7.2, 7.2 * 0.80 * extent[1] / extent[0] + 3.1)
+    height = figure.get_figheight()
+    surface = figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
+    bar = figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
+    figure.colorbar(ScalarMappable(norm, colours), cax=bar, label=run.label(field, pattern))
+    upper = figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
+    return figure, surface, (upper, figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper))
+
+
+def draw_series(panels, run):
+    """Draws the series below the surface, and returns {name: mark of the present value}."""
+    deforming = [f"{name}/taylor_inertia" for name in run.particles if f"{name}/taylor_inertia" in run.series]
+    if run.several:
+        shown = ({"D": deforming} if deforming else {}) | {"smallest gap" + run.in_units("length"): ["smallest_gap"]}
+    elif "taylor_inertia" in run.series:
+        shown = {"D": ["taylor_inertia"], "control points": ["n_control_points"]}
+    else:
+        shown = {"incl., °": ["inclination"], "ω₂" + run.in_units("1/time"): ["angular_velocity_x2"]}
+    marks = {}
+    for axis, (label, names), color in zip(panels, shown.items(), style.RUNS):
+        width, size = (1.8, 4.5) if len(names) < 9 else (0.6, 1.5)
+        for name in names:
+            drawn = run.time, run.series[name]
+            axis.plot(*unbroken(*drawn) if name == "inclination" else drawn, color=color, linewidth=width,
+                      drawstyle="steps-post" if name == "n_control_points" else "default")
+            marks[name], = axis.plot([], [], "o", color=style.INK, markersize=size, clip_on=False)
+        axis.set_ylabel(label)
+        values = numpy.concatenate([run.defined(name)[1] for name in names])
+        if len(values) and values.min() >= 0:
+            axis.set_ylim(0, 1.1 * max(values.max(), 1e-6))
+    panels[0].tick_params(labelbottom=False)
+    panels[1].set(xlabel=run.time_label, xlim=(run.time[0], run.time[-1]))
+    return marks

@@ -12,7 +12,7 @@ from ..studies.sweep import Sweep
 from . import style
 from .register import figure
 
-SERIES = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
+SYMBOLS = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
 DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ − 1", "energy": "energy / its mean − 1",
           "taylor_inertia": "D", "inclination": "inclination / degrees"}
 CA = "Particles/capsule/Membrane/capillary number"
@@ -25,17 +25,15 @@ def rheology(runs, axes=None):
     [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
     particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
-    for run, color in zip(runs, style.RUNS * len(runs)):
+    for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
         lower.plot(run.time, n1, color=color, label="N₁" if run is runs[0] else None)
-        lower.plot(run.time, n2, color=color, linestyle=(0, (4, 2)), label="N₂" if run is runs[0] else None)
+        lower.plot(run.time, n2, color=color, linestyle=style.DASHES, label="N₂" if run is runs[0] else None)
         log.info(f"{run.name}, t = {run.time[-1]:g}: [η] = {viscosity[-1]:.5f}, N1 = {n1[-1]:.5f}, N2 = {n2[-1]:.5f}")
-    upper.set_ylabel("intrinsic viscosity [η]")
-    upper.legend()
+    style.finish(upper, ylabel="intrinsic viscosity [η]")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
-    lower.set(ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
-    lower.legend()
+    style.finish(lower, ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
     return figure
 
 
@@ -59,31 +57,25 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     from_: strain at which averages begin
     blocks: number of parts of an average"""
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
-    for run, color in zip(runs, style.RUNS * len(runs)):
-        strain, words = run.time, []
-        label = f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
-        for name, symbol in SERIES.items():
-            values, is_upper = run.series[name], name == "relative_viscosity"
-            axis, line = (upper, "-") if is_upper else (lower, "-" if name.endswith("1") else "--")
-            axis.plot(strain, values, color=color, linestyle=line,
-                      label=label if is_upper else symbol if run is runs[0] else None)
-            mean, error = average(strain, values, from_, blocks)
+    for run, color in style.coloured(runs):
+        strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
+        for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
+            axis.plot(strain, run.series[name], color=color, linestyle=line,
+                      label=label if axis is upper else symbol if run is runs[0] else None)
+            mean, error = average(strain, run.series[name], from_, blocks)
             if numpy.isfinite(mean):
                 axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
             words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
         log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
-    upper.set_ylabel("effective viscosity μ_eff/μ")
-    upper.legend()
+    style.finish(upper, ylabel="effective viscosity μ_eff/μ")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
-    lower.set(ylabel="normal stress differences" + stress, xlabel="strain")
-    lower.legend()
+    style.finish(lower, ylabel="normal stress differences" + stress, xlabel="strain")
     return figure
 
 
 def average(strain, values, first, blocks):
-    """Returns the mean over the strain from `first` on, by the trapezoidal rule, and its standard error from equal
-    blocks."""
+    """Returns the mean over strain from `first` on, by the trapezoidal rule, and its standard error by equal blocks."""
     expect(blocks > 1, f"--blocks must be at least 2, but is {blocks}")
     if strain[-1] <= first:
         return numpy.nan, numpy.nan
@@ -117,22 +109,26 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
             rows.setdefault(settings[CA], []).append(row)
     expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
     figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
-    for (ca, found), color in zip(rows.items(), style.RUNS * len(rows)):
-        alone = intrinsic(made, single, ca, next(one for one in runs.outcomes if one.done))
+    deck = next(one for one in runs.outcomes if one.done).run.deck
+    alike = {"Time/final time": deck["Time"]["final time"],
+             "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]}
+    for (ca, found), color in style.coloured(rows.items()):
+        outcome = made.run(single, {"Membrane/capillary number": ca} | alike)
+        expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
+        alone = stresses(outcome.run)[0][-1]
         fraction, mean, error = numpy.array(sorted(found)).T
+        slope = (mean - 1) / fraction
         look = {"color": color, "fmt": "o", "markersize": 4, "capsize": 2.5}
         upper.errorbar(fraction, mean, error, label=f"Ca = {ca:g}", **look)
         upper.plot([0, fraction[-1]], [1, 1 + alone * fraction[-1]], color=color, linewidth=0.8, linestyle=":")
-        lower.errorbar(fraction, (mean - 1) / fraction, error / fraction, **look)
+        lower.errorbar(fraction, slope, error / fraction, **look)
         lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
         if len(fraction) > 2:
-            (_, limit), covariance = numpy.polyfit(fraction, (mean - 1) / fraction, 1, w=fraction / error,
-                                                   cov="unscaled")
+            (_, limit), covariance = numpy.polyfit(fraction, slope, 1, w=fraction / error, cov="unscaled")
             log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
                      f"one capsule: {alone:.4f}")
-    upper.set_ylabel("relative viscosity μ_eff/μ")
-    upper.legend()
+    style.finish(upper, ylabel="relative viscosity μ_eff/μ")
     lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
     return figure
 
@@ -142,24 +138,14 @@ def averages(outcome, first, blocks):
     if not outcome.done:
         log.info(f"left out: {outcome.message.removeprefix('tanktread: ')}")
         return None
-    series, strain = outcome.series, outcome.run.time
+    name, series, strain = outcome.directory.name, outcome.series, outcome.run.time
     if strain[-1] <= first:
-        log.info(f"left out: {outcome.directory.name} ends at strain {strain[-1]:g}, before --from {first:g}")
+        log.info(f"left out: {name} ends at strain {strain[-1]:g}, before --from {first:g}")
         return None
-    if series["contact_impulse"][-1] > 0:
-        log.info(f"{outcome.directory.name}, φ = {series['volume_fraction'][0]:.3g}: "
-                 f"the limiter's impulse is {series['contact_impulse'][-1]:.3g}")
-    return (series["volume_fraction"][0], *average(strain, series["relative_viscosity"], first, blocks))
-
-
-def intrinsic(study, single, ca, one):
-    """Returns [η] of one capsule, on the mesh and to the strain of the suspension's run `one`."""
-    deck = one.run.deck
-    outcome = study.run(single, {
-        "Membrane/capillary number": ca, "Time/final time": deck["Time"]["final time"],
-        "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]})
-    expect(outcome.done, f"one capsule at Ca = {ca:g}: {outcome.message}")
-    return stresses(outcome.run)[0][-1]
+    fraction, impulse = series["volume_fraction"][0], series["contact_impulse"][-1]
+    if impulse > 0:
+        log.info(f"{name}, φ = {fraction:.3g}: the limiter's impulse is {impulse:.3g}")
+    return fraction, *average(strain, series["relative_viscosity"], first, blocks)
 
 
 @figure
@@ -174,26 +160,24 @@ def drift(run, axes=None, *, from_: int = 10):
     stop, rest = flow_of(run)
     flows = run.series["time"] <= stop
     time, phase = run.series["time"][flows], run.series["phase"][flows]
-    expect(phase[-1] / 360 >= from_ + 3,
-           f"{run.directory} has {max(phase[-1] / 360, 0):.1f} turns; a line from turn {from_} on needs {from_ + 3}: "
-           "a later Time/final time, or --from an earlier one")
+    made = phase[-1] / 360
+    expect(made >= from_ + 3, f"{run.directory} has {max(made, 0):.1f} turns; a line from turn {from_} on needs "
+                              f"{from_ + 3}: a later Time/final time, or --from an earlier one")
     figure, axes = style.panels(axes, len(DRIFTS), 1, 6.4, 7.6, sharex=True)
-    log.info(f"{phase[-1] / 360:.1f} turns, {len(time)} steps; "
+    log.info(f"{made:.1f} turns, {len(time)} steps; "
              f"the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
-    for (name, label), plot in zip(DRIFTS.items(), axes):
+    for (name, label), axis in zip(DRIFTS.items(), axes):
         values = run.series[name][flows]
         means = turns(time, values, phase)
-        scale = {"area": values[0], "energy": means.mean()}.get(name)
-        if scale:
+        if scale := {"area": values[0], "energy": means.mean()}.get(name):
             values, means = values / scale - 1, means / scale - 1
         change, error = line(means, from_)
         later, within = means[from_:], values[(phase > 360 * from_) & ~numpy.isnan(values)]
-        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; "
-                 f"their means {later.min():.6g} to {later.max():.6g}, "
-                 f"within turns {within.min():.6g} to {within.max():.6g}")
-        plot.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
-        plot.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
-        plot.set_ylabel(label, fontsize=8)
+        log.info(f"{name}: changes by {change:.2g} ± {error:.1g} over {len(later)} turns; their means "
+                 f"{later.min():.6g} to {later.max():.6g}, within turns {within.min():.6g} to {within.max():.6g}")
+        axis.plot(phase / 360, values, color=style.FAINT, linewidth=0.3)
+        axis.plot(numpy.arange(len(means)) + 0.5, means, color=style.RUNS[0], linewidth=1)
+        axis.set_ylabel(label, fontsize=8)
     axes[-1].set_xlabel("turns of the membrane")
     energy = run.series["energy"][run.series["time"] >= rest]
     if len(energy) > 1:
@@ -209,16 +193,14 @@ def turns(time, values, phase):
 
 
 def line(means, first):
-    """Returns the change of the straight line through the means over all turns from `first` on, and its standard
-    error."""
+    """Returns the change of the line through the means over all turns from `first` on, and its standard error."""
     number = numpy.arange(first, len(means))
     (slope, _), covariance = numpy.polyfit(number, means[first:], 1, cov=True)
     return slope * (len(number) - 1), covariance[0, 0] ** 0.5 * (len(number) - 1)
 
 
 def flow_of(run):
-    """Returns the times at which the flow begins to end and from which it is at rest; infinity if its history does not
-    end at rest."""
+    """Returns the times at which the flow begins to end and from which it rests; infinity if it does not rest."""
     amplitudes, times = (numpy.atleast_1d(run.value(f"Flow/history/{name}", [])) for name in ("amplitudes", "times"))
     on = numpy.flatnonzero(amplitudes)
     if len(on) and len(times) == len(amplitudes) and on[-1] + 1 < len(times):

@@ -1,23 +1,24 @@
-"""Figures of particles in tubes."""
+"""Figures of particles in tubes and channels."""
+
+from typing import Literal
 
 import numpy
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 
 from ..files import arrays_of
 from ..mistakes import expect
 from . import style
-from .draw import VIEW, draw_surface, section, share_window
+from .draw import VIEW, draw_pieces, draw_surface, middle, section, share_window
 from .register import figure
-from .style import plt
 
 STEP = 0.2    # between contours, in mean velocities
 FLOOR = 1e-4  # smallest distance from the largest velocity that is drawn: the tolerances of a run allow for it
 TIMES = [0.0, 0.5, 1.0, 2.0, 5.0, 20.0]
-PANELS = [("migration_velocity", "migration velocity / vₘ"), ("velocity_x1", "velocity along the tube / vₘ"),
-          ("tank_treading_velocity", "tank-treading velocity / vₘ"),
-          ("disturbed_pressure_drop", "disturbed pressure drop / (μ vₘ/R$_T$)")]
+PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "velocity along the tube / vₘ",
+          "tank_treading_velocity": "tank-treading velocity / vₘ",
+          "disturbed_pressure_drop": "disturbed pressure drop / (μ vₘ/R$_T$)"}
+ACROSS, UP = "x₂ / R$_T$", "x₃ / R$_T$"  # labels of axes
 
 
 @figure
@@ -25,18 +26,19 @@ def duct(runs, axes=None):
     """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
     it."""
     ducts = [duct_of(run) for run in runs]
-    top = max(d["maximum"][2] / d["mean_velocity"] for d in ducts)
+    largest = [d["maximum"][2] / d["mean_velocity"] for d in ducts]
     outlines = numpy.concatenate([d["outline"] for d in ducts])
     margin = 0.02 * numpy.ptp(outlines, axis=0).max()
     low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
-    levels = numpy.append(numpy.arange(0, top, STEP), top)
+    levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
     figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
-    for axis, d, run in zip(axes, ducts, runs):
+    for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
-        draw_path(axis, run, d["radius"])
+        if "centroid_x2" in run.series:
+            draw_path(axis, run, d, style.RUNS[1], 4, linewidth=1.6, label="path of the centroid")
         axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-        axis.set_title(f"{run.name}: largest {d['maximum'][2] / d['mean_velocity']:.4f}", pad=10)
-    axes[0].set_ylabel("x₃ / R$_T$")
+        axis.set_title(f"{run.name}: largest {most:.4f}", pad=10)
+    axes[0].set_ylabel(UP)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
     figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
                     ticks=levels[:-1:2], spacing="proportional")
@@ -60,24 +62,23 @@ def draw_section(axis, d, levels):
     field = *numpy.concatenate([grid, d["outline"]]).T, numpy.append(velocity[inside], numpy.zeros(len(d["outline"])))
     filled = axis.tricontourf(*field, levels, cmap=style.FIELD)
     lines = axis.tricontour(*field, levels[1:-1], colors="white", linewidths=0.5, alpha=0.7)
-    wall = plt.Polygon(d["outline"], facecolor="none", edgecolor=style.INK, linewidth=1.6)
+    wall = style.plt.Polygon(d["outline"], facecolor="none", edgecolor=style.INK, linewidth=1.6)
     axis.add_patch(wall)
     for artist in filled.collections + lines.collections if hasattr(filled, "collections") else [filled, lines]:
         artist.set_clip_path(wall)
     axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=9, linestyle="none", label="largest velocity")
-    axis.set_aspect("equal")
+    axis.set(aspect="equal", xlabel=ACROSS)
     axis.grid(False)
     axis.spines[:].set_visible(False)
-    axis.set_xlabel("x₂ / R$_T$")
     return filled
 
 
-def draw_path(axis, run, radius):
-    if "centroid_x2" not in run.series:
-        return
-    x2, x3 = (run.series[name] / radius for name in ("centroid_x2", "centroid_x3"))
-    axis.plot(x2, x3, color=style.RUNS[1], linewidth=1.6, label="path of the centroid")
-    axis.plot(x2[0], x3[0], color=style.RUNS[1], marker="o", markersize=4)
+def draw_path(axis, run, d, color, size, **pen):
+    """Draws the path of the centroid across the tube with a mark at its start, and returns it, shape (2, rows)."""
+    path = numpy.array([run.series[name] for name in ("centroid_x2", "centroid_x3")]) / d["radius"]
+    axis.plot(*path, color=color, **pen)
+    axis.plot(*path[:, 0], color=color, marker="o", markersize=size)
+    return path
 
 
 @figure
@@ -88,109 +89,160 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
     for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
-        shots = shots_of(run, times)
-        colours = plt.get_cmap(style.TIME)(numpy.linspace(0.12, 1, len(shots)))
+        reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
+        expect(reached, f"{run.directory} ends before the first of these times")
+        shots = list({shot.path: shot for shot in reached}.values())  # each once
+        shaded = style.shaded(shots)
         upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
         largest = max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots)
         norm, unit = Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
-        rows = numpy.atleast_1d(upper.subplots(1, len(shots)))
-        for axis, shot, colour in zip(rows, shots, colours):
+        row = numpy.atleast_1d(upper.subplots(1, len(shots)))
+        for axis, (shot, colour) in zip(row, shaded):
             draw_surface(axis, shot, "traction", norm, style.FIELD, *VIEW, pixels=360, triad=shot is shots[0])
             axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
-        share_window(rows)
+        share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        left, middle = lower.subplots(1, 2, width_ratios=[2.1, 1])
-        along(left, run, d, shots, colours)
-        across(middle, run, d, shots, colours)
-        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=rows,
+        left, right = lower.subplots(1, 2, width_ratios=[2.1, 1])
+        draw_along(left, run, d, shaded)
+        draw_across(right, run, d, shaded)
+        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
 
-def shots_of(run, times):
-    """Returns the saved steps nearest to the times, each once."""
-    found = {shot.path: shot for shot in (run.snapshot_at(time) for time in times
-                                          if time <= run.series["time"][-1] * (1 + 1e-9))}
-    expect(found, f"{run.directory} ends before the first of these times")
-    return list(found.values())
-
-
 def tube_section(run, d, shot, across):
-    """Returns the section (pieces, 2, 2) of the particle in the plane x_{across+1} = centroid and the centroid (3,),
-    over R_T."""
+    """Returns the section (pieces, 2, 2) of the particle at x_{across+1} = centroid and the centroid (3,), over R_T."""
     c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
     return section(shot, c[across], across) / d["radius"], c / d["radius"]
 
 
-def along(axis, run, d, shots, colours):
+def draw_along(axis, run, d, shaded):
     """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
-    along x1."""
+    along x1, and the wall's lowest and highest x3 on the line of the last centroid's x2."""
     place = 0.0
-    for shot, colour in zip(shots, colours):
+    for shot, colour in shaded:
         pieces, c = tube_section(run, d, shot, 1)
-        axis.add_collection(LineCollection(pieces - [c[0] - place, 0], colors=[colour], linewidths=1.6,
-                                           capstyle="round"))
+        draw_pieces(axis, pieces - [c[0] - place, 0], colour)
         axis.plot(place, c[2], marker=".", color=colour, markersize=4)
         place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
-    low, high = wall_heights(d["outline"], c[1])
-    for height in low, high:
-        axis.axhline(height, color=style.INK, linewidth=1.4)
+    a, b = d["outline"][:-1], d["outline"][1:]
+    met = (a[:, 0] - c[1]) * (b[:, 0] - c[1]) <= 0
+    (x, height), (dx, rise) = a[met].T, (b - a)[met].T
+    heights = height + (c[1] - x) / numpy.where(dx == 0, 1, dx) * rise
+    for wall in heights.min(), heights.max():
+        axis.axhline(wall, color=style.INK, linewidth=1.4)
     axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
-    axis.set_aspect("equal")
     axis.autoscale_view()
-    axis.set(xlabel="x₁, flow to the right", ylabel="x₃ / R$_T$")
-    axis.set_xticks([])
+    axis.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
     axis.grid(False)
-    axis.set_title("section x₂ = centroid")
 
 
-def wall_heights(outline, x2):
-    """Returns the lowest and highest x3 at which the line of given x2 meets the wall."""
-    a, b = outline[:-1], outline[1:]
-    cut = (a[:, 0] - x2) * (b[:, 0] - x2) <= 0
-    share = (x2 - a[cut, 0]) / numpy.where(b[cut, 0] == a[cut, 0], 1, b[cut, 0] - a[cut, 0])
-    heights = a[cut, 1] + share * (b[cut, 1] - a[cut, 1])
-    return heights.min(), heights.max()
-
-
-def across(axis, run, d, shots, colours):
+def draw_across(axis, run, d, shaded):
     """Draws sections in the plane x1 = centroid inside the wall."""
     axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
-    for shot, colour in zip(shots, colours):
-        pieces, _ = tube_section(run, d, shot, 0)
-        axis.add_collection(LineCollection(pieces, colors=[colour], linewidths=1.6, capstyle="round"))
+    for shot, colour in shaded:
+        draw_pieces(axis, tube_section(run, d, shot, 0)[0], colour)
     axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
-    axis.set_aspect("equal")
+    axis.set(aspect="equal", xlabel=ACROSS, ylabel=UP, title="section x₁ = centroid")
     axis.grid(False)
-    axis.set(xlabel="x₂ / R$_T$", ylabel="x₃ / R$_T$", title="section x₁ = centroid")
 
 
 @figure
 def tube_motion(runs, axes=None):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
     ducts = [duct_of(run) for run in runs]
-    figure, axes = style.panels(axes, 2, 3, 12.5, 6.6)
-    for run, d, colour in zip(runs, ducts, style.RUNS * len(runs)):
-        speed, radius = d["mean_velocity"], d["radius"]
-        s = run.series
-        time = run.time
-        axes[0].plot(*d["outline"].T, color=colour, linewidth=1)
-        axes[0].plot(s["centroid_x2"] / radius, s["centroid_x3"] / radius, color=colour, label=run.name)
-        axes[0].plot(s["centroid_x2"][0] / radius, s["centroid_x3"][0] / radius, color=colour, marker="o",
-                     markersize=3.5)
-        axes[0].plot(*d["maximum"][:2], color=colour, marker="+", markersize=8)
-        off = numpy.hypot(s["centroid_x2"] / radius - d["maximum"][0], s["centroid_x3"] / radius - d["maximum"][1])
-        axes[1].semilogy(time, numpy.maximum(off, FLOOR), color=colour)
-        for axis, (name, label) in zip(axes[2:], PANELS):
-            scale = run.value("Flow/viscosity", 1) * speed / radius if "pressure" in name else speed
-            axis.plot(time[1:], s[name][1:] / scale, color=colour)
-            axis.set_title(label)
-    axes[0].set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel="x₂ / R$_T$",
-                ylabel="x₃ / R$_T$")
-    axes[1].set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$")
-    for axis in axes[1:]:
-        axis.set_xlabel("t vₘ / R$_T$")
-    for axis in axes[2:]:
+    figure, (paths, distance, *others) = style.panels(axes, 2, 3, 12.5, 6.6)
+    for (run, colour), d in zip(style.coloured(runs), ducts):
+        speed, maximum = d["mean_velocity"], d["maximum"][:2]
+        paths.plot(*d["outline"].T, color=colour, linewidth=1)
+        path = draw_path(paths, run, d, colour, 3.5, label=run.name)
+        paths.plot(*maximum, color=colour, marker="+", markersize=8)
+        off = numpy.hypot(*(path - maximum[:, None]))
+        distance.semilogy(run.time, numpy.maximum(off, FLOOR), color=colour)
+        for axis, (name, label) in zip(others, PANELS.items()):
+            scale = run.value("Flow/viscosity", 1) * speed / d["radius"] if "pressure" in name else speed
+            axis.plot(run.time[1:], run.series[name][1:] / scale, color=colour)
+            axis.set(title=label, xlabel="t vₘ / R$_T$")
+    for axis in others:
         axis.set_xlim(left=0)
-    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+    paths.set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel=ACROSS, ylabel=UP)
+    paths.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+    distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
     return figure
+
+
+@figure
+def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
+    """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
+
+    Also the wall's shear stress and the velocity on the centre line of the empty channel.
+
+    shapes: number of times, evenly along the particle's way
+    across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
+    c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
+    if axes is None or hasattr(axes, "add_subplot"):
+        figure = style.canvas(axes, 10.5, 9.5)
+        panels = figure.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]],
+                                       height_ratios=[1.1, 1, 1])
+    else:
+        figure, axes = style.panels(axes, 5, 1, 10.5, 9.5)
+        panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
+    way = way_along(run, c)
+    cut_open(panels["cut"], run, c, way, shapes, across - 1)
+    along_the_way(panels, run, c, way)
+    panels["wall"].plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
+    panels["wall"].set(xlabel="arc length along the centre line" + run.in_units("length"),
+                       title="shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
+    return figure
+
+
+def way_along(run, c):
+    """Returns the way of the centroid (rows,) along the centre line: to its nearest point, and on along its tangent."""
+    name = "center_x" if "center_x1" in run.series else "centroid_x"
+    places = numpy.column_stack([run.series[f"{name}{k}"] for k in (1, 2, 3)])
+    nearest = numpy.argmin(numpy.linalg.norm(places[:, None] - c["centre"][None], axis=2), axis=1)
+    along = numpy.gradient(c["centre"], c["s"], axis=0)[nearest]
+    return c["s"][nearest] + numpy.sum((places - c["centre"][nearest]) * along, axis=1)
+
+
+def cut_open(axis, run, c, way, n, across):
+    bent = numpy.ptp(c["centre"][:, 1]) > 0
+    across = 2 if bent else across  # in its plane
+    up = 3 - across
+    lines = c["wall"][2:] if across == 1 else c["wall"][:2]
+    axis.plot(lines[:, :, 0].T, lines[:, :, up].T, color=style.INK, linewidth=1.6)
+    reach, labelled = run.series["length_x1"].max(), []  # places of the times
+    shots = [run.snapshot_at(numpy.interp(x, way, run.series["time"])) for x in numpy.linspace(way[0], way[-1], n)]
+    for shot, colour in style.shaded({shot.path: shot for shot in shots}.values()):
+        centre = middle(shot.points)
+        draw_pieces(axis, section(shot, centre[across], across), colour)
+        at = centre[:2] if bent else (centre[0], lines[:, :, 1:].min() * 0.97)
+        if all(numpy.hypot(*numpy.subtract(at, other)) >= reach / 8 for other in labelled):
+            labelled.append(at)
+            axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
+    axis.grid(False)
+    shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
+    axis.set(aspect="equal", xlim=(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0)),
+             xlabel="x₁" + run.in_units("length"), ylabel=style.AXES[up] + run.in_units("length"),
+             title=f"{run.name}: cut open at x{across + 1} = centroid; times "
+                   f"{'inside' if bent else 'below'}{run.in_units('time')}")
+    if bent:
+        axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
+
+
+def along_the_way(panels, run, c, way):
+    s, label = run.series, "arc length of the centroid along the centre line" + run.in_units("length")
+    extents, velocity, pressure = panels["extents"], panels["velocity"], panels["pressure"]
+    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
+        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
+    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
+    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
+    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
+                  label="on the centre line, empty channel")
+    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
+    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    if "pressure_drop_by_flux" in s:
+        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
+    style.finish(pressure, xlabel=label, title=f"pressure drop that the particle adds{run.in_units('force/length^2')} "
+                                               f"(empty channel: {c['pressure_drop']:.5g})")
