@@ -46,14 +46,11 @@ class Run:
                    f"{path} has NaN in the series {name}, which is always defined: the file is damaged")
             expect(values.shape == self.series["time"].shape,
                    f"{path} has other rows in the series {name} than in `time`: the file is damaged")
-        self.deck = self._deck(path)
-        self.summary = Named(parsed(summary, kind=dict), f"{summary} holds no") if summary.exists() else None
-
-    def _deck(self, path):
         try:
-            return yaml_text(self.deck_text)["Tanktread"] or {}
+            self.deck = yaml_text(self.deck_text)["Tanktread"] or {}
         except (yaml.YAMLError, KeyError, TypeError):
             raise Mistake(f"{path} holds no deck: the file is damaged") from None
+        self.summary = Named(parsed(summary, kind=dict), f"{summary} holds no") if summary.exists() else None
 
     def __repr__(self):
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
@@ -87,17 +84,7 @@ class Run:
         """Returns a series (rows,) of one particle by its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
-    def frame(self, tidy=False):
-        """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
-        units and descriptions in its `attrs`. With tidy=True it has one row per time and particle and the columns
-        `time`, `particle` and the series of particles; of one particle and of several alike. Needs pandas."""
-        return exports.frame(self, tidy)
-
-    def dataset(self):
-        """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), of one
-        particle and of several alike; series of the scene have (time,). A series of the scene with the name of a
-        particle's is called `scene_<name>`. Variables have the attributes `units` and `long_name`. Needs xarray."""
-        return exports.dataset(self)
+    frame, dataset = exports.frame, exports.dataset
 
     def in_units(self, dimension):
         """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""

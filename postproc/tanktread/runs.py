@@ -1,6 +1,7 @@
 """Runs of the program: one of a deck, or many of a study, made once and found again."""
 
 import concurrent.futures
+import functools
 import hashlib
 import json
 import math
@@ -122,19 +123,13 @@ class Outcome:
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
         self.processor_seconds = note.get("processor_seconds", math.nan)
         self.code, self.command = note["code"], note["command"]
-        self._run = None
 
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
     failed = property(lambda self: not (self.done or self.refused or self.slow))
     refused = property(lambda self: self.code == 2)
     slow = property(lambda self: self.code in (None, 4))
 
-    @property
-    def run(self):
-        if self._run is None:
-            self._run = Run(self.directory)
-        return self._run
-
+    run = functools.cached_property(lambda self: Run(self.directory))
     series = property(lambda self: self.run.series)
     counts = property(lambda self: self._of_summary("counts"))
     final = property(lambda self: self._of_summary("final"))
@@ -171,7 +166,6 @@ class Study:
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()
-        self._manual = None
 
     def run(self, decks, settings, ranks=1):
         """Returns the Outcome of `tanktread decks… --set …`.
@@ -181,8 +175,13 @@ class Study:
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"
-        before = self._before(where, note)
-        if before and (where in self._made or not self.fresh) and self._stands(before):
+        try:
+            before = Outcome(where, parsed(note, json.loads))
+        except Mistake:  # there is none, or it is damaged
+            before = None
+        # a run that never began is made again: another program may know the keys that were refused
+        began = before and not before.refused and (where / "run.h5").exists()
+        if before and (where in self._made or (began and before.code != 4 and not self.fresh)):
             return before
         self._made.add(where)
         # without --bind-to none, runs side by side would all be bound to the first cores
@@ -198,19 +197,6 @@ class Study:
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
-
-    @staticmethod
-    def _before(where, note):
-        """Returns the Outcome that a run left, or None if there is none or its note is damaged."""
-        try:
-            return Outcome(where, parsed(note, json.loads))
-        except Mistake:
-            return None
-
-    def _stands(self, outcome):
-        """Returns whether a run need not be made again: another program may know the keys that were refused."""
-        never_began = outcome.refused or not (outcome.directory / "run.h5").exists()
-        return outcome.directory in self._made or not (never_began or outcome.code == 4)
 
     def _make(self, words):
         _exists(self.program)
@@ -260,11 +246,12 @@ class Study:
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             return list(pool.map(function, items))
 
+    @functools.cached_property
+    def _manual(self):
+        return subprocess.run([self.program, "--reference"], capture_output=True, text=True, check=True).stdout
+
     def dimension(self, key):
         """Returns the dimension of a key, such as force/length; "" of a number and of an unknown key."""
-        if self._manual is None:
-            self._manual = subprocess.run([str(self.program), "--reference"], capture_output=True, text=True,
-                                          check=True).stdout
         section, _, name = key.rpartition("/")
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")

@@ -1,5 +1,6 @@
 """Saved steps of a run: exact surfaces and the fields on them."""
 
+import functools
 import itertools
 import pathlib
 
@@ -30,21 +31,17 @@ class Snapshot:
     def __init__(self, path, time, particles=("particle",)):
         self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
         self.cell = None  # vectors of the periodic cell over R_C, as rows (3, 3), of a lattice in a `scaled` snapshot
-        self._content = None
 
-    def _read(self):
-        if self._content is None:
-            with opened(self.path) as file:
-                grid = file["VTKHDF"]
-                connectivity, offsets = grid["Connectivity"][:], grid["Offsets"][:]
-                cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
-                fields = {name: data[:] for name, data in grid["PointData"].items()}
-                self._content = grid["Points"][:], cells, fields
-        return self._content
+    @functools.cached_property
+    def _content(self):
+        with opened(self.path) as file:
+            grid = file["VTKHDF"]
+            cells = numpy.split(grid["Connectivity"][:], grid["Offsets"][1:-1])
+            return grid["Points"][:], cells, {name: data[:] for name, data in grid["PointData"].items()}
 
-    points = property(lambda self: self._read()[0])
-    cells = property(lambda self: self._read()[1])
-    fields = property(lambda self: self._read()[2])
+    points = property(lambda self: self._content[0])
+    cells = property(lambda self: self._content[1])
+    fields = property(lambda self: self._content[2])
 
     @property
     def positions(self):
@@ -80,14 +77,11 @@ class Snapshot:
 
         `values` (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or
         (m, k). `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
-        values, cells = numpy.asarray(values), numpy.asarray(cells)
-        s, t = numpy.asarray(s, float), numpy.asarray(t, float)
+        values, s, t = numpy.asarray(values), numpy.asarray(s, float), numpy.asarray(t, float)
         result = numpy.empty((len(cells),) + values.shape[1:])
-        degrees = numpy.array([round(len(self.cells[cell]) ** 0.5) - 1 for cell in cells])
-        for p in set(degrees.tolist()):
-            which = numpy.flatnonzero(degrees == p)
-            nodes = values[numpy.array([self.cells[cell] for cell in cells[which]])]
-            result[which] = numpy.einsum("mn,mn...->m...", lagrange.table(p, s[which], t[which], ds, dt), nodes)
+        for p, which, nodes in lagrange.by_degree([self.cells[cell] for cell in cells]):
+            table = lagrange.table(p, s[which], t[which], ds, dt)
+            result[which] = numpy.einsum("mn,mn...->m...", table, values[nodes])
         return result
 
     def sampled(self, values, k=8, cells=None):
@@ -122,8 +116,4 @@ class Snapshot:
             total += (numpy.linalg.norm(numpy.cross(s, t), axis=-1) @ numpy.outer(weights, weights).ravel()).sum() / 4
         return total
 
-    def mesh(self, kind="meshio"):
-        """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid.
-
-        Both have cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
-        return exports.mesh(self, kind)
+    mesh = exports.mesh
