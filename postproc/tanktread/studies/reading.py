@@ -25,6 +25,11 @@ def positive(given, name):
     return float(given)
 
 
+def optional(read, section, key, name):
+    """Returns read(value, name of the key) of a key of a section; None if the key is absent."""
+    return read(section[key], f"{name}: {key}") if section.get(key) is not None else None
+
+
 def whole(given, name):
     """Returns a whole number above 0."""
     expect(isinstance(given, int) and not isinstance(given, bool) and given > 0,
@@ -51,9 +56,8 @@ def decks_of(text, path):
     """Returns the paths of the decks that a file names, looked for next to it, in the present directory and with the
     program."""
     expect(text.get("deck"), f"{path} names no deck")
-    names = text["deck"] if isinstance(text["deck"], list) else [text["deck"]]
     found = []
-    for name in names:
+    for name in text["deck"] if isinstance(text["deck"], list) else [text["deck"]]:
         expect(isinstance(name, str), f"{path}: a deck is the name of a file, but {name} is none")
         places = [pathlib.Path(path).parent / name, *(folder / name for folder in shared())]
         found.append(next((place.resolve() for place in places if place.is_file()), None))
