@@ -87,7 +87,7 @@ class Fit:
         return self.settings | experiment.settings | values
 
     def predictions(self, *points):
-        """Returns the predictions of all data at each of these values of the fitted numbers, None where a run failed."""
+        """Returns the predictions of all data at each of these values of the numbers, None where a run failed."""
         made = self.runs.all([(one, self.settings_of(one, numbers)) for numbers in points for one in self.experiments])
         groups = [made[part] for part in parts([len(self.experiments)] * len(points))]
         return [None if None in group else list(itertools.chain.from_iterable(group)) for group in groups]

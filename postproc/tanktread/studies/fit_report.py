@@ -38,6 +38,7 @@ def further(fits, settings):
 
 
 def _scatter(fit):
+    """Returns by what factor residuals are larger than their errors."""
     return numpy.sqrt(fit.square / fit.freedom)
 
 
@@ -92,8 +93,8 @@ def told(fits, rows):
             lines.append("  of it: " + ", ".join(f"{name} {square:.3g} of {count}"
                                                  for name, (square, count) in fit.squares.items()))
         if fit.missed:
-            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer mesh, a "
-                         "free scale or another law first")
+            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer mesh, "
+                         "a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):
