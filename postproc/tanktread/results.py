@@ -8,7 +8,7 @@ import numpy
 import yaml
 
 from . import exports
-from .files import Named, datasets, opened, parsed, text_of_hdf, yaml_text
+from .files import Named, arrays_of, datasets, opened, parsed, text_of_hdf, yaml_text
 from .mistakes import Mistake, expect
 from .snapshots import DIMENSIONS, Snapshot
 
@@ -55,15 +55,9 @@ class Run:
     def __repr__(self):
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
 
-    @property
-    def name(self):
-        """The name of the directory."""
-        return self.directory.resolve().name
-
-    @property
-    def several(self):
-        """Whether the deck has the section Particles, so that series of one particle are named <particle>/<name>."""
-        return any("/" in name for name in self.series)
+    name = property(lambda self: self.directory.resolve().name, doc="The name of the directory.")
+    several = property(lambda self: any("/" in name for name in self.series),
+                       doc="Whether the deck has the section Particles; then series of one are named <particle>/<name>.")
 
     @property
     def particles(self):
@@ -113,10 +107,10 @@ class Run:
         of a circle of the duct's area."""
         kind = self.value("Flow/type")
         if kind == "duct":
-            with opened(self.directory / "duct.h5") as file:
-                return float(file["mean_velocity"][()] / file["radius"][()]), "mean velocity / tube radius"
+            duct = arrays_of(self.directory / "duct.h5")
+            return float(duct["mean_velocity"] / duct["radius"]), "mean velocity / tube radius"
         if kind == "linear":
-            gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
+            gradient = numpy.reshape(self.value("Flow/gradient"), (3, 3)).astype(float)
             return float(numpy.linalg.norm(gradient, 2)), "rate"
         if kind == "parabolic":
             width = float(self.value("Flow/half width"))
@@ -139,12 +133,11 @@ class Run:
     @property
     def radius(self):
         """R_C: radius of the sphere of equal volume, of the first particle."""
-        if self.several:
-            return float(3 * self.series[f"{self.particles[0]}/volume"][0] / (4 * numpy.pi)) ** (1 / 3)
         numbers = (self.summary or {}).get("numbers") or {}
-        if "radius" in numbers:
+        if "radius" in numbers and not self.several:
             return float(numbers["radius"])
-        return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
+        volume = self.of(self.particles[0], "volume")[0] if self.several else self.snapshots()[0].volume()
+        return float(3 * volume / (4 * numpy.pi)) ** (1 / 3)
 
     def scale(self, dimension):
         """Returns what a length, velocity, stress, curvature or tension is divided by to have no unit, and its symbol.
@@ -197,10 +190,8 @@ class Run:
     def band(self, name):
         """Returns the lower and upper limits (rows,) of a series, value minus and plus estimated error; None if the run
         has no estimated error of it."""
-        error = self.errors.get(name)
-        if error is None or not numpy.isfinite(error).any():
-            return None
-        return self.series[name] - error, self.series[name] + error
+        error = self.errors.get(name, numpy.nan)
+        return (self.series[name] - error, self.series[name] + error) if numpy.isfinite(error).any() else None
 
     def snapshots(self):
         """Returns the saved steps in order of time. Each is read when it is used."""

@@ -125,7 +125,7 @@ class Outcome:
         self.code, self.command = note["code"], note["command"]
 
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
-    failed = property(lambda self: not (self.done or self.refused or self.slow))
+    failed = property(lambda self: self.status == "failed")
     refused = property(lambda self: self.code == 2)
     slow = property(lambda self: self.code in (None, 4))
 
@@ -138,14 +138,10 @@ class Outcome:
     def _of_summary(self, section):
         return Named(self.run.summary[section] or {}, f"{self.directory}/summary.yaml holds in {section} no")
 
-    @property
-    def status(self):
-        """Returns `done`, `refused`, `stopped` or `failed`."""
-        return "done" if self.done else "refused" if self.refused else "stopped" if self.slow else "failed"
-
-    @property
-    def kernel_evaluations(self):
-        return sum(value for name, value in self.counts.items() if name.startswith("kernel_evaluations"))
+    status = property(lambda self: "done" if self.done else "refused" if self.refused else "stopped" if self.slow
+                      else "failed", doc="`done`, `refused`, `stopped` or `failed`.")
+    kernel_evaluations = property(lambda self: sum(value for name, value in self.counts.items()
+                                                   if name.startswith("kernel_evaluations")))
 
     @property
     def end(self):

@@ -67,12 +67,10 @@ def seen(shot, axis=1, k=8):
 def _zeros(shot, function, k):
     """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
     parameter in every cell."""
-    number = len(shot.cells)
-    cell, s, t = numpy.indices((number, k + 1, k + 1)).reshape(3, -1)
-    s, t = s / k, t / k
-    values = function(cell, s, t).reshape(number, k + 1, k + 1)
+    cell, s, t = nodes = numpy.indices((len(shot.cells), k + 1, k + 1)) / [[[[1]]], [[[k]]], [[[k]]]]
+    values = function(cell.ravel().astype(int), s.ravel(), t.ravel()).reshape(cell.shape)
     tiny = ZERO * abs(values).max()
-    found = [numpy.array([cell, s, t])[:, abs(values).ravel() <= tiny]]
+    found = [nodes[:, abs(values) <= tiny]]
     for along in 1, 2:  # sign changes between neighbours on a line, by bisection and secants (Illinois)
         low, high = numpy.moveaxis(values, along, 0)[:-1], numpy.moveaxis(values, along, 0)[1:]
         index = numpy.argwhere((low * high < 0) & (abs(low) > tiny) & (abs(high) > tiny))
@@ -108,9 +106,8 @@ def _outermost(points):
     order = numpy.argsort(angle)
     angle, radius, points = angle[order], radius[order], points[order]
     window = 2 * numpy.pi * 4 / len(points)
-    wide = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi])
+    wide, far = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi]), numpy.tile(radius, 3)
     first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)
-    far = numpy.tile(radius, 3)
     top = numpy.array([far[a:b].max() for a, b in zip(first, last)])
     # an outline does not fall off faster within the window, but an inner curve does
     points = points[radius > top * (1 - 3 * window)]
