@@ -64,9 +64,8 @@ def dataset(run):
 
 
 def mesh(snapshot, kind="meshio"):
-    """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid.
-
-    Both have cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
+    """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid. Both have
+    cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
     expect(kind in ("meshio", "vtk"), f"a mesh is of the kind meshio or vtk, not {kind}")
     cells = [nodes for _, _, nodes in by_degree(snapshot.cells)]
     if kind == "meshio":

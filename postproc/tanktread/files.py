@@ -71,7 +71,6 @@ def arrays_of(path):
 
 def table(path, names=(), columns=2, delimiter=","):
     """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
-
     Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
     expect(pathlib.Path(path).is_file(), f"there is no file {path}")
     try:

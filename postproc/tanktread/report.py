@@ -153,9 +153,8 @@ def of_fit(directory):
 
 
 def write(directory, output=None, field=None):
-    """Writes the page about the run, sweep or fit in a directory, and returns its path.
-
-    `output`: the page (default: report.html in the directory). `field`: colours the surface (default: traction)."""
+    """Writes the page about the run, sweep or fit in a directory, and returns its path. `output`: the page (default:
+    report.html in the directory). `field`: colours the surface (default: traction)."""
     from matplotlib import colormaps
 
     directory = pathlib.Path(directory)

@@ -16,15 +16,13 @@ RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic":
 
 
 class Run:
-    """The results in a directory, in the units of the deck.
-
-    `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
-    A series is NaN where it is undefined, as its description states; a name that is not there is a Mistake. `units`,
-    `descriptions`: by the same names.
-    `errors`: estimated errors of the series, by the same names, if an accuracy was requested; NaN where none can be
-    estimated, as `untrusted` states by the same names. Empty without a request.
-    `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.
-    `summary`: the content of summary.yaml, or None before the run has ended."""
+    """The results in a directory, in the units of the deck. `series`: {name: (rows,)}, one row per recorded step; a
+    series of one of several particles is `<particle>/<name>`. A series is NaN where it is undefined, as its description
+    states; a name that is not there is a Mistake. `units`, `descriptions`: by the same names. `errors`: estimated
+    errors of the series, by the same names, if an accuracy was requested; NaN where none can be estimated, as
+    `untrusted` states by the same names. Empty without a request. `deck`: the effective deck as nested dicts;
+    `deck_text`: as text. `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None before
+    the run has ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
@@ -56,8 +54,8 @@ class Run:
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
 
     name = property(lambda self: self.directory.resolve().name, doc="The name of the directory.")
-    several = property(lambda self: any("/" in name for name in self.series),
-                       doc="Whether the deck has the section Particles; then series of one are named <particle>/<name>.")
+    several = property(lambda self: any("/" in name for name in self.series), doc="Whether the deck has the section "
+                       "Particles, so that series of one particle are named <particle>/<name>.")
 
     @property
     def particles(self):
@@ -101,10 +99,9 @@ class Run:
 
     @property
     def rate(self):
-        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none.
-
-        In a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius
-        of a circle of the duct's area."""
+        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none. In
+        a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius of
+        a circle of the duct's area."""
         kind = self.value("Flow/type")
         if kind == "duct":
             duct = arrays_of(self.directory / "duct.h5")
@@ -117,10 +114,8 @@ class Run:
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
         return (float(self.value("Flow/shear rate", 1)), RATES[kind]) if kind in RATES else (1.0, None)
 
-    @property
-    def time(self):
-        """Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`."""
-        return self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0])
+    time = property(lambda self: self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0]), doc="Times "
+                    "of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`.")
 
     @property
     def time_label(self):
@@ -141,7 +136,6 @@ class Run:
 
     def scale(self, dimension):
         """Returns what a length, velocity, stress, curvature or tension is divided by to have no unit, and its symbol.
-
         Lengths are divided by R_C, stresses by the viscosity times the rate of the flow; if the flow has no rate, by
         the modulus over R_C; of a rigid body by the viscosity times its speed over R_C. Tensions have no unit."""
         radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))

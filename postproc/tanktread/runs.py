@@ -35,10 +35,8 @@ PROGRAM = _program()
 
 
 def shared():
-    """Yields folders below which the decks and studies in `inputs` are looked for."""
-    yield pathlib.Path()
-    yield SOURCE
-    yield PROGRAM.resolve().parents[1] / "share/tanktread"
+    """Returns folders below which the decks and studies in `inputs` are looked for."""
+    return pathlib.Path(), SOURCE, PROGRAM.resolve().parent.parent / "share/tanktread"
 
 
 def deck_at(name):
@@ -56,9 +54,8 @@ def quoted(word):
 
 def text_of(value):
     """Returns a value as the command line has it."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return f"{value:.15g}" if isinstance(value, float) else str(value)
+    text = f"{value:.15g}" if isinstance(value, float) else str(value)
+    return text.lower() if isinstance(value, bool) else text
 
 
 def settings_of(words):
@@ -69,10 +66,9 @@ def settings_of(words):
 
 
 def run(where, settings=None):
-    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results.
-
-    With settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a
-    name that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
+    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results. With
+    settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a name
+    that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
     if isinstance(where, Run):
         return where
     if settings:
@@ -90,7 +86,6 @@ def runs_of(runs):
 
 def results_of(deck, name=None, settings=None, accepted=(0, 1)):
     """Returns the directory results/<name> (by default the deck's name), in which the deck is run if it has no results.
-
     `accepted`: exit codes that are no error; 1 is a missed expectation, which a figure shows."""
     directory = pathlib.Path("results") / (name or pathlib.Path(deck).stem)
     if not (directory / "run.h5").exists():
@@ -114,10 +109,8 @@ def _set(settings):
 
 class Outcome:
     """The end of one run of a Study: `done` (as far as its deck said), `failed`, `refused` (a mistake in the deck) or
-    `slow` (stopped at the time limit).
-
-    `message`: its last line on standard error. `seconds`, `processor_seconds` (of all ranks). `series`, `final`,
-    `counts` and `phases`: what it recorded."""
+    `slow` (stopped at the time limit). `message`: its last line on standard error. `seconds`, `processor_seconds` (of
+    all ranks). `series`, `final`, `counts` and `phases`: what it recorded."""
 
     def __init__(self, directory, note):
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
@@ -154,7 +147,6 @@ class Outcome:
 
 class Study:
     """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
-
     `limit`: processor seconds that one run may take (None: any). `jobs`: runs at a time. `fresh`: makes every run anew.
     """
 
@@ -164,10 +156,8 @@ class Study:
         self._made, self._running = set(), set()
 
     def run(self, decks, settings, ranks=1):
-        """Returns the Outcome of `tanktread decks… --set …`.
-
-        `decks`: a path (`deck_at`), or several that overlay each other; `settings`: {"Section/key": value}. A run that
-        a signal stopped is resumed from its checkpoint."""
+        """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (`deck_at`), or several that overlay each
+        other; `settings`: {"Section/key": value}. A run that a signal stopped is resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
         note = where / "outcome.json"
@@ -222,9 +212,8 @@ class Study:
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 
     def all(self, jobs, told=lambda outcome: None):
-        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time.
-
-        Calls `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
+        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time. Calls
+        `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = [pool.submit(self.run, *job) for job in jobs]
             try:

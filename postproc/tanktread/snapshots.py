@@ -22,11 +22,10 @@ def evenly(items, n):
 
 
 class Snapshot:
-    """A saved step, in the units of the deck.
-
-    `path`, `time`: the file and the simulated time. `cells`: node numbers of each Lagrange quadrilateral, as a list of
-    arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length. `fields`: {name: (n,) or (n, k)} at the
-    nodes; `DIMENSIONS` says what each is measured in. The file is read when one of these is first used."""
+    """A saved step, in the units of the deck. `path`, `time`: the file and the simulated time. `cells`: node numbers of
+    each Lagrange quadrilateral, as a list of arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length.
+    `fields`: {name: (n,) or (n, k)} at the nodes; `DIMENSIONS` says what each is measured in. The file is read when one
+    of these is first used."""
 
     def __init__(self, path, time, particles=("particle",)):
         self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
@@ -43,11 +42,9 @@ class Snapshot:
     cells = property(lambda self: self._content[1])
     fields = property(lambda self: self._content[2])
 
-    @property
-    def positions(self):
-        """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the
-        origin."""
-        return self.points if self.cell is None else self.points + self.fields["into cell"]
+    positions = property(lambda self: self.points if self.cell is None else self.points + self.fields["into cell"],
+                         doc="Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the "
+                         "cell at the origin.")
 
     @property
     def frame(self):
@@ -73,10 +70,9 @@ class Snapshot:
         return copy
 
     def evaluate(self, values, cells, s, t, ds=0, dt=0):
-        """Returns a field at parameters s, t (m,), each in [0, 1], of the cells with the indices `cells` (m,).
-
-        `values` (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or
-        (m, k). `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
+        """Returns a field at parameters s, t (m,), each in [0, 1], of the cells with the indices `cells` (m,). `values`
+        (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or (m, k).
+        `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
         values, s, t = numpy.asarray(values), numpy.asarray(s, float), numpy.asarray(t, float)
         result = numpy.empty((len(cells),) + values.shape[1:])
         for p, which, nodes in lagrange.by_degree([self.cells[cell] for cell in cells]):
@@ -86,7 +82,6 @@ class Snapshot:
 
     def sampled(self, values, k=8, cells=None):
         """Returns a field on the uniform grid of (k + 1)^2 parameters of every cell, or of those with given indices.
-
         Shape (cells, k + 1, k + 1[, components]), t first, then s. Exact, as `evaluate`."""
         values = numpy.asarray(values)
         chosen = self.cells if cells is None else [self.cells[i] for i in cells]

@@ -6,7 +6,7 @@ from ..files import table
 from ..interpolation import interpolated
 from ..mistakes import expect
 from . import silhouette
-from .reading import keys_of, number, optional, positive
+from .common import keys_of, number, optional, positive
 
 # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 FAR = numpy.log(1000)

@@ -199,9 +199,6 @@ class Fit:
         return {one.name: (one.value(x), one.error_of(one.value(x), determined(error)))
                 for one, x, error in zip(self.unknowns, self.x, self.number_errors)}
 
-    squares = property(lambda self: {datum.name: (float((self.residual[own] ** 2).sum()), datum.length)
-                                     for datum, own in zip(self.data, self.rows)},
-                       doc="{name of the datum: (chi square, points)}.")
     missed = property(lambda self: self.stated and self.probability < MISSED,
                       doc="Whether the errors of the data do not explain the residuals.")
 

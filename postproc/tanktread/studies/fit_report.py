@@ -31,9 +31,17 @@ def further(fits, settings):
             else:
                 one.values = datum.predicted(prediction, datum.start(prediction))
             candidate.data.append(one)
-        errors, others = _errors_with(best, candidate), [_alone(other, candidate) for other in fits[1:]]
-        rows.append(({key: value}, errors, {fit.law: numpy.inf if one is None else one.square
-                                            for fit, one in zip(fits[1:], others)}))
+        alone = _alone(best, candidate)
+        alone.errors()
+        both = numpy.zeros((len(best.unknowns),) * 2)
+        both[numpy.ix_(best.told, best.told)] += best.information() / (1 if best.stated else _scatter(best) ** 2)
+        index = numpy.array(alone.index)[alone.told]
+        both[numpy.ix_(index, index)] += alone.information()
+        errors = determined(numpy.sqrt(numpy.diag(numpy.linalg.pinv(both))))
+        others = [_alone(other, candidate) for other in fits[1:]]
+        rows.append(({key: value}, {unknown.name: unknown.error_of(unknown.value(x), error)
+                                    for unknown, x, error in zip(best.unknowns, best.x, errors)},
+                     {fit.law: one.square if one else numpy.inf for fit, one in zip(fits[1:], others)}))
     return rows
 
 
@@ -61,18 +69,6 @@ def _alone(fit, candidate):
     return one
 
 
-def _errors_with(fit, candidate):
-    one = _alone(fit, candidate)
-    one.errors()
-    both = numpy.zeros((len(fit.unknowns),) * 2)
-    both[numpy.ix_(fit.told, fit.told)] += fit.information() / (1 if fit.stated else _scatter(fit) ** 2)
-    index = numpy.array(one.index)[one.told]
-    both[numpy.ix_(index, index)] += one.information()
-    errors = determined(numpy.sqrt(numpy.diag(numpy.linalg.pinv(both))))
-    return {unknown.name: unknown.error_of(unknown.value(x), error)
-            for unknown, x, error in zip(fit.unknowns, fit.x, errors)}
-
-
 def rounded(value, error):
     """Returns a value with one digit more than its error determines."""
     digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
@@ -90,11 +86,11 @@ def told(fits, rows):
             lines.append("  no errors of the data are given: they are taken from the residuals, which then say nothing "
                          "about the law")
         elif len(fit.data) > 1:
-            lines.append("  of it: " + ", ".join(f"{name} {square:.3g} of {count}"
-                                                 for name, (square, count) in fit.squares.items()))
+            lines.append("  of it: " + ", ".join(f"{datum.name} {(fit.residual[own] ** 2).sum():.3g} of {datum.length}"
+                                                 for datum, own in zip(fit.data, fit.rows)))
         if fit.missed:
-            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer mesh, "
-                         "a free scale or another law first")
+            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer "
+                         "mesh, a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):

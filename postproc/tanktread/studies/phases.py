@@ -27,7 +27,7 @@ import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
 from . import common
-from .reading import decks_of, keys_of, number, values_of, yaml_of
+from .common import decks_of, keys_of, number, values_of, yaml_of
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
 KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literature"}

@@ -31,7 +31,7 @@ from ..files import opened
 from ..interpolation import mean
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
-from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
+from .common import decks_of, keys_of, number, optional, spaced, values_of, whole, yaml_of
 
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
@@ -52,8 +52,7 @@ def drawn(text):
         else:
             expect(isinstance(given, dict) and {"from", "to"} <= set(given),
                    f"{key}: random values have from and to, or are a list to draw from")
-            low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
-            columns[key] = [float(value) for value in spaced(key, given, low, high)(generator.random(size))]
+            columns[key] = spaced(key, given, generator.random(size))
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
@@ -89,9 +88,8 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end.
-
-    A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
+    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end. A run with
+    requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
         time, values = (outcome.series[one] if outcome.done else numpy.array([]) for one in ("time", series))
@@ -121,7 +119,7 @@ class Sweep:
         self.name, self.study, self.decks = pathlib.Path(path).stem, study, decks_of(text, path)
         self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+        self.study.limit = optional(number, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
 
@@ -231,10 +229,9 @@ def plot(directory, column, key, axes=None):
 
 
 def run(path, directory=None, jobs=None, fresh=False):
-    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`.
-
-    `directory`: of table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the
-    number of cores). `fresh`: makes every run anew."""
+    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`. `directory`: of
+    table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the number of cores).
+    `fresh`: makes every run anew."""
     directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
