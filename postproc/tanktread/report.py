@@ -61,14 +61,11 @@ def shapes(run, field):
         colours = (value - bottom) / max(top - bottom, 1e-300)
         frames.append({"time": shot.time, "cells": len(shot.cells), "places": packed(places, 32767, "<i2"),
                        "normals": packed(normals, 127, "i1"), "colours": packed(colours, 255, "u1")})
-    scale = run.scale(DIMENSIONS.get(field))[0]
-    return {"k": k, "size": float(size), "field": plain(run.label(field)), "low": float(bottom / scale),
-            "high": float(top / scale), "frames": frames}
-
-
-def plain(label):
-    """Returns a label of matplotlib as plain text."""
-    return label.replace("$_s$", "ₛ").replace("R$_C$", "R_C").replace("$", "")
+    scale, label = run.scale(DIMENSIONS.get(field))[0], run.label(field)
+    for formatted, plain in ("$_s$", "ₛ"), ("R$_C$", "R_C"), ("$", ""):
+        label = label.replace(formatted, plain)
+    return {"k": k, "size": float(size), "field": label, "low": float(bottom / scale), "high": float(top / scale),
+            "frames": frames}
 
 
 def curves(run):

@@ -7,12 +7,18 @@ import re
 import numpy
 import yaml
 
-from . import exports
 from .files import Named, arrays_of, datasets, opened, parsed, text_of_hdf, yaml_text
-from .mistakes import Mistake, expect
+from .mistakes import Mistake, expect, optional
 from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
+# Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
+OF_PARTICLE = re.compile(r"(area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|"
+                         r"intrinsic_viscosity|length_x\d|local_area_change|n_control_points|normal_velocity|phase|"
+                         r"shape_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|"
+                         r"((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|gap|"
+                         r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|"
+                         r"(fluid|membrane)_dissipation|power_residual)")
 
 
 class Run:
@@ -76,7 +82,48 @@ class Run:
         """Returns a series (rows,) of one particle by its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
-    frame, dataset = exports.frame, exports.dataset
+    def _split(self):
+        """Returns ({series: {particle: values (rows,)}}, {series of the scene: values})."""
+        own, scene = {}, {}
+        for name, values in self.series.items():
+            particle, _, series = name.rpartition("/")
+            if particle or (not self.several and OF_PARTICLE.fullmatch(name)):
+                own.setdefault(series, {})[particle or "particle"] = values
+            else:
+                scene[name] = values
+        return own, scene
+
+    def frame(self, tidy=False):
+        """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
+        units and descriptions in its `attrs`. With tidy=True it has one row per time and particle and the columns
+        `time`, `particle` and the series of particles; of one particle and of several alike. Needs pandas."""
+        pandas = optional("pandas", "run.frame()")
+        if not tidy:
+            found = pandas.DataFrame(dict(self.series)).set_index("time")
+            found.attrs = {"units": dict(self.units), "descriptions": dict(self.descriptions)}
+            return found
+        own, _ = self._split()
+        parts = [pandas.DataFrame({"time": self.series["time"], "particle": particle} |
+                                  {name: values[particle] for name, values in own.items() if particle in values})
+                 for particle in self.particles]
+        return pandas.concat(parts, ignore_index=True)
+
+    def dataset(self):
+        """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), of one
+        particle and of several alike; series of the scene have (time,). A series of the scene with the name of a
+        particle's is called `scene_<name>`. Variables have the attributes `units` and `long_name`. Needs xarray."""
+        xarray = optional("xarray", "run.dataset()")
+        own, scene = self._split()
+        time, variables = scene.pop("time"), {}
+        about = {name: {"units": self.units[name], "long_name": self.descriptions[name]} for name in self.series}
+        for name, values in own.items():
+            rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.particles])
+            first = f"{next(iter(values))}/{name}" if self.several else name
+            variables[name] = ("particle", "time"), rows, about[first]
+        for name, values in scene.items():
+            variables[f"scene_{name}" if name in own else name] = ("time",), values, about[name]
+        coordinates = {"time": ("time", time, about["time"]), "particle": self.particles}
+        return xarray.Dataset(variables, coordinates, {"deck": self.deck_text, "name": self.name} | self.provenance)
 
     def in_units(self, dimension):
         """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
@@ -114,8 +161,9 @@ class Run:
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
         return (float(self.value("Flow/shear rate", 1)), RATES[kind]) if kind in RATES else (1.0, None)
 
-    time = property(lambda self: self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0]), doc="Times "
-                    "of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`.")
+    time = property(lambda self: self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0]),
+                    doc="Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see "
+                    "`time_label`.")
 
     @property
     def time_label(self):

@@ -1,6 +1,7 @@
 """Runs of the program: one of a deck, or many of a study, made once and found again."""
 
 import concurrent.futures
+import contextlib
 import functools
 import hashlib
 import json
@@ -80,8 +81,7 @@ def run(where, settings=None):
 
 def runs_of(runs):
     """Returns a list of Runs from one or several runs, directories or decks."""
-    several = isinstance(runs, (list, tuple))
-    return [run(one) for one in (runs if several else [runs])]
+    return [run(one) for one in (runs if isinstance(runs, (list, tuple)) else [runs])]
 
 
 def results_of(deck, name=None, settings=None, accepted=(0, 1)):
@@ -160,11 +160,9 @@ class Study:
         other; `settings`: {"Section/key": value}. A run that a signal stopped is resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
-        note = where / "outcome.json"
-        try:
+        note, before = where / "outcome.json", None
+        with contextlib.suppress(Mistake):  # there is none, or it is damaged
             before = Outcome(where, parsed(note, json.loads))
-        except Mistake:  # there is none, or it is damaged
-            before = None
         # a run that never began is made again: another program may know the keys that were refused
         began = before and not before.refused and (where / "run.h5").exists()
         if before and (where in self._made or (began and before.code != 4 and not self.fresh)):

@@ -6,9 +6,9 @@ import pathlib
 
 import numpy
 
-from . import exports, lagrange
+from . import lagrange
 from .files import opened
-from .mistakes import expect
+from .mistakes import expect, optional
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
@@ -111,4 +111,24 @@ class Snapshot:
             total += (numpy.linalg.norm(numpy.cross(s, t), axis=-1) @ numpy.outer(weights, weights).ravel()).sum() / 4
         return total
 
-    mesh = exports.mesh
+    def mesh(self, kind="meshio"):
+        """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid. Both have
+        cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
+        expect(kind in ("meshio", "vtk"), f"a mesh is of the kind meshio or vtk, not {kind}")
+        cells = [nodes for _, _, nodes in lagrange.by_degree(self.cells)]
+        if kind == "meshio":
+            meshio = optional("meshio", "snapshot.mesh()")
+            blocks = [("VTK_LAGRANGE_QUADRILATERAL", nodes) for nodes in cells]
+            return meshio.Mesh(self.points, blocks, point_data=dict(self.fields))
+        model, core, convert = (optional(f"vtkmodules.{name}", "snapshot.mesh('vtk')", "vtk9")
+                                for name in ("vtkCommonDataModel", "vtkCommonCore", "util.numpy_support"))
+        points, grid = core.vtkPoints(), model.vtkUnstructuredGrid()
+        points.SetData(convert.numpy_to_vtk(self.points, deep=True))
+        grid.SetPoints(points)
+        for cell in itertools.chain.from_iterable(cells):
+            grid.InsertNextCell(getattr(model, "VTK_LAGRANGE_QUADRILATERAL", 70), len(cell), cell.tolist())
+        for name, values in self.fields.items():
+            array = convert.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            grid.GetPointData().AddArray(array)
+        return grid

@@ -115,8 +115,7 @@ class Diagram:
     def holds(self, name, row, value):
         """Returns whether the motion is the one below the border."""
         key = name, row[self.across], value
-        if key not in self.made:
-            self.made[key] = self.motion_at(name, row, value)
+        self.made[key] = self.made.get(key) or self.motion_at(name, row, value)
         said = self.made[key][0]
         expect(said != "neither",
                f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time")
@@ -162,12 +161,12 @@ class Diagram:
             self.borders[name].append(borders.get(how, (at, low, min(above, default=numpy.nan), how)))
 
     def write(self, directory):
-        head = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
-        rows = [(name, *row) for name, rows in self.borders.items() for row in rows]
-        common.write_table(directory / "borders.csv", head, rows)
-        head = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
+        borders = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
+        common.write_table(directory / "borders.csv", borders,
+                           [(name, *row) for name, rows in self.borders.items() for row in rows])
+        runs = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
                 "directory"]
-        common.write_table(directory / "runs.csv", head, [(*key, *run) for key, run in self.made.items()])
+        common.write_table(directory / "runs.csv", runs, [(*key, *run) for key, run in self.made.items()])
 
     found = property(lambda self: any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows),
                      doc="Whether there is anything to draw.")
