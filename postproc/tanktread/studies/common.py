@@ -20,10 +20,7 @@ def edge(holds, low, high, factor=1.05):
         return high, "holds to here"
     while high / low > factor:
         middle = (low * high) ** 0.5
-        if holds(middle):
-            low = middle
-        else:
-            high = middle
+        low, high = (middle, high) if holds(middle) else (low, middle)
     return low, "edge"
 
 

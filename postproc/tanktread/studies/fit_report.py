@@ -99,12 +99,11 @@ def told(fits, rows):
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")
-        shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
-        if len(shown) > 1:
-            size = numpy.sqrt(numpy.diag(fit.covariance))
-            correlation = fit.covariance / numpy.outer(size, size)
-            for (i, a), (j, b) in itertools.combinations(enumerate(shown), 2):
-                lines.append(f"  correlation of {a} and {b}: {correlation[i, j]:.3f}")
+        size = numpy.sqrt(numpy.diag(fit.covariance))
+        shown = enumerate(itertools.compress(fit.unknowns, fit.told))
+        for (i, one), (j, other) in itertools.combinations(shown, 2):
+            correlation = fit.covariance[i, j] / (size[i] * size[j])
+            lines.append(f"  correlation of {one.name} and {other.name}: {correlation:.3f}")
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
@@ -135,7 +134,8 @@ def draw(fits, axes=None):
     best = fits[0]
     numbers, places = best.split(best.x)
     (predictions,) = best.predictions(numbers)
-    pairs = list(itertools.combinations(range(int(best.told.sum())), 2))[:3]
+    known = list(itertools.compress(zip(best.unknowns, best.x), best.told))
+    pairs = list(itertools.combinations(range(len(known)), 2))[:3]
     figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
     data, residual = axes[:2]
     for datum, prediction, own, rows, color in zip(best.data, predictions, best.positions, best.rows,
@@ -169,11 +169,10 @@ def draw(fits, axes=None):
     residual.set(title="residuals over their errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
-    names = [one for one, yes in zip(best.unknowns, best.told) if yes]
     for axis, (i, j) in zip(axes[2:], pairs):
         angle = numpy.linspace(0, 2 * numpy.pi, 200)
         values, vectors = numpy.linalg.eigh(best.covariance[numpy.ix_([i, j], [i, j])])
-        pair = [(names[k], best.x[best.unknowns.index(names[k])]) for k in (i, j)]
+        pair = known[i], known[j]
         for share, line in (0.683, "-"), (0.954, "--"):
             size = numpy.sqrt(scipy.stats.chi2.ppf(share, 2) * values)
             circle = (vectors * size) @ [numpy.cos(angle), numpy.sin(angle)]

@@ -132,8 +132,7 @@ def main():
     points, error = edge(picture, mask, number)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
-    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="",
-                  fmt=["%.4f", "%.4f", "%.3g"])
+    numpy.savetxt(arguments.output, table, "%.4f,%.4f,%.3g", header="x1,x3,error", comments="")
     log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
         from ..figures import style
