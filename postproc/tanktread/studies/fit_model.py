@@ -28,8 +28,7 @@ def parts(sizes):
 
 
 def determined(error):
-    """Returns the standard error of a fitted number, or inf if it is a factor of e, or of a linear one its own start,
-    or more."""
+    """Returns the standard error of a fitted number; inf from a factor of e, or for a linear one its own start, on."""
     return numpy.where((error > 0) & (error < 1), error, numpy.inf)
 
 
@@ -181,9 +180,8 @@ class Fit:
         strength = numpy.linalg.norm(self.derivative, axis=0)
         self.told = numpy.isfinite(strength) & (strength > 2 * disagreement) & (strength > 0)
         full = numpy.column_stack([self.derivative[:, self.told], self.moved])
-        scale = numpy.linalg.norm(full, axis=0)
+        scale, k = numpy.linalg.norm(full, axis=0), self.told.sum()
         _, sizes, right = numpy.linalg.svd(full / scale)
-        k = self.told.sum()
         with numpy.errstate(divide="ignore"):
             spread = right.T / sizes
         covariance = (spread @ spread.T / numpy.outer(scale, scale))[:k, :k]

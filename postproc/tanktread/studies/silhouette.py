@@ -48,23 +48,17 @@ class Outline:
 
 def seen(shot, axis=1, k=8):
     """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction
-    from the middle, of those where the normal is across the line of sight. `k`: lines of parameters per cell on which
-    these points are found, exactly. Raises ValueError of a shape whose outline is met twice in a direction from its
-    middle."""
+    from the middle, of those where the normal is across the line of sight. These points are found exactly on k + 1
+    lines of each parameter in every cell. Raises ValueError of a shape whose outline is met twice in a direction from
+    its middle."""
 
     def across(cells, s, t):
         tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
         return numpy.cross(tangent_s, tangent_t)[:, axis]
 
-    return _outermost(numpy.delete(_zeros(shot, across, k), axis, axis=1))
-
-
-def _zeros(shot, function, k):
-    """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
-    parameter in every cell."""
     shape = len(shot.cells), k + 1, k + 1
     cell, s, t = numpy.indices(shape).reshape(3, -1)
-    values = function(cell, s / k, t / k).reshape(shape)
+    values = across(cell, s / k, t / k).reshape(shape)
     tiny = ZERO * abs(values).max()
     found = [numpy.array([cell, s / k, t / k])[:, abs(values).ravel() <= tiny]]
     for along in 1, 2:  # sign changes between neighbours on a line, by bisection
@@ -74,11 +68,12 @@ def _zeros(shot, function, k):
         for _ in range(50):
             middle = (low + high) / 2
             place = numpy.array([which, *((middle, other / k) if along == 1 else (other / k, middle))])
-            before = function(which, *place[1:]) * sign > 0
+            before = across(which, *place[1:]) * sign > 0
             low, high = numpy.where(before, middle, low), numpy.where(before, high, middle)
         found.append(place)
     which, s, t = numpy.concatenate(found, axis=1)
-    return shot.evaluate(shot.points, which.astype(int), s, t)
+    points = shot.evaluate(shot.points, which.astype(int), s, t)
+    return _outermost(numpy.delete(points, axis, axis=1))
 
 
 def _outermost(points):
