@@ -59,7 +59,7 @@ def load(path, study):
             for law, settings in keys_of(text.get("laws"), f"{path}: laws").items()}
     lists = [text, *text["experiments"].values(), *laws.values()]
     expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
-    unknowns = [Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()]
+    unknowns = {key: Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()}
     experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
     for key, values in keys_of(text.get("next"), f"{path}: next").items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
@@ -67,9 +67,8 @@ def load(path, study):
     for law, settings in (laws or {"the deck's law": {}}).items():
         settings = fixed | settings
         more = keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
-        own = {key: Unknown(key, given) for key, given in more.items()}
-        fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments,
-                        Runs(study, decks, law)))
+        own = unknowns | {key: Unknown(key, given) for key, given in more.items()}
+        fits.append(Fit(law, settings, own.values(), experiments, Runs(study, decks, law)))
     return fits, text
 
 
