@@ -40,12 +40,19 @@ def main():
     source = simple.OpenDataFile(str(series))
     simple.RenameSource("tanktread", source)
     view = simple.GetActiveViewOrCreate("RenderView")
-    view.ViewSize = [1200, 900]
-    view.Background = [1, 1, 1]
-    view.UseColorPaletteForBackground = 0
-    go_to(arguments.time, view)
+    view.ViewSize, view.Background, view.UseColorPaletteForBackground = [1200, 900], [1, 1, 1], 0
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()
+    times = scene.TimeKeeper.TimestepValues or [0.0]  # one saved step is a number, not a list
+    times = list(times) if hasattr(times, "__len__") else [times]
+    time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
+    scene.AnimationTime = view.ViewTime = time
     show(source, view, arguments.field)
-    look_at_shear_plane(view)
+    # x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above
+    view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
+    simple.ResetCamera(view)
+    view.CameraParallelProjection = 1
+    view.CameraParallelScale *= 0.75
     if arguments.state:
         simple.SaveState(arguments.state)
     if arguments.output:
@@ -66,23 +73,6 @@ def show(source, view, field):
     display.SetScalarBarVisibility(view, True)
     bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
     bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
-
-
-def go_to(time, view):
-    """The saved step nearest to a time; None: the last."""
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    times = scene.TimeKeeper.TimestepValues or [0.0]
-    times = list(times) if hasattr(times, "__len__") else [times]
-    scene.AnimationTime = view.ViewTime = times[-1] if time is None else min(times, key=lambda one: abs(one - time))
-
-
-def look_at_shear_plane(view):
-    """x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above."""
-    view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
-    simple.ResetCamera(view)
-    view.CameraParallelProjection = 1
-    view.CameraParallelScale *= 0.75
 
 
 main()

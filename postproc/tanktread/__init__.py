@@ -33,5 +33,4 @@ from .snapshots import DIMENSIONS, Snapshot
 
 __version__ = "0.2.0"
 __all__ = ["DIMENSIONS", "ENVIRONMENT", "PROGRAM", "SOURCE", "Mistake", "Outcome", "Run", "Snapshot", "Study",
-           "deck_at",
-           "field_label", "node_order", "quoted", "results_of", "run", "runs_of", "text_of", "time_label"]
+           "deck_at", "field_label", "node_order", "quoted", "results_of", "run", "runs_of", "text_of", "time_label"]

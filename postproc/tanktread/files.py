@@ -21,16 +21,12 @@ def parsed(path, parse=yaml_text, kind=object):
     """Returns parse(text) of a file in UTF-8. Raises Mistake if it is not of this kind, such as dict."""
     try:
         found = parse(pathlib.Path(path).read_text(encoding="utf-8"))
-        expect(isinstance(found, kind), f"{path} is damaged: it holds no list of keys with values")
-        return found
-    except OSError as error:
-        raise Mistake(f"{path} cannot be read: {error.strerror}") from None
     except yaml.YAMLError as error:
         raise Mistake(f"{path} is not YAML: {error}") from None
-    except Mistake:
-        raise
-    except ValueError as error:
-        raise Mistake(f"{path} cannot be read: {error}") from None
+    except (OSError, ValueError) as error:
+        raise Mistake(f"{path} cannot be read: {getattr(error, 'strerror', error)}") from None
+    expect(isinstance(found, kind), f"{path} is damaged: it holds no list of keys with values")
+    return found
 
 
 @contextlib.contextmanager
@@ -75,7 +71,6 @@ def arrays_of(path):
 
 def table(path, names=(), columns=2, delimiter=","):
     """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
-
     Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
     expect(pathlib.Path(path).is_file(), f"there is no file {path}")
     try:

@@ -33,11 +33,9 @@ def difference(t, values, curve_t, curve_values):
     the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
     a mesh has changed, are left out. The result is 0 if no times are left."""
     series = []
-    for times, found in (t, values), (curve_t, curve_values):
-        times, found = numpy.asarray(times), numpy.asarray(found)
-        kept = ~numpy.isnan(found) & (numpy.diff(times, prepend=-numpy.inf) > 0)
-        series.append((times[kept], found[kept]))
-    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda one: -len(one[0]))
+    for pair in numpy.array([t, values], float), numpy.array([curve_t, curve_values], float):
+        series.append(pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)])
+    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda pair: -pair.shape[1])
     if not len(coarse_t):
         return 0.0
     common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])

@@ -50,12 +50,6 @@ class _Lines(logging.Handler):
         print(record.getMessage(), flush=True)
 
 
-def _fail(text):
-    progress("")
-    print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(text.split())}", file=sys.stderr)
-    sys.exit(2)
-
-
 def answer(main):
     """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -65,11 +59,14 @@ def answer(main):
     try:
         sys.exit(main())
     except Mistake as mistake:
-        _fail(str(mistake))
+        text = str(mistake)
     except ModuleNotFoundError as error:
-        _fail(f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
-              "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
+        text = (f"{sys.executable} has no {error.name}: use Debian's /usr/bin/python3 with the packages in "
+                "app/packages.txt, or pip install numpy h5py PyYAML scipy matplotlib")
     except OSError as error:  # a file that cannot be written
-        _fail(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        text = f"{error.filename}: {error.strerror}" if error.filename else str(error)
     except KeyboardInterrupt:
         sys.exit("stopped: the same command continues from here")
+    progress("")
+    print(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(text.split())}", file=sys.stderr)
+    sys.exit(2)

@@ -28,54 +28,50 @@ FIRST = ["taylor_inertia", "inclination", "velocity_x1", "smallest_gap", "distur
          "tank_treading_frequency", "drag"]
 
 
-def packed(array):
-    return base64.b64encode(array.tobytes()).decode()
+def packed(values, largest, kind):
+    """Returns values up to 1 as whole numbers up to the largest one of their kind, such as u1, in base 64."""
+    return base64.b64encode(numpy.round(values * largest).astype(kind).tobytes()).decode()
 
 
 def shapes(run, field):
     """Returns saved steps as grids of cells: positions in 16 bits within the box of all of them, normals and the
     field's magnitude in 8 bits."""
-    shots = run.snapshots()
+    shots = evenly(run.snapshots(), FRAMES)
     if not shots:
         return None
-    shots = evenly(shots, FRAMES)
     field = field or ("traction" if "traction" in shots[-1].fields else next(iter(shots[-1].fields)))
     expect(field in shots[-1].fields,
            f"the snapshots hold no field {field}; there are: {', '.join(sorted(shots[-1].fields))}")
     cells = max(len(shot.cells) for shot in shots)
     k = next((k for k in (6, 5, 4, 3) if 10 * cells * (k + 1) ** 2 * len(shots) < BYTES), 2)
-    most = max(2, int(BYTES / (10 * cells * (k + 1) ** 2)))
-    shots = evenly(shots, most)
+    shots = evenly(shots, max(2, int(BYTES / (10 * cells * (k + 1) ** 2))))
     low, high = (numpy.array([edge(shot.points, axis=0) for shot in shots]) for edge in (numpy.min, numpy.max))
     middles = (low + high) / 2  # of each, which a particle in a duct does not leave
     if run.several and run.value("Flow/type") != "duct":
         middles[:] = (low.min(0) + high.max(0)) / 2
-    # between nodes a surface may bulge
-    size = 1.05 * max(abs(numpy.concatenate([low - middles, high - middles])).max(), 1e-300)
+    size = 1.05 * max(abs(low - middles).max(), abs(high - middles).max(), 1e-300)  # between nodes a surface may bulge
     values = [numpy.linalg.norm(shot.sampled(shot.fields[field].reshape(len(shot.points), -1), k), axis=-1)
               for shot in shots]
     bottom, top = min(v.min() for v in values), max(v.max() for v in values)
     frames = []
     for shot, middle, value in zip(shots, middles, values):
-        places = numpy.round((shot.sampled(shot.points, k) - middle) / size * 32767).astype("<i2")
+        places = (shot.sampled(shot.points, k) - middle) / size
         normals = shot.sampled(shot.fields["Normals"], k)
-        normals = numpy.round(normals / numpy.linalg.norm(normals, axis=-1, keepdims=True) * 127).astype("i1")
-        colours = numpy.round((value - bottom) / max(top - bottom, 1e-300) * 255).astype("u1")
-        frames.append({"time": shot.time, "cells": len(shot.cells), "places": packed(places),
-                       "normals": packed(normals), "colours": packed(colours)})
-    scale = run.scale(DIMENSIONS.get(field))[0]
-    return {"k": k, "size": float(size), "field": plain(run.label(field)), "low": float(bottom / scale),
-            "high": float(top / scale), "frames": frames}
-
-
-def plain(label):
-    """Returns a label of matplotlib as plain text."""
-    return label.replace("$_s$", "ₛ").replace("R$_C$", "R_C").replace("$", "")
+        normals = normals / numpy.linalg.norm(normals, axis=-1, keepdims=True)
+        colours = (value - bottom) / max(top - bottom, 1e-300)
+        frames.append({"time": shot.time, "cells": len(shot.cells), "places": packed(places, 32767, "<i2"),
+                       "normals": packed(normals, 127, "i1"), "colours": packed(colours, 255, "u1")})
+    scale, label = run.scale(DIMENSIONS.get(field))[0], run.label(field)
+    for formatted, plain in ("$_s$", "ₛ"), ("R$_C$", "R_C"), ("$", ""):
+        label = label.replace(formatted, plain)
+    return {"k": k, "size": float(size), "field": label, "low": float(bottom / scale), "high": float(top / scale),
+            "frames": frames}
 
 
 def curves(run):
     """Returns all series, the most important ones first, of long ones every second, third … row."""
-    first = [name for name in FIRST if name in run.series and _varies(run.series[name])]
+    defined = {name: run.defined(name)[1] for name in FIRST if name in run.series}
+    first = [name for name, values in defined.items() if len(values) and numpy.ptp(values) > 1e-9]
     names = first + sorted(name for name in run.series if name not in first and name != "time")
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
@@ -85,11 +81,6 @@ def curves(run):
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
             "labels": {name: run.axis(name) for name in kept},
             "meanings": {name: run.descriptions[name] for name in kept}}
-
-
-def _varies(values):
-    defined = values[~numpy.isnan(values)]
-    return len(defined) > 0 and numpy.ptp(defined) > 1e-9
 
 
 def _list(values):
@@ -105,31 +96,25 @@ def _finite(content):
     return "–" if isinstance(content, float) and not math.isfinite(content) else content
 
 
-def accuracy_rows(found):
-    """Returns the table of the requests of a ladder; empty without a request."""
-    if not found:
-        return []
-    return [["", "request", "value", "allowed", "estimated error", "remark"]] + [
-        ["✓" if one["met"] else "✗", one["request"], one["value"], one["allowed"], one["estimated error"],
-         one.get("untrusted", "")] for one in found["requests"]]
-
-
 def of_run(directory, field):
     run = run_of(directory)
     summary = run.summary or {}
     status = summary.get("status", "not finished: this is what it has written so far")
-    facts = {"status": status} | {key: run.provenance[key] for key in sorted(run.provenance)}
-    sections = [("Expectations", "table", [["", "name", "value", "expected", "error", "estimated error"]] + [
-        ["✓" if one.get("passed") else "✗", one.get("name"),
-         *(one.get(key, "–") for key in ("value", "expected", "error", "estimated error"))]
-        for one in summary.get("expect") or []])]
-    sections.append(("Accuracy", "table", accuracy_rows(summary.get("accuracy"))))
-    sections += [(title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
-                 for title, word in (("Errors", "estimated errors"), ("Plan", "plan"),
-                                     ("Numbers of the scene", "numbers"), ("Seconds by phase", "seconds"),
-                                     ("Bytes of memory", "memory"), ("Counts", "counts"))]
-    sections.insert(0, ("Warnings", "list", summary.get("warnings") or []))
-    sections.append(("Deck", "text", run.deck_text))
+    facts = {"status": status} | dict(sorted(run.provenance.items()))
+    head = ["name", "value", "expected", "error", "estimated error"]
+    asked = ["request", "value", "allowed", "estimated error"]
+    requests = [["✓" if one["met"] else "✗", *(one[key] for key in asked), one.get("untrusted", "")]
+                for one in (summary.get("accuracy") or {"requests": []})["requests"]]
+    sections = [
+        ("Warnings", "list", summary.get("warnings") or []),
+        ("Expectations", "table", [["", *head]] + [
+            ["✓" if one.get("passed") else "✗", *(one.get(key, None if key == "name" else "–") for key in head)]
+            for one in summary.get("expect") or []]),
+        ("Accuracy", "table", requests and [["", *asked, "remark"], *requests]),
+        *((title, "table", [[key, value] for key, value in (summary.get(word) or {}).items()])
+          for title, word in (("Errors", "estimated errors"), ("Plan", "plan"), ("Numbers of the scene", "numbers"),
+                              ("Seconds by phase", "seconds"), ("Bytes of memory", "memory"), ("Counts", "counts"))),
+        ("Deck", "text", run.deck_text)]
     return {"title": run.name, "facts": facts, "shapes": shapes(run, field),
             "curves": curves(run) if len(run.time) > 1 else None, "sections": sections}
 
@@ -140,8 +125,7 @@ def of_sweep(directory):
     with opened(directory / "table.h5") as file:
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
-    cells = zip(*(values.tolist() for values in single.values()), status)
-    rows = [[*(labels[name] for name in single), "status"], *cells]
+    rows = [[*(labels[name] for name in single), "status"], *zip(*(one.tolist() for one in single.values()), status)]
     scatter = {"keys": [key for key in keys if key in numbers],
                "columns": [name for name in numbers if name not in keys],
                "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
@@ -157,9 +141,8 @@ def of_fit(directory):
                                                    for fit in fits.values()), f"{directory}/fit.yaml is damaged")
     for law, fit in fits.items():
         for name, one in fit["unknown"].items():
-            known = numpy.isfinite(one["error"])
-            rows.append([law, name, one["value"] if known else "not determined", one["error"] if known else "",
-                         *(fit[key] for key in rows[0][4:])])
+            found = [one["value"], one["error"]] if numpy.isfinite(one["error"]) else ["not determined", ""]
+            rows.append([law, name, *found, *(fit[key] for key in rows[0][4:])])
     picture = base64.b64encode((directory / "fit.png").read_bytes()).decode()
     return {"title": f"fit {directory.resolve().name}", "facts": {"best law": next(iter(fits))}, "picture": picture,
             "sections": [("What the data say", "text", parsed(directory / "fit.txt", str)),
@@ -167,9 +150,8 @@ def of_fit(directory):
 
 
 def write(directory, output=None, field=None):
-    """Writes the page about the run, sweep or fit in a directory, and returns its path.
-
-    `output`: the page (default: report.html in the directory). `field`: colours the surface (default: traction)."""
+    """Writes the page about the run, sweep or fit in a directory, and returns its path. `output`: the page (default:
+    report.html in the directory). `field`: colours the surface (default: traction)."""
     from matplotlib import colormaps
 
     directory = pathlib.Path(directory)
@@ -178,7 +160,7 @@ def write(directory, output=None, field=None):
     kind = next((name for name in kinds if (directory / name).exists()), None)
     expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
     colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
-    content = kinds[kind]() | {"cite": CITE, "colours": packed(numpy.round(255 * colours).astype("u1"))}
+    content = kinds[kind]() | {"cite": CITE, "colours": packed(colours, 255, "u1")}
     data = base64.b64encode(gzip.compress(json.dumps(_finite(content), allow_nan=False, default=str).encode())).decode()
     page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = pathlib.Path(output or directory / "report.html")

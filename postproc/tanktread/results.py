@@ -7,24 +7,28 @@ import re
 import numpy
 import yaml
 
-from . import exports
-from .files import Named, datasets, opened, parsed, text_of_hdf, yaml_text
-from .mistakes import Mistake, expect
+from .files import Named, arrays_of, datasets, opened, parsed, text_of_hdf, yaml_text
+from .mistakes import Mistake, expect, optional
 from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
+# Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
+OF_PARTICLE = re.compile(r"(area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|"
+                         r"intrinsic_viscosity|length_x\d|local_area_change|n_control_points|normal_velocity|phase|"
+                         r"shape_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|"
+                         r"((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|gap|"
+                         r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|"
+                         r"(fluid|membrane)_dissipation|power_residual)")
 
 
 class Run:
-    """The results in a directory, in the units of the deck.
-
-    `series`: {name: (rows,)}, one row per recorded step; a series of one of several particles is `<particle>/<name>`.
-    A series is NaN where it is undefined, as its description states; a name that is not there is a Mistake. `units`,
-    `descriptions`: by the same names.
-    `errors`: estimated errors of the series, by the same names, if an accuracy was requested; NaN where none can be
-    estimated, as `untrusted` states by the same names. Empty without a request.
-    `deck`: the effective deck as nested dicts; `deck_text`: as text. `provenance`: version, compiler, ranks.
-    `summary`: the content of summary.yaml, or None before the run has ended."""
+    """The results in a directory, in the units of the deck. `series`: {name: (rows,)}, one row per recorded step; a
+    series of one of several particles is `<particle>/<name>`. A series is NaN where it is undefined, as its description
+    states; a name that is not there is a Mistake. `units`, `descriptions`: by the same names. `errors`: estimated
+    errors of the series, by the same names, if an accuracy was requested; NaN where none can be estimated, as
+    `untrusted` states by the same names. Empty without a request. `deck`: the effective deck as nested dicts;
+    `deck_text`: as text. `provenance`: version, compiler, ranks. `summary`: the content of summary.yaml, or None before
+    the run has ended."""
 
     def __init__(self, directory):
         self.directory = pathlib.Path(directory)
@@ -46,27 +50,18 @@ class Run:
                    f"{path} has NaN in the series {name}, which is always defined: the file is damaged")
             expect(values.shape == self.series["time"].shape,
                    f"{path} has other rows in the series {name} than in `time`: the file is damaged")
-        self.deck = self._deck(path)
-        self.summary = Named(parsed(summary, kind=dict), f"{summary} holds no") if summary.exists() else None
-
-    def _deck(self, path):
         try:
-            return yaml_text(self.deck_text)["Tanktread"] or {}
+            self.deck = yaml_text(self.deck_text)["Tanktread"] or {}
         except (yaml.YAMLError, KeyError, TypeError):
             raise Mistake(f"{path} holds no deck: the file is damaged") from None
+        self.summary = Named(parsed(summary, kind=dict), f"{summary} holds no") if summary.exists() else None
 
     def __repr__(self):
         return f"<Run {self.name}: {len(self.series['time'])} rows, particles {', '.join(self.particles)}>"
 
-    @property
-    def name(self):
-        """The name of the directory."""
-        return self.directory.resolve().name
-
-    @property
-    def several(self):
-        """Whether the deck has the section Particles, so that series of one particle are named <particle>/<name>."""
-        return any("/" in name for name in self.series)
+    name = property(lambda self: self.directory.resolve().name, doc="The name of the directory.")
+    several = property(lambda self: any("/" in name for name in self.series), doc="Whether the deck has the section "
+                       "Particles, so that series of one particle are named <particle>/<name>.")
 
     @property
     def particles(self):
@@ -87,17 +82,48 @@ class Run:
         """Returns a series (rows,) of one particle by its name in `particles`."""
         return self.series[f"{particle}/{name}" if self.several else name]
 
+    def _split(self):
+        """Returns ({series: {particle: values (rows,)}}, {series of the scene: values})."""
+        own, scene = {}, {}
+        for name, values in self.series.items():
+            particle, _, series = name.rpartition("/")
+            if particle or (not self.several and OF_PARTICLE.fullmatch(name)):
+                own.setdefault(series, {})[particle or "particle"] = values
+            else:
+                scene[name] = values
+        return own, scene
+
     def frame(self, tidy=False):
         """Returns the series as a pandas.DataFrame with the index `time`, a column for each name in `series`, and the
         units and descriptions in its `attrs`. With tidy=True it has one row per time and particle and the columns
         `time`, `particle` and the series of particles; of one particle and of several alike. Needs pandas."""
-        return exports.frame(self, tidy)
+        pandas = optional("pandas", "run.frame()")
+        if not tidy:
+            found = pandas.DataFrame(dict(self.series)).set_index("time")
+            found.attrs = {"units": dict(self.units), "descriptions": dict(self.descriptions)}
+            return found
+        own, _ = self._split()
+        parts = [pandas.DataFrame({"time": self.series["time"], "particle": particle} |
+                                  {name: values[particle] for name, values in own.items() if particle in values})
+                 for particle in self.particles]
+        return pandas.concat(parts, ignore_index=True)
 
     def dataset(self):
         """Returns the series as an xarray.Dataset. Series of particles have the dimensions (particle, time), of one
         particle and of several alike; series of the scene have (time,). A series of the scene with the name of a
         particle's is called `scene_<name>`. Variables have the attributes `units` and `long_name`. Needs xarray."""
-        return exports.dataset(self)
+        xarray = optional("xarray", "run.dataset()")
+        own, scene = self._split()
+        time, variables = scene.pop("time"), {}
+        about = {name: {"units": self.units[name], "long_name": self.descriptions[name]} for name in self.series}
+        for name, values in own.items():
+            rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.particles])
+            first = f"{next(iter(values))}/{name}" if self.several else name
+            variables[name] = ("particle", "time"), rows, about[first]
+        for name, values in scene.items():
+            variables[f"scene_{name}" if name in own else name] = ("time",), values, about[name]
+        coordinates = {"time": ("time", time, about["time"]), "particle": self.particles}
+        return xarray.Dataset(variables, coordinates, {"deck": self.deck_text, "name": self.name} | self.provenance)
 
     def in_units(self, dimension):
         """Returns ", µm/s" for length/time if the deck has the section Units, for labels of figures; otherwise ""."""
@@ -120,26 +146,24 @@ class Run:
 
     @property
     def rate(self):
-        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none.
-
-        In a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius
-        of a circle of the duct's area."""
+        """The rate (1/time) by which times are multiplied to have no unit, and its name; (1, None) if there is none. In
+        a parabolic flow it is the maximum velocity over the half width, in a duct the mean velocity over the radius of
+        a circle of the duct's area."""
         kind = self.value("Flow/type")
         if kind == "duct":
-            with opened(self.directory / "duct.h5") as file:
-                return float(file["mean_velocity"][()] / file["radius"][()]), "mean velocity / tube radius"
+            duct = arrays_of(self.directory / "duct.h5")
+            return float(duct["mean_velocity"] / duct["radius"]), "mean velocity / tube radius"
         if kind == "linear":
-            gradient = numpy.reshape(numpy.array(self.value("Flow/gradient"), float), (3, 3))
+            gradient = numpy.reshape(self.value("Flow/gradient"), (3, 3)).astype(float)
             return float(numpy.linalg.norm(gradient, 2)), "rate"
         if kind == "parabolic":
             width = float(self.value("Flow/half width"))
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
         return (float(self.value("Flow/shear rate", 1)), RATES[kind]) if kind in RATES else (1.0, None)
 
-    @property
-    def time(self):
-        """Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see `time_label`."""
-        return self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0])
+    time = property(lambda self: self.series["time"] * (1 if "Continuation" in self.deck else self.rate[0]),
+                    doc="Times of the series (rows,), multiplied by `rate`, or numbers of points on a branch: see "
+                    "`time_label`.")
 
     @property
     def time_label(self):
@@ -152,16 +176,14 @@ class Run:
     @property
     def radius(self):
         """R_C: radius of the sphere of equal volume, of the first particle."""
-        if self.several:
-            return float(3 * self.series[f"{self.particles[0]}/volume"][0] / (4 * numpy.pi)) ** (1 / 3)
         numbers = (self.summary or {}).get("numbers") or {}
-        if "radius" in numbers:
+        if "radius" in numbers and not self.several:
             return float(numbers["radius"])
-        return self.snapshots()[0].volume() ** (1 / 3) * (3 / (4 * numpy.pi)) ** (1 / 3)
+        volume = self.of(self.particles[0], "volume")[0] if self.several else self.snapshots()[0].volume()
+        return float(3 * volume / (4 * numpy.pi)) ** (1 / 3)
 
     def scale(self, dimension):
         """Returns what a length, velocity, stress, curvature or tension is divided by to have no unit, and its symbol.
-
         Lengths are divided by R_C, stresses by the viscosity times the rate of the flow; if the flow has no rate, by
         the modulus over R_C; of a rigid body by the viscosity times its speed over R_C. Tensions have no unit."""
         radius, viscosity = self.radius, float(self.value("Flow/viscosity", 1))
@@ -210,10 +232,8 @@ class Run:
     def band(self, name):
         """Returns the lower and upper limits (rows,) of a series, value minus and plus estimated error; None if the run
         has no estimated error of it."""
-        error = self.errors.get(name)
-        if error is None or not numpy.isfinite(error).any():
-            return None
-        return self.series[name] - error, self.series[name] + error
+        error = self.errors.get(name, numpy.nan)
+        return (self.series[name] - error, self.series[name] + error) if numpy.isfinite(error).any() else None
 
     def snapshots(self):
         """Returns the saved steps in order of time. Each is read when it is used."""

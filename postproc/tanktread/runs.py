@@ -1,6 +1,8 @@
 """Runs of the program: one of a deck, or many of a study, made once and found again."""
 
 import concurrent.futures
+import contextlib
+import functools
 import hashlib
 import json
 import math
@@ -34,10 +36,8 @@ PROGRAM = _program()
 
 
 def shared():
-    """Yields folders below which the decks and studies in `inputs` are looked for."""
-    yield pathlib.Path()
-    yield SOURCE
-    yield PROGRAM.resolve().parents[1] / "share/tanktread"
+    """Returns folders below which the decks and studies in `inputs` are looked for."""
+    return pathlib.Path(), SOURCE, PROGRAM.resolve().parent.parent / "share/tanktread"
 
 
 def deck_at(name):
@@ -55,9 +55,8 @@ def quoted(word):
 
 def text_of(value):
     """Returns a value as the command line has it."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return f"{value:.15g}" if isinstance(value, float) else str(value)
+    text = f"{value:.15g}" if isinstance(value, float) else str(value)
+    return text.lower() if isinstance(value, bool) else text
 
 
 def settings_of(words):
@@ -68,10 +67,9 @@ def settings_of(words):
 
 
 def run(where, settings=None):
-    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results.
-
-    With settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a
-    name that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
+    """Returns the Run in a directory, or of a deck (a .yaml file), which is run first if it has no results. With
+    settings {"Section/key": value} the deck is run with these keys changed; the results are below `results`, by a name
+    that follows from both. A Run is returned as it is. Raises Mistake if the run fails."""
     if isinstance(where, Run):
         return where
     if settings:
@@ -83,13 +81,11 @@ def run(where, settings=None):
 
 def runs_of(runs):
     """Returns a list of Runs from one or several runs, directories or decks."""
-    several = isinstance(runs, (list, tuple))
-    return [run(one) for one in (runs if several else [runs])]
+    return [run(one) for one in (runs if isinstance(runs, (list, tuple)) else [runs])]
 
 
 def results_of(deck, name=None, settings=None, accepted=(0, 1)):
     """Returns the directory results/<name> (by default the deck's name), in which the deck is run if it has no results.
-
     `accepted`: exit codes that are no error; 1 is a missed expectation, which a figure shows."""
     directory = pathlib.Path("results") / (name or pathlib.Path(deck).stem)
     if not (directory / "run.h5").exists():
@@ -113,28 +109,20 @@ def _set(settings):
 
 class Outcome:
     """The end of one run of a Study: `done` (as far as its deck said), `failed`, `refused` (a mistake in the deck) or
-    `slow` (stopped at the time limit).
-
-    `message`: its last line on standard error. `seconds`, `processor_seconds` (of all ranks). `series`, `final`,
-    `counts` and `phases`: what it recorded."""
+    `slow` (stopped at the time limit). `message`: its last line on standard error. `seconds`, `processor_seconds` (of
+    all ranks). `series`, `final`, `counts` and `phases`: what it recorded."""
 
     def __init__(self, directory, note):
         self.directory, self.message, self.seconds = pathlib.Path(directory), note["message"], note["seconds"]
         self.processor_seconds = note.get("processor_seconds", math.nan)
         self.code, self.command = note["code"], note["command"]
-        self._run = None
 
     done = property(lambda self: self.code in (0, 1) and (self.directory / "summary.yaml").exists())
-    failed = property(lambda self: not (self.done or self.refused or self.slow))
+    failed = property(lambda self: self.status == "failed")
     refused = property(lambda self: self.code == 2)
     slow = property(lambda self: self.code in (None, 4))
 
-    @property
-    def run(self):
-        if self._run is None:
-            self._run = Run(self.directory)
-        return self._run
-
+    run = functools.cached_property(lambda self: Run(self.directory))
     series = property(lambda self: self.run.series)
     counts = property(lambda self: self._of_summary("counts"))
     final = property(lambda self: self._of_summary("final"))
@@ -143,14 +131,10 @@ class Outcome:
     def _of_summary(self, section):
         return Named(self.run.summary[section] or {}, f"{self.directory}/summary.yaml holds in {section} no")
 
-    @property
-    def status(self):
-        """Returns `done`, `refused`, `stopped` or `failed`."""
-        return "done" if self.done else "refused" if self.refused else "stopped" if self.slow else "failed"
-
-    @property
-    def kernel_evaluations(self):
-        return sum(value for name, value in self.counts.items() if name.startswith("kernel_evaluations"))
+    status = property(lambda self: "done" if self.done else "refused" if self.refused else "stopped" if self.slow
+                      else "failed", doc="`done`, `refused`, `stopped` or `failed`.")
+    kernel_evaluations = property(lambda self: sum(value for name, value in self.counts.items()
+                                                   if name.startswith("kernel_evaluations")))
 
     @property
     def end(self):
@@ -163,7 +147,6 @@ class Outcome:
 
 class Study:
     """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
-
     `limit`: processor seconds that one run may take (None: any). `jobs`: runs at a time. `fresh`: makes every run anew.
     """
 
@@ -171,18 +154,18 @@ class Study:
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)
         self.limit, self.jobs, self.fresh = limit, jobs, fresh
         self._made, self._running = set(), set()
-        self._manual = None
 
     def run(self, decks, settings, ranks=1):
-        """Returns the Outcome of `tanktread decks… --set …`.
-
-        `decks`: a path (`deck_at`), or several that overlay each other; `settings`: {"Section/key": value}. A run that
-        a signal stopped is resumed from its checkpoint."""
+        """Returns the Outcome of `tanktread decks… --set …`. `decks`: a path (`deck_at`), or several that overlay each
+        other; `settings`: {"Section/key": value}. A run that a signal stopped is resumed from its checkpoint."""
         decks = [decks] if isinstance(decks, (str, pathlib.Path)) else list(decks)
         where = self.directory / self.name(decks, settings, ranks)
-        note = where / "outcome.json"
-        before = self._before(where, note)
-        if before and (where in self._made or not self.fresh) and self._stands(before):
+        note, before = where / "outcome.json", None
+        with contextlib.suppress(Mistake):  # there is none, or it is damaged
+            before = Outcome(where, parsed(note, json.loads))
+        # a run that never began is made again: another program may know the keys that were refused
+        began = before and not before.refused and (where / "run.h5").exists()
+        if before and (where in self._made or (began and before.code != 4 and not self.fresh)):
             return before
         self._made.add(where)
         # without --bind-to none, runs side by side would all be bound to the first cores
@@ -198,19 +181,6 @@ class Study:
         partial.write_text(json.dumps(made))
         partial.rename(note)
         return Outcome(where, made)
-
-    @staticmethod
-    def _before(where, note):
-        """Returns the Outcome that a run left, or None if there is none or its note is damaged."""
-        try:
-            return Outcome(where, parsed(note, json.loads))
-        except Mistake:
-            return None
-
-    def _stands(self, outcome):
-        """Returns whether a run need not be made again: another program may know the keys that were refused."""
-        never_began = outcome.refused or not (outcome.directory / "run.h5").exists()
-        return outcome.directory in self._made or not (never_began or outcome.code == 4)
 
     def _make(self, words):
         _exists(self.program)
@@ -240,9 +210,8 @@ class Study:
         return pathlib.Path(decks[-1]).stem + "_" + hashlib.sha1(text.encode()).hexdigest()[:12]
 
     def all(self, jobs, told=lambda outcome: None):
-        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time.
-
-        Calls `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
+        """Returns the Outcomes of many (decks, settings[, ranks]) in their order, `self.jobs` of them at a time. Calls
+        `told` with each Outcome when it ends. An interrupt stops the runs, which leave checkpoints."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             futures = [pool.submit(self.run, *job) for job in jobs]
             try:
@@ -260,11 +229,12 @@ class Study:
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             return list(pool.map(function, items))
 
+    @functools.cached_property
+    def _manual(self):
+        return subprocess.run([self.program, "--reference"], capture_output=True, text=True, check=True).stdout
+
     def dimension(self, key):
         """Returns the dimension of a key, such as force/length; "" of a number and of an unknown key."""
-        if self._manual is None:
-            self._manual = subprocess.run([str(self.program), "--reference"], capture_output=True, text=True,
-                                          check=True).stdout
         section, _, name = key.rpartition("/")
         body = self._manual.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
         row = next((row for row in body.splitlines() if row.startswith(f"| `{name}`")), "|||| |")

@@ -1,13 +1,14 @@
 """Saved steps of a run: exact surfaces and the fields on them."""
 
+import functools
 import itertools
 import pathlib
 
 import numpy
 
-from . import exports, lagrange
+from . import lagrange
 from .files import opened
-from .mistakes import expect
+from .mistakes import expect, optional
 
 # What a field is divided by to have no unit, by Run.scale.
 DIMENSIONS = {"traction": "stress", "load": "stress", "pressure": "stress", "pressure error": "stress",
@@ -21,36 +22,29 @@ def evenly(items, n):
 
 
 class Snapshot:
-    """A saved step, in the units of the deck.
-
-    `path`, `time`: the file and the simulated time. `cells`: node numbers of each Lagrange quadrilateral, as a list of
-    arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length. `fields`: {name: (n,) or (n, k)} at the
-    nodes; `DIMENSIONS` says what each is measured in. The file is read when one of these is first used."""
+    """A saved step, in the units of the deck. `path`, `time`: the file and the simulated time. `cells`: node numbers of
+    each Lagrange quadrilateral, as a list of arrays ((p + 1)^2,). `points`: positions of the nodes (n, 3), in length.
+    `fields`: {name: (n,) or (n, k)} at the nodes; `DIMENSIONS` says what each is measured in. The file is read when one
+    of these is first used."""
 
     def __init__(self, path, time, particles=("particle",)):
         self.path, self.time, self.particles = pathlib.Path(path), time, list(particles)
         self.cell = None  # vectors of the periodic cell over R_C, as rows (3, 3), of a lattice in a `scaled` snapshot
-        self._content = None
 
-    def _read(self):
-        if self._content is None:
-            with opened(self.path) as file:
-                grid = file["VTKHDF"]
-                connectivity, offsets = grid["Connectivity"][:], grid["Offsets"][:]
-                cells = [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
-                fields = {name: data[:] for name, data in grid["PointData"].items()}
-                self._content = grid["Points"][:], cells, fields
-        return self._content
+    @functools.cached_property
+    def _content(self):
+        with opened(self.path) as file:
+            grid = file["VTKHDF"]
+            cells = numpy.split(grid["Connectivity"][:], grid["Offsets"][1:-1])
+            return grid["Points"][:], cells, {name: data[:] for name, data in grid["PointData"].items()}
 
-    points = property(lambda self: self._read()[0])
-    cells = property(lambda self: self._read()[1])
-    fields = property(lambda self: self._read()[2])
+    points = property(lambda self: self._content[0])
+    cells = property(lambda self: self._content[1])
+    fields = property(lambda self: self._content[2])
 
-    @property
-    def positions(self):
-        """Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the cell at the
-        origin."""
-        return self.points if self.cell is None else self.points + self.fields["into cell"]
+    positions = property(lambda self: self.points if self.cell is None else self.points + self.fields["into cell"],
+                         doc="Positions of the nodes (n, 3) as they are drawn: `points`, or in a lattice those in the "
+                         "cell at the origin.")
 
     @property
     def frame(self):
@@ -76,23 +70,18 @@ class Snapshot:
         return copy
 
     def evaluate(self, values, cells, s, t, ds=0, dt=0):
-        """Returns a field at parameters s, t (m,), each in [0, 1], of the cells with the indices `cells` (m,).
-
-        `values` (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or
-        (m, k). `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
-        values, cells = numpy.asarray(values), numpy.asarray(cells)
-        s, t = numpy.asarray(s, float), numpy.asarray(t, float)
+        """Returns a field at parameters s, t (m,), each in [0, 1], of the cells with the indices `cells` (m,). `values`
+        (n,) or (n, k) is given at the nodes: `points`, or one of `fields`. The result has the shape (m,) or (m, k).
+        `ds`, `dt`: orders of derivatives. It is exact, because a cell holds the polynomial of its element."""
+        values, s, t = numpy.asarray(values), numpy.asarray(s, float), numpy.asarray(t, float)
         result = numpy.empty((len(cells),) + values.shape[1:])
-        degrees = numpy.array([round(len(self.cells[cell]) ** 0.5) - 1 for cell in cells])
-        for p in set(degrees.tolist()):
-            which = numpy.flatnonzero(degrees == p)
-            nodes = values[numpy.array([self.cells[cell] for cell in cells[which]])]
-            result[which] = numpy.einsum("mn,mn...->m...", lagrange.table(p, s[which], t[which], ds, dt), nodes)
+        for p, which, nodes in lagrange.by_degree([self.cells[cell] for cell in cells]):
+            table = lagrange.table(p, s[which], t[which], ds, dt)
+            result[which] = numpy.einsum("mn,mn...->m...", table, values[nodes])
         return result
 
     def sampled(self, values, k=8, cells=None):
         """Returns a field on the uniform grid of (k + 1)^2 parameters of every cell, or of those with given indices.
-
         Shape (cells, k + 1, k + 1[, components]), t first, then s. Exact, as `evaluate`."""
         values = numpy.asarray(values)
         chosen = self.cells if cells is None else [self.cells[i] for i in cells]
@@ -123,7 +112,23 @@ class Snapshot:
         return total
 
     def mesh(self, kind="meshio"):
-        """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid.
-
-        Both have cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
-        return exports.mesh(self, kind)
+        """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid. Both have
+        cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
+        expect(kind in ("meshio", "vtk"), f"a mesh is of the kind meshio or vtk, not {kind}")
+        cells = [nodes for _, _, nodes in lagrange.by_degree(self.cells)]
+        if kind == "meshio":
+            meshio = optional("meshio", "snapshot.mesh()")
+            blocks = [("VTK_LAGRANGE_QUADRILATERAL", nodes) for nodes in cells]
+            return meshio.Mesh(self.points, blocks, point_data=dict(self.fields))
+        model, core, convert = (optional(f"vtkmodules.{name}", "snapshot.mesh('vtk')", "vtk9")
+                                for name in ("vtkCommonDataModel", "vtkCommonCore", "util.numpy_support"))
+        points, grid = core.vtkPoints(), model.vtkUnstructuredGrid()
+        points.SetData(convert.numpy_to_vtk(self.points, deep=True))
+        grid.SetPoints(points)
+        for cell in itertools.chain.from_iterable(cells):
+            grid.InsertNextCell(getattr(model, "VTK_LAGRANGE_QUADRILATERAL", 70), len(cell), cell.tolist())
+        for name, values in self.fields.items():
+            array = convert.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            grid.GetPointData().AddArray(array)
+        return grid

@@ -47,9 +47,8 @@ def stays_at(parsed, study, value):
         outcome = study.run(parsed.deck, settings)
         expect(outcome.done, f"{parsed.key}={value:.6g}: {outcome.message}")
         run, series = outcome.run, outcome.series
-        speed = run.value("Flow/mean velocity", 1.0)
-        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"],
-                                                         run.value("Channel/radius", 1.0), speed)
+        radius, speed = run.value("Channel/radius", 1.0), run.value("Flow/mean velocity", 1.0)
+        held = run.summary["status"] != "past" and stays(series["time"], series["centroid_x1"], radius, speed)
         said = {True: "stays", False: "passes", None: f"neither passes nor stays by {series['time'][-1]:g}"}[held]
         log.info(f"{parsed.key} = {value:.5g}: {said}; to x1 = {series['centroid_x1'][-1]:.4f}, there "
                  f"{series['velocity_x1'][-1] / speed:.2g} of the mean velocity; smallest film "

@@ -29,9 +29,8 @@ The position of an outline in its picture is free. Derivatives are differences o
 for each unknown key and experiment, none for positions and scales. Runs are kept and found again if all their keys are
 equal, so it is best to leave a `start` as it was. Standard errors follow from those of the data and, if the deck
 requests an accuracy, from the estimated errors of the series. A quantity known with an error belongs under `unknown`,
-such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too
-large for the errors of the data, errors that the residuals give are printed too; a mesh that is too coarse for the data
-is the first suspect.
+such as Flow/viscosity: {known: 0.97, error: 0.01}. If chi square is too large for the errors of the data, errors that
+the residuals give are printed too; a mesh that is too coarse for the data is the first suspect.
 """
 
 import os
@@ -41,10 +40,10 @@ import yaml
 
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
+from .common import decks_of, keys_of, number, optional, yaml_of
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
 from .fit_report import draw, further, told
-from .reading import decks_of, keys_of, number, yaml_of
 
 KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
 
@@ -54,13 +53,13 @@ def load(path, study):
     text = yaml_of(path, KEYS)
     folder = pathlib.Path(path).parent
     decks = decks_of(text, path)
-    study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+    study.limit = optional(number, text, "limit", path)
     expect(keys_of(text.get("experiments"), f"{path}: experiments"), f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}")
             for law, settings in keys_of(text.get("laws"), f"{path}: laws").items()}
     lists = [text, *text["experiments"].values(), *laws.values()]
     expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
-    unknowns = [Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()]
+    unknowns = {key: Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()}
     experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
     for key, values in keys_of(text.get("next"), f"{path}: next").items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
@@ -68,15 +67,13 @@ def load(path, study):
     for law, settings in (laws or {"the deck's law": {}}).items():
         settings = fixed | settings
         more = keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
-        own = {key: Unknown(key, given) for key, given in more.items()}
-        fits.append(Fit(law, settings, list(({one.key: one for one in unknowns} | own).values()), experiments,
-                        Runs(study, decks, law)))
+        own = unknowns | {key: Unknown(key, given) for key, given in more.items()}
+        fits.append(Fit(law, settings, own.values(), experiments, Runs(study, decks, law)))
     return fits, text
 
 
 def run(path, directory=None, jobs=None, laws=None):
     """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
-
     `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
     cores). `laws`: names of the laws that are fitted (default: all)."""
     from ..figures import style
@@ -94,11 +91,10 @@ def run(path, directory=None, jobs=None, laws=None):
     progress("")
     log.info(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
-    record = {}
-    for fit in fits:
-        unknown = {name: {"value": value, "error": float(error)} for name, (value, error) in fit.values.items()}
-        record[fit.law] = {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
-                           "runs": fit.runs.count, "unknown": unknown}
+    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
+                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
+                                                            for name, (value, error) in fit.values.items()}}
+              for fit in fits}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits

@@ -6,7 +6,7 @@ from ..files import table
 from ..interpolation import interpolated
 from ..mistakes import expect
 from . import silhouette
-from .reading import keys_of, number, positive
+from .common import keys_of, number, optional, positive
 
 # from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
 FAR = numpy.log(1000)
@@ -25,16 +25,15 @@ class Unknown:
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
-        start = self.number(self.start_value)
-        given = given | {word: number(given[word], f"{self.name}: {word}")
-                         for word in {"known", "from", "to"} & set(given)}
-        expect(not self.logarithmic or all(given[word] > 0 for word in {"from", "to"} & set(given)),
+        self.known, *bounds = (number(given[word], f"{self.name}: {word}") if word in given else None
+                               for word in ("known", "from", "to"))
+        expect(not self.logarithmic or all(bound is None or bound > 0 for bound in bounds),
                f"{self.name}: `from` and `to` must be above 0, or it has `spacing: linear`")
-        self.bounds = tuple(self.number(given[word]) if word in given else start + far
-                            for word, far in (("from", -FAR), ("to", FAR)))
-        expect(self.bounds[0] <= start <= self.bounds[1] and self.bounds[0] < self.bounds[1],
+        start = self.number(self.start_value)
+        low, high = self.bounds = tuple(start + far if bound is None else self.number(bound)
+                                        for bound, far in zip(bounds, (-FAR, FAR)))
+        expect(low <= start <= high and low < high,
                f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
-        self.known = given.get("known")
         self.error = positive(given["error"], f"{self.name}: error") if "error" in given else None
 
     def number(self, value):
@@ -45,27 +44,27 @@ class Unknown:
 
     def error_of(self, value, error):
         """Returns the standard error of the value from that of the fitted number."""
-        return value * error if self.logarithmic else self.unit * error
+        return error * (value if self.logarithmic else self.unit)
 
 
-def at_of(given, name):
-    """Returns the time of a datum, or None for the end of the run."""
-    return number(given["at"], f"{name}: at") if given.get("at") is not None else None
+class Datum:
+    """What outlines and series have: a name, a time `at` (None: the end of the run), a standard error or None."""
+
+    def __init__(self, given, name):
+        self.name, self.at = name, optional(number, given, "at", name)
+        self.error = optional(positive, given, "error", name)
+
+    def columns(self, path):
+        """Returns the first two columns of a table (n, 2). Takes standard errors from a third one if none is stated."""
+        rows = table(path)
+        if self.error is None and rows.shape[1] > 2:
+            self.error = rows[:, 2]
+            expect((self.error > 0).all() and numpy.isfinite(self.error).all(), f"{self.name}: the third column of the "
+                   "table is of standard errors, and one is not a number above 0")
+        return rows[:, :2]
 
 
-def error_of(given, name):
-    """Returns the standard error that a datum states, or None."""
-    return positive(given["error"], f"{name}: error") if given.get("error") is not None else None
-
-
-def errors_in(rows, name):
-    """Returns the third column of a table (n,), standard errors."""
-    expect((rows[:, 2] > 0).all() and numpy.isfinite(rows[:, 2]).all(),
-           f"{name}: the third column of the table is of standard errors, and one is not a number above 0")
-    return rows[:, 2]
-
-
-class OutlineData:
+class OutlineData(Datum):
     """Points of an edge in a plane. Unknown with it: where it lies, and its scale where that has an error."""
 
     def __init__(self, given, name, folder):
@@ -73,16 +72,15 @@ class OutlineData:
         expect(set(given) <= known, f"{name}: an outline has {', '.join(sorted(known))}")
         expect("scale" in given,
                f"{name} has no scale: the deck's length for a unit of its picture (1 if they are the same)")
-        self.name, self.at, self.error = name, at_of(given, name), error_of(given, name)
+        super().__init__(given, name)
         self.scale = positive(given["scale"], f"{name}: scale")
         plane = given.get("plane", ["x1", "x3"])
         expect(isinstance(plane, list) and len(plane) == 2 and plane[0] != plane[1]
                and all(one in ("x1", "x2", "x3") for one in plane), f"{name}: the plane is two of x1, x2, x3")
         self.axis = 6 - sum(int(one[1]) for one in plane) - 1
-        rows = table(folder / str(given["outline"]))
-        self.points = rows[:, :2][:, numpy.argsort(plane)]
-        if self.error is None and rows.shape[1] > 2:
-            self.error = float(numpy.sqrt((errors_in(rows, name) ** 2).mean()))
+        self.points = self.columns(folder / str(given["outline"]))[:, numpy.argsort(plane)]
+        if numpy.ndim(self.error):
+            self.error = float(numpy.sqrt((self.error**2).mean()))
         steps = numpy.linalg.norm(self.points - numpy.roll(self.points, 1, axis=0), axis=1)
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
@@ -93,16 +91,13 @@ class OutlineData:
         self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
         self.count = len(self.points)
 
-    @property
-    def length(self):
-        """Returns the number of residuals: one per point, and one of a scale with an error."""
-        return self.count + (self.places > 2 and not self.free_scale)
+    length = property(lambda self: self.count + (self.places > 2 and not self.free_scale),
+                      doc="The number of residuals: one per point, and one of a scale with an error.")
 
     def start(self, prediction):
         """Returns the start of its position (2 or 3,), from the middles of data and prediction."""
-        low, high = self.points.min(0), self.points.max(0)
-        middle = (prediction.points.min(0) + prediction.points.max(0)) / 2
-        return numpy.concatenate([middle - self.scale * (low + high) / 2, numpy.zeros(self.places - 2)])
+        own, middle = ((points.min(0) + points.max(0)) / 2 for points in (self.points, prediction.points))
+        return numpy.append(middle - self.scale * own, numpy.zeros(self.places - 2))
 
     def prediction(self, run):
         shot = run.snapshot_at(self.at)
@@ -115,33 +110,31 @@ class OutlineData:
 
     def residuals(self, prediction, place):
         found = prediction.distances(self.placed(place)) / self.scale / (self.error or 1)
-        return numpy.append(found, place[2] / self.scale_error) if self.places > 2 and not self.free_scale else found
+        return found if self.length == self.count else numpy.append(found, place[2] / self.scale_error)
 
 
-class SeriesData:
+class SeriesData(Datum):
     """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its
     origin is free."""
 
     length = property(lambda self: self.count)  # of its residuals
+    discretisation = None  # error of the runs, if their deck requests an accuracy
 
     def __init__(self, given, name, folder):
         known = {"series", "over", "value", "curve", "error", "at", "origin"}
         expect(set(given) <= known and ("value" in given) != ("curve" in given),
                f"{name}: a series has value or curve, and error, at, over, origin")
-        self.name, self.error = name, error_of(given, name)
+        super().__init__(given, name)
         self.series = [given[word] for word in ("series", "over") if word in given]
         self.places = int("origin" in given)
         expect(not self.places or given["origin"] == "free" and "curve" in given,
                f"{name}: `origin: free` is of a curve, and there is no other origin")
         if "curve" in given:
-            rows = table(folder / str(given["curve"]))
-            self.times, self.values = rows[:, 0], rows[:, 1]
-            self.error = errors_in(rows, name) if self.error is None and rows.shape[1] > 2 else self.error
+            self.times, self.values = self.columns(folder / str(given["curve"])).T
             self.span = float(numpy.ptp(self.times)) or 1.0  # unit of the start of the curve in the fit
         else:
-            self.times, self.values = at_of(given, name), numpy.array([number(given["value"], f"{name}: value")])
+            self.times, self.values = self.at, numpy.array([number(given["value"], f"{name}: value")])
         self.count = len(self.values)
-        self.discretisation = None  # error of the runs, if their deck requests an accuracy
 
     def start(self, prediction):
         """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
@@ -158,21 +151,16 @@ class SeriesData:
         last = 0 if self.times is None or self.places else numpy.max(self.times)
         expect(last <= times[-1] * (1 + 1e-9),
                f"{self.name}: the run ends at {times[-1]:g}, before its data: set Time/final time")
-        if self.discretisation is None:
-            self.discretisation = self._discretisation(run)
+        if self.discretisation is None:  # the largest estimated error, of a ratio from both series; 0 if it is unknown
+            sizes = [numpy.nanmax(abs(run.series[name])) for name in self.series]
+            errors = [numpy.nanmax(run.errors[name]) if run.band(name) is not None else 0 for name in self.series]
+            self.discretisation = (errors[0] if len(self.series) == 1 else
+                                   sizes[0] / sizes[1] * numpy.hypot(*numpy.divide(errors, sizes)))
         values = values / run.series[self.series[1]] if len(self.series) > 1 else values
         defined = ~numpy.isnan(values)
         expect(defined[-1] if self.times is None else defined.any(),
                f"{self.name}: {' / '.join(self.series)} is undefined (NaN) in the run")
         return times[defined], values[defined]
-
-    def _discretisation(self, run):
-        """Returns the largest estimated error of the run; of a ratio from both series; 0 if it is unknown."""
-        sizes = [numpy.nanmax(abs(run.series[name])) for name in self.series]
-        errors = [numpy.nanmax(run.errors[name]) if run.band(name) is not None else 0 for name in self.series]
-        if len(self.series) == 1:
-            return errors[0]
-        return sizes[0] / sizes[1] * numpy.hypot(errors[0] / sizes[0], errors[1] / sizes[1])
 
     def predicted(self, prediction, place):
         """Returns the values of the run at the data's times."""
@@ -183,9 +171,8 @@ class SeriesData:
         return interpolated(times, values, numpy.clip(wanted, times[0], times[-1]))
 
     def residuals(self, prediction, place):
-        if self.error is None:
-            return self.values - self.predicted(prediction, place)
-        return (self.values - self.predicted(prediction, place)) / numpy.hypot(self.error, self.discretisation or 0)
+        found = self.values - self.predicted(prediction, place)
+        return found if self.error is None else found / numpy.hypot(self.error, self.discretisation or 0)
 
 
 class Experiment:

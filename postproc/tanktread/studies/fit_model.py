@@ -10,10 +10,10 @@ from ..mistakes import Mistake, expect, progress
 
 STEP = 0.01     # of a logarithm, for derivatives on the way
 TELLS = 0.02    # and for those that errors follow from, to both sides
+TINY = 1e-6     # of a position, for its derivatives
 FAILED = 1e6    # a residual where a run failed
 MISSED = 1e-3   # probability of a larger chi square, below which the errors of the data do not hold
-# of chi square per degree of freedom, by which a last step lowers it: a tenth of the standard errors long
-SETTLED = 1e-2
+SETTLED = 1e-2  # of chi square per degree of freedom, by which a last step, a tenth of the standard errors, lowers it
 FAINT = 1e-4    # an unknown that does not change chi by more, times e, is left where it is
 SERIES = 8      # points of a datum along which the signs of residuals have a meaning
 
@@ -22,9 +22,18 @@ class Settled(Exception):
     """A fit has come to numbers, which go with this, that a further step would not change by what the data tell."""
 
 
+def parts(sizes):
+    """Returns the slices of consecutive parts of these sizes."""
+    return [slice(*ends) for ends in itertools.pairwise(numpy.cumsum([0, *sizes]))]
+
+
+def determined(error):
+    """Returns the standard error of a fitted number; inf from a factor of e, or for a linear one its own start, on."""
+    return numpy.where((error > 0) & (error < 1), error, numpy.inf)
+
+
 class Runs:
-    """What runs of the program predict. `settings` of an experiment's run to predictions of its data, or None where it
-    failed."""
+    """Predictions of the data of an experiment from runs of the program, by their settings; None where a run failed."""
 
     def __init__(self, study, decks, law):
         self.law, self.study, self.decks, self._found, self.messages, self._run = law, study, decks, {}, [], None
@@ -41,21 +50,17 @@ class Runs:
         for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
             if outcome.refused:
                 raise Mistake(f"the deck is refused: {outcome.message}")
-            self.messages += [] if outcome.done else [outcome.message]
-            self._found[text] = self._predicted(experiment, outcome) if outcome.done else None
+            self._run, self._found[text] = outcome.run if outcome.done else self._run, None
+            try:
+                expect(outcome.done, outcome.message)
+                self._found[text] = [datum.prediction(outcome.run) for datum in experiment.data]
+            except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
+                self.messages.append(str(error))
         return [self._found[text] for text in texts]
 
     def unit(self, key):
         """Returns the unit of a key if the deck has units: ", pN/µm"; otherwise ""."""
         return self._run.in_units(self.study.dimension(key)) if self._run else ""
-
-    def _predicted(self, experiment, outcome):
-        self._run = outcome.run
-        try:
-            return [datum.prediction(outcome.run) for datum in experiment.data]
-        except ValueError as error:  # a shape without an outline is as far from the data as a run that failed
-            self.messages.append(str(error))
-            return None
 
 
 class Fit:
@@ -66,40 +71,35 @@ class Fit:
         self.law, self.settings, self.experiments, self.runs = law, settings, experiments, runs
         self.unknowns = [*unknowns, *(one for experiment in experiments for one in experiment.unknowns)]
         self.data = [datum for experiment in experiments for datum in experiment.data]
+        self.rows = parts(datum.length for datum in self.data)  # of the residuals
+        self.positions = parts(datum.places for datum in self.data)
         self.count = sum(datum.count for datum in self.data)
         self.stated = all(datum.error is not None for datum in self.data)
 
-    def jobs(self, numbers):
-        """Returns (experiment, settings) of all runs at these values of the fitted numbers."""
-        found = []
-        for experiment in self.experiments:
-            values = {one.key: one.value(x) for one, x in zip(self.unknowns, numbers)
-                      if one.owner in (None, experiment.name)}
-            found.append((experiment, self.settings | experiment.settings | values))
-        return found
+    length = property(lambda self: sum(datum.length for datum in self.data)
+                      + sum(one.known is not None for one in self.unknowns), doc="The number of residuals.")
 
-    def predictions(self, numbers):
-        """Returns the predictions of all data, or None if a run failed."""
-        return self.flat(self.runs.all(self.jobs(numbers)))
+    def settings_of(self, experiment, numbers):
+        """Returns the settings of the run of an experiment at these values of the fitted numbers."""
+        values = {one.key: one.value(x) for one, x in zip(self.unknowns, numbers)
+                  if one.owner in (None, experiment.name)}
+        return self.settings | experiment.settings | values
 
-    @staticmethod
-    def flat(found):
-        return None if any(one is None for one in found) else list(itertools.chain.from_iterable(found))
+    def predictions(self, *points):
+        """Returns the predictions of all data at each of these values of the numbers, None where a run failed."""
+        made = self.runs.all([(one, self.settings_of(one, numbers)) for numbers in points for one in self.experiments])
+        groups = [made[part] for part in parts([len(self.experiments)] * len(points))]
+        return [None if None in group else list(itertools.chain.from_iterable(group)) for group in groups]
 
     def residuals(self, predictions, numbers, places):
         """Returns the weighted residuals of all data and of values known beforehand."""
         if predictions is None:
-            return numpy.full(self.length(), FAILED)
-        parts, start = [], 0
-        for datum, prediction in zip(self.data, predictions):
-            parts.append(datum.residuals(prediction, places[start:start + datum.places]))
-            start += datum.places
+            return numpy.full(self.length, FAILED)
+        each = [datum.residuals(prediction, places[own])
+                for datum, prediction, own in zip(self.data, predictions, self.positions)]
         known = [(one.value(x) - one.known) / one.error for one, x in zip(self.unknowns, numbers)
                  if one.known is not None]
-        return numpy.concatenate([*parts, known])
-
-    def length(self):
-        return sum(datum.length for datum in self.data) + sum(one.known is not None for one in self.unknowns)
+        return numpy.concatenate([*each, known])
 
     def split(self, x):
         return x[:len(self.unknowns)], x[len(self.unknowns):]
@@ -107,31 +107,18 @@ class Fit:
     def jacobian(self, x, step, sides=(1,)):
         """Returns finite differences by the unknowns, a matrix (residuals, unknowns) per side, and by the positions."""
         numbers, places = self.split(x)
-        shifted = [numbers + side * step * unit for side in sides for unit in numpy.eye(len(numbers))]
-        jobs = [self.jobs(one) for one in [numbers, *shifted]]
-        made = self.runs.all([job for one in jobs for job in one])
-        n = len(self.experiments)
-        found = [self.flat(made[k:k + n]) for k in range(0, len(made), n)]
-        base = self.residuals(found[0], numbers, places)
-        columns = [(self.residuals(one, at, places) - base) / (side * step)
-                   if one is not None else numpy.full(len(base), numpy.nan)
-                   for one, at, side in zip(found[1:], shifted, numpy.repeat(sides, len(numbers)))]
-        k = len(numbers)
-        each = [numpy.array(columns[k * i:k * (i + 1)]).reshape(k, len(base)).T for i in range(len(sides))]
-        return each, self.of_places(found[0], places, len(base))
-
-    def of_places(self, predictions, places, rows, tiny=1e-6):
-        """Returns derivatives by the positions of outlines (rows, positions). Each changes the residuals of its own
-        outline only."""
-        derivative, row, column = numpy.zeros((rows, len(places))), 0, 0
-        for datum, prediction in zip(self.data, predictions):
-            own = places[column:column + datum.places]
-            base = datum.residuals(prediction, own)
-            for k in range(datum.places):
-                shifted = datum.residuals(prediction, own + tiny * (numpy.arange(datum.places) == k))
-                derivative[row:row + len(base), column + k] = (shifted - base) / tiny
-            row, column = row + len(base), column + datum.places
-        return derivative
+        shifts = [side * step * unit for side in sides for unit in numpy.eye(len(numbers))]
+        first, *found = self.predictions(numbers, *(numbers + shift for shift in shifts))
+        base = self.residuals(first, numbers, places)
+        rows = [numpy.full(self.length, numpy.nan) if one is None else
+                (self.residuals(one, numbers + shift, places) - base) / shift.sum()
+                for one, shift in zip(found, shifts)]
+        of_places = numpy.zeros((self.length, len(places)))  # each position changes its own outline only
+        for datum, prediction, own, there in zip(self.data, first, self.positions, self.rows):
+            for column, unit in zip(range(own.start, own.stop), numpy.eye(datum.places)):
+                moved = datum.residuals(prediction, places[own] + TINY * unit)
+                of_places[there, column] = (moved - base[there]) / TINY
+        return numpy.reshape(rows, (len(sides), len(numbers), self.length)).transpose(0, 2, 1), of_places
 
     def begin(self):
         """Returns values at which all runs come to their end. If they do not at the user's start, multiplies one
@@ -141,9 +128,9 @@ class Fit:
                            for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
         low, high = numpy.transpose([one.bounds for one in self.unknowns])
         for numbers in (one for one in tries if ((low <= one) & (one <= high)).all()):
-            predictions = self.predictions(numbers)
-            if predictions is not None:
-                return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, predictions))])
+            (found,) = self.predictions(numbers)
+            if found is not None:
+                return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, found))])
         raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
 
     def effort(self):
@@ -155,14 +142,14 @@ class Fit:
     def solve(self, start=None):
         x = self.begin() if start is None else start
         places = len(x) - len(self.unknowns)
-        free = len(x) - (self.length() - self.count)  # less what is known beforehand
+        free = len(x) - (self.length - self.count)  # less what is known beforehand
         expect(free < self.count,
                f"{self.law}: {free} numbers are unknown, positions included, and there are {self.count} data")
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
         def function(x):
             numbers, places = self.split(x)
-            return self.residuals(self.predictions(numbers), numbers, places)
+            return self.residuals(*self.predictions(numbers), numbers, places)
 
         def derivative(x):
             (columns,), of_places = self.jacobian(x, STEP)
@@ -187,64 +174,44 @@ class Fit:
     def errors(self):
         """Computes the covariance of the unknowns, with positions eliminated, and `told`: which unknowns the data
         determine at all."""
-        (up, down), of_places = self.jacobian(self.x, TELLS, (1, -1))
+        (up, down), self.moved = self.jacobian(self.x, TELLS, (1, -1))
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
         strength = numpy.linalg.norm(self.derivative, axis=0)
         self.told = numpy.isfinite(strength) & (strength > 2 * disagreement) & (strength > 0)
-        self.moved = of_places
-        full = numpy.column_stack([self.derivative[:, self.told], of_places])
-        scale = numpy.linalg.norm(full, axis=0)
+        full = numpy.column_stack([self.derivative[:, self.told], self.moved])
+        scale, k = numpy.linalg.norm(full, axis=0), self.told.sum()
         _, sizes, right = numpy.linalg.svd(full / scale)
-        k = self.told.sum()
         with numpy.errstate(divide="ignore"):
             spread = right.T / sizes
         covariance = (spread @ spread.T / numpy.outer(scale, scale))[:k, :k]
-        self.freedom = self.length() - full.shape[1]
+        self.freedom = self.length - full.shape[1]
         self.covariance = covariance * (1 if self.stated else self.square / self.freedom)
-        errors = numpy.full(len(self.unknowns), numpy.inf)
-        errors[self.told] = numpy.sqrt(numpy.diag(self.covariance))
-        self.number_errors = errors
-        self.determined = errors < 1  # a factor of e, or of a linear one its own start
+        self.number_errors = numpy.full(len(self.unknowns), numpy.inf)
+        self.number_errors[self.told] = numpy.sqrt(numpy.diag(self.covariance))
         self.probability = float(scipy.stats.chi2.sf(self.square, self.freedom))
 
     @property
     def values(self):
         """Returns {name: (value, standard error or inf)}."""
-        found = {}
-        for one, x, error, known in zip(self.unknowns, self.x, self.number_errors, self.determined):
-            value = one.value(x)
-            found[one.name] = value, one.error_of(value, error) if known else numpy.inf
-        return found
+        return {one.name: (one.value(x), one.error_of(one.value(x), determined(error)))
+                for one, x, error in zip(self.unknowns, self.x, self.number_errors)}
 
-    @property
-    def squares(self):
-        """Returns {name of the datum: (chi square, points)}."""
-        found, start = {}, 0
-        for datum in self.data:
-            found[datum.name] = float((self.residual[start:start + datum.length] ** 2).sum()), datum.length
-            start += datum.length
-        return found
-
-    @property
-    def missed(self):
-        """Returns whether the errors of the data do not explain the residuals."""
-        return self.stated and self.probability < MISSED
+    missed = property(lambda self: self.stated and self.probability < MISSED,
+                      doc="Whether the errors of the data do not explain the residuals.")
 
     @property
     def aic(self):
-        parameters = len(self.x)
         if self.stated:
-            return self.square + 2 * parameters
-        return self.count * numpy.log(self.square / self.count) + 2 * (parameters + 1)
+            return self.square + 2 * len(self.x)
+        return self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1)
 
     def runs_test(self):
         """Returns z of the runs test (Wald and Wolfowitz) of the signs along all outlines and curves: by how many
         standard deviations the number of runs of one sign differs from chance."""
-        runs = mean = variance = start = 0
-        for datum in self.data:
-            signs = self.residual[start:start + datum.count] > 0
-            start += datum.length
+        runs = mean = variance = 0
+        for datum, own in zip(self.data, self.rows):
+            signs = self.residual[own][:datum.count] > 0
             plus, minus, n = signs.sum(), (~signs).sum(), datum.count
             if n < SERIES or not plus or not minus:
                 continue

@@ -5,84 +5,68 @@ import itertools
 
 import numpy
 import scipy.optimize
+import scipy.special
 import scipy.stats
 
 from .fit_data import OutlineData
-from .fit_model import SERIES, Fit
+from .fit_model import SERIES, Fit, determined
 
 
 def further(fits, settings):
     """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of
     chi square}). Each has data like the first experiment's, at the prediction of the best law."""
-    best, first = fits[0], fits[0].experiments[0]
-    rows = []
-    for key, value in [(key, value) for key, values in settings.items() for value in values]:
+    best, first, rows = fits[0], fits[0].experiments[0], []
+    for key, value in ((key, value) for key, values in settings.items() for value in values):
         candidate = copy.copy(first)
         candidate.settings, candidate.data = first.settings | {key: value}, []
-        truth = best.runs.all([(first, best.settings | candidate.settings | dict(_values(best, first)))])[0]
+        (truth,) = best.runs.all([(first, best.settings_of(candidate, best.x))])
         if truth is None:
             rows.append(({key: value}, None, None))
             continue
         for datum, prediction in zip(first.data, truth):
             one = copy.copy(datum)
+            one.error = datum.error if datum.error is not None else _scatter(best)
             if isinstance(datum, OutlineData):
-                one.points, one.scale = prediction.even(datum.count), 1.0
-                one.error = (datum.error or _scatter(best)) * datum.scale
+                one.points, one.scale, one.error = prediction.even(datum.count), 1.0, one.error * datum.scale
             else:
                 one.values = datum.predicted(prediction, datum.start(prediction))
-                one.error = datum.error if datum.error is not None else _scatter(best)
             candidate.data.append(one)
-        rows.append(({key: value}, _errors_with(best, candidate),
-                     {other.law: _rise(other, candidate) for other in fits[1:]}))
+        alone = _alone(best, candidate)
+        alone.errors()
+        both = numpy.zeros((len(best.unknowns),) * 2)
+        both[numpy.ix_(best.told, best.told)] += best.information() / (1 if best.stated else _scatter(best) ** 2)
+        index = numpy.array(alone.index)[alone.told]
+        both[numpy.ix_(index, index)] += alone.information()
+        errors = determined(numpy.sqrt(numpy.diag(numpy.linalg.pinv(both))))
+        others = [_alone(other, candidate) for other in fits[1:]]
+        rows.append(({key: value}, {unknown.name: unknown.error_of(unknown.value(x), error)
+                                    for unknown, x, error in zip(best.unknowns, best.x, errors)},
+                     {fit.law: one.square if one else numpy.inf for fit, one in zip(fits[1:], others)}))
     return rows
 
 
 def _scatter(fit):
+    """Returns by what factor residuals are larger than their errors."""
     return numpy.sqrt(fit.square / fit.freedom)
 
 
-def _values(fit, experiment):
-    return [(one.key, one.value(x)) for one, x in zip(fit.unknowns, fit.x) if one.owner in (None, experiment.name)]
-
-
 def _alone(fit, candidate):
-    """Returns a fit of the candidate only, at the values of `fit`."""
+    """Returns a fit of the candidate only, at the values of `fit`; None if its run failed."""
     one = Fit(fit.law, fit.settings, [], [candidate], fit.runs)
     one.index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
     one.unknowns = [copy.copy(fit.unknowns[k]) for k in one.index]
     for unknown in one.unknowns:
         unknown.known = None  # what is known beforehand counts once
-    one.x = fit.x[one.index]
-    predictions = one.predictions(one.x)
-    if predictions is None:
+    numbers = fit.x[one.index]
+    (found,) = one.predictions(numbers)
+    if found is None:
         return None
-    starts = [datum.start(prediction) for datum, prediction in zip(candidate.data, predictions)]
-    one.x = numpy.concatenate([one.x, *starts])
-    numbers, places = one.split(one.x)
+    places = numpy.concatenate([datum.start(prediction) for datum, prediction in zip(candidate.data, found)])
     if len(places):
-        placed = scipy.optimize.least_squares(lambda p: one.residuals(predictions, numbers, p), places)
-        one.x = numpy.concatenate([numbers, placed.x])
-    one.residual = one.residuals(predictions, *one.split(one.x))
+        places = scipy.optimize.least_squares(lambda p: one.residuals(found, numbers, p), places).x
+    one.x, one.residual = numpy.append(numbers, places), one.residuals(found, numbers, places)
     one.square = float(one.residual @ one.residual)
     return one
-
-
-def _errors_with(fit, candidate):
-    one = _alone(fit, candidate)
-    one.errors()
-    both = numpy.zeros((len(fit.unknowns),) * 2)
-    both[numpy.ix_(fit.told, fit.told)] += fit.information() / (1 if fit.stated else _scatter(fit) ** 2)
-    index = numpy.array(one.index)[one.told]
-    both[numpy.ix_(index, index)] += one.information()
-    errors = numpy.sqrt(numpy.diag(numpy.linalg.pinv(both)))
-    errors = numpy.where((errors > 0) & (errors < 1), errors, numpy.inf)  # as in Fit.errors: others stay undetermined
-    return {unknown.name: unknown.error_of(unknown.value(x), error)
-            for unknown, x, error in zip(fit.unknowns, fit.x, errors)}
-
-
-def _rise(fit, candidate):
-    one = _alone(fit, candidate)
-    return one.square if one else numpy.inf
 
 
 def rounded(value, error):
@@ -95,54 +79,50 @@ def told(fits, rows):
     """Returns the report as text."""
     lines = []
     for fit in fits:
-        said = f"chi square {fit.square:.4g} for {fit.freedom} degrees of freedom"
-        said += f" (probability {fit.probability:.2g})" if fit.stated else ""
-        lines += [f"{fit.law}: {said}, AIC {fit.aic:.2f}, {fit.runs.count} runs"]
+        probability = f" (probability {fit.probability:.2g})" if fit.stated else ""
+        lines.append(f"{fit.law}: chi square {fit.square:.4g} for {fit.freedom} degrees of freedom{probability}, "
+                     f"AIC {fit.aic:.2f}, {fit.runs.count} runs")
         if not fit.stated:
-            lines += ["  no errors of the data are given: they are taken from the residuals, which then say nothing "
-                      "about the law"]
-        if fit.stated and len(fit.data) > 1:
-            parts = [f"{name} {square:.3g} of {count}" for name, (square, count) in fit.squares.items()]
-            lines.append("  of it: " + ", ".join(parts))
-        larger = numpy.sqrt(fit.square / fit.freedom) if fit.missed else 1
+            lines.append("  no errors of the data are given: they are taken from the residuals, which then say nothing "
+                         "about the law")
+        elif len(fit.data) > 1:
+            lines.append("  of it: " + ", ".join(f"{datum.name} {(fit.residual[own] ** 2).sum():.3g} of {datum.length}"
+                                                 for datum, own in zip(fit.data, fit.rows)))
         if fit.missed:
-            lines.append(f"  the residuals are {larger:.3g} times what the errors of the data say: a finer mesh, a "
-                         "free scale or another law first")
+            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer "
+                         "mesh, a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
             if numpy.isfinite(error):
-                also = f"; by the residuals ± {larger * error:.2g}" if fit.missed else ""
+                also = f"; by the residuals ± {_scatter(fit) * error:.2g}" if fit.missed else ""
                 lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")
-        shown = [one.name for one, yes in zip(fit.unknowns, fit.told) if yes]
-        if len(shown) > 1:
-            size = numpy.sqrt(numpy.diag(fit.covariance))
-            correlation = fit.covariance / numpy.outer(size, size)
-            lines += [f"  correlation of {a} and {b}: {correlation[i, j]:.3f}" for (i, a),
-                      (j, b) in itertools.combinations(enumerate(shown), 2)]
+        size = numpy.sqrt(numpy.diag(fit.covariance))
+        shown = enumerate(itertools.compress(fit.unknowns, fit.told))
+        for (i, one), (j, other) in itertools.combinations(shown, 2):
+            correlation = fit.covariance[i, j] / (size[i] * size[j])
+            lines.append(f"  correlation of {one.name} and {other.name}: {correlation:.3f}")
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
             lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
     if len(fits) > 1:
-        gap = [fit.aic - fits[0].aic for fit in fits]
-        total = sum(numpy.exp(-one / 2) for one in gap)
+        gaps = numpy.array([fit.aic for fit in fits]) - fits[0].aic
         lines.append("laws, best first: " + ", ".join(
-            f"{fit.law} (AIC + {one:.1f}, weight {numpy.exp(-one / 2) / total:.2g})" for fit, one in zip(fits, gap)))
-        said = "do not tell these laws apart (a difference in AIC below 10)"
-        said = f"tell {fits[0].law} from the others" if gap[1] > 10 else said
-        lines.append(f"the data {said}{', but none of them describes the data' if fits[0].missed else ''}")
+            f"{fit.law} (AIC + {gap:.1f}, weight {weight:.2g})"
+            for fit, gap, weight in zip(fits, gaps, scipy.special.softmax(-gaps / 2))))
+        told_apart = (f"tell {fits[0].law} from the others" if gaps[1] > 10 else
+                      "do not tell these laws apart (a difference in AIC below 10)")
+        lines.append(f"the data {told_apart}{', but none of them describes the data' if fits[0].missed else ''}")
     for settings, errors, rises in rows:
+        said = ["its run fails"] if errors is None else [
+            *(f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
+              for key, error in errors.items()),
+            *(f"chi square of {law} + {rise:.3g}" for law, rise in rises.items())]
         name = ", ".join(f"{key} {value}" for key, value in settings.items())
-        if errors is None:
-            lines.append(f"a further experiment, {name}: its run fails")
-            continue
-        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
-                for key, error in errors.items()]
-        said += [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
-        lines.append(f"a further experiment, {name}: " + ", ".join(said))
+        lines.append(f"a further experiment, {name}: {', '.join(said)}")
     return "\n".join(lines)
 
 
@@ -152,30 +132,30 @@ def draw(fits, axes=None):
     from ..figures import style
 
     best = fits[0]
-    predictions, places = best.predictions(best.x[:len(best.unknowns)]), best.split(best.x)[1]
-    pairs = list(itertools.combinations(range(int(best.told.sum())), 2))[:3]
+    numbers, places = best.split(best.x)
+    (predictions,) = best.predictions(numbers)
+    known = list(itertools.compress(zip(best.unknowns, best.x), best.told))
+    pairs = list(itertools.combinations(range(len(known)), 2))[:3]
     figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
-    data, residual, start, row = axes[0], axes[1], 0, 0
-    for k, (datum, prediction) in enumerate(zip(best.data, predictions)):
-        color = style.RUNS[k % len(style.RUNS)]
+    data, residual = axes[:2]
+    for datum, prediction, own, rows, color in zip(best.data, predictions, best.positions, best.rows,
+                                                   itertools.cycle(style.RUNS)):
+        place = places[own]
         if isinstance(datum, OutlineData):
             data.plot(*numpy.vstack([prediction.even(400), prediction.even(1)]).T, color=color, linewidth=1)
-            data.plot(*datum.placed(places[start:start + datum.places]).T, ".", color=color, ms=2.5, label=datum.name)
+            data.plot(*datum.placed(place).T, ".", color=color, ms=2.5, label=datum.name)
             data.set_aspect("equal")
         elif numpy.size(datum.times) > 1:
-            line = numpy.linspace(datum.times.min(), datum.times.max(), 200)
             along = copy.copy(datum)
-            along.times = line
-            data.plot(line, along.predicted(prediction, places[start:start + datum.places]), color=color, linewidth=1)
+            along.times = numpy.linspace(datum.times.min(), datum.times.max(), 200)
+            data.plot(along.times, along.predicted(prediction, place), color=color, linewidth=1)
             data.errorbar(datum.times, datum.values, datum.error, fmt=".", color=color, ms=4, label=datum.name)
         else:
             name = datum.name.removesuffix(": data")
             data.errorbar(name, datum.values[0], datum.error or 0, fmt=".", color=color, ms=7)
             data.plot(name, datum.predicted(prediction, [])[0], "_", color=color, ms=14)
-        start += datum.places
-        residual.plot(numpy.arange(row, row + datum.count), best.residual[row:row + datum.count], ".",
+        residual.plot(numpy.arange(rows.start, rows.start + datum.count), best.residual[rows][:datum.count], ".",
                       ms=2.5 if datum.count > 1 else 7, color=color)
-        row += datum.length
     if data.get_legend_handles_labels()[0]:
         data.legend(fontsize=7)
     series = [datum for datum in best.data if not isinstance(datum, OutlineData)]
@@ -189,11 +169,10 @@ def draw(fits, axes=None):
     residual.set(title="residuals over their errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)
-    names = [one for one, yes in zip(best.unknowns, best.told) if yes]
     for axis, (i, j) in zip(axes[2:], pairs):
         angle = numpy.linspace(0, 2 * numpy.pi, 200)
         values, vectors = numpy.linalg.eigh(best.covariance[numpy.ix_([i, j], [i, j])])
-        pair = [(names[k], best.x[best.unknowns.index(names[k])]) for k in (i, j)]
+        pair = known[i], known[j]
         for share, line in (0.683, "-"), (0.954, "--"):
             size = numpy.sqrt(scipy.stats.chi2.ppf(share, 2) * values)
             circle = (vectors * size) @ [numpy.cos(angle), numpy.sin(angle)]

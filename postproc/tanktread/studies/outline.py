@@ -27,42 +27,33 @@ def grey(path):
     from matplotlib.image import imread
 
     try:
-        picture = imread(path)
+        picture = imread(path).astype(float)
     except Exception as error:  # the reader has many kinds
         raise Mistake(f"{path} is no picture that can be read: {error}") from None
-    return numpy.asarray(picture, float) if picture.ndim == 2 else numpy.asarray(picture[..., :3], float).mean(2)
+    return picture if picture.ndim == 2 else picture[..., :3].mean(2)
 
 
-def split(picture):
-    """Returns the brightness that best splits the picture in two classes (Otsu)."""
-    numbers, edges = numpy.histogram(picture, 256)
-    middles = (edges[1:] + edges[:-1]) / 2
-    below = numpy.cumsum(numbers)
-    sums = numpy.cumsum(numbers * middles)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        between = below * (below[-1] - below) * (sums / below - (sums[-1] - sums) / (below[-1] - below)) ** 2
-    return middles[numpy.nanargmax(between)]
+def frame(picture):
+    """Returns the pixels at the edge of a picture."""
+    return numpy.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
 
 
 def body(picture, path):
-    """Returns a mask of the largest thing that differs from the frame, holes filled."""
+    """Returns a mask of the largest thing that differs from the frame, holes filled. The brightness that sets it off is
+    the one that best splits the picture in two classes (Otsu)."""
     smooth = scipy.ndimage.gaussian_filter(picture, 2)
-    level = split(smooth)
-    frame = numpy.concatenate([smooth[0], smooth[-1], smooth[:, 0], smooth[:, -1]])
-    labels, count = scipy.ndimage.label((smooth > level) != (numpy.median(frame) > level))
+    numbers, edges = numpy.histogram(smooth, 256)
+    middles = (edges[1:] + edges[:-1]) / 2
+    below, sums = numpy.cumsum(numbers), numpy.cumsum(numbers * middles)
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        between = below * (below[-1] - below) * (sums / below - (sums[-1] - sums) / (below[-1] - below)) ** 2
+    level = middles[numpy.nanargmax(between)]
+    labels, count = scipy.ndimage.label((smooth > level) != (numpy.median(frame(smooth)) > level))
     expect(count, f"{path}: nothing is set off from its surroundings")
-    sizes = scipy.ndimage.sum_labels(numpy.ones_like(labels), labels, range(1, count + 1))
-    mask = scipy.ndimage.binary_fill_holes(labels == 1 + int(numpy.argmax(sizes)))
+    mask = scipy.ndimage.binary_fill_holes(labels == 1 + numpy.argmax(numpy.bincount(labels.ravel())[1:]))
     expect(mask.sum() > 200, f"{path}: what is set off is {int(mask.sum())} pixels large, too small for an outline")
-    expect(not (mask[0].any() or mask[-1].any() or mask[:, 0].any() or mask[:, -1].any()),
-           f"{path}: the outline does not close within the picture")
+    expect(not frame(mask).any(), f"{path}: the outline does not close within the picture")
     return mask
-
-
-def most_points(mask):
-    """Returns the largest number of points of an outline: each takes three rays, about two pixels apart, because their
-    scatter gives the standard error."""
-    return int(numpy.sqrt(mask.sum() * numpy.pi) / 2)
 
 
 def edge(picture, mask, points):
@@ -71,8 +62,7 @@ def edge(picture, mask, points):
     row, column = scipy.ndimage.center_of_mass(mask)
     each = max(2, int(numpy.sqrt(mask.sum() * numpy.pi) / points)) // 2 * 2 + 1
     angle = 2 * numpy.pi * numpy.arange(points * each) / (points * each)
-    ray = numpy.stack([numpy.sin(angle), numpy.cos(angle)])[:, :, None]
-    middle = numpy.array([row, column])[:, None, None]
+    ray, middle = numpy.array([numpy.sin(angle), numpy.cos(angle)])[:, :, None], numpy.reshape([row, column], (2, 1, 1))
     radius = numpy.arange(0, numpy.hypot(*mask.shape), FINE)
     inside = scipy.ndimage.map_coordinates(mask.astype(float), middle + ray * radius, order=1) > 0.5
     found = radius[inside.shape[1] - 1 - inside[:, ::-1].argmax(1)]
@@ -135,13 +125,14 @@ def main():
     picture = grey(arguments.picture)
     expect(numpy.ptp(picture) > 0, f"{arguments.picture}: its brightness is the same everywhere")
     mask = body(picture, arguments.picture)
-    most, number = most_points(mask), arguments.points or min(60, most_points(mask))
+    # each point takes three rays, about two pixels apart, because their scatter gives the standard error
+    most = int(numpy.sqrt(mask.sum() * numpy.pi) / 2)
+    number = arguments.points or min(60, most)
     expect(8 <= number <= most, f"{arguments.picture}: --points must be from 8 to {most}, half the rays of its outline")
     points, error = edge(picture, mask, number)
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
-    numpy.savetxt(arguments.output, table, delimiter=",", header="x1,x3,error", comments="",
-                  fmt=["%.4f", "%.4f", "%.3g"])
+    numpy.savetxt(arguments.output, table, "%.4f,%.4f,%.3g", header="x1,x3,error", comments="")
     log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
         from ..figures import style

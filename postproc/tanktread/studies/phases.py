@@ -20,13 +20,14 @@ parachute. The particle starts as the deck states; where both motions are stable
 """
 
 import collections
+import functools
 import pathlib
 
 import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
 from . import common
-from .reading import decks_of, keys_of, number, values_of, yaml_of
+from .common import decks_of, keys_of, number, values_of, yaml_of
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
 KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literature"}
@@ -50,9 +51,8 @@ def in_shear(series, begin):
         return None, numpy.nan, numpy.nan
     turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
     over, around = (numpy.ptp(angle[late]) / HALF for angle in (turned, phase - turned))
-    if over >= SWING:
-        return ("both" if around >= 1 else "tumbles"), over, around
-    return ("treads" if around >= 1 else None), over, around
+    once = around >= 1
+    return (("both" if once else "tumbles") if over >= SWING else "treads" if once else None), over, around
 
 
 def in_capillary(series, begin):
@@ -60,13 +60,12 @@ def in_capillary(series, begin):
     after `begin`."""
     time = series["time"]
     away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
-    # if NaN, D is 0
-    askew = numpy.hypot(away, series["taylor_inertia"]
-                        * numpy.sin(2 * numpy.radians(numpy.nan_to_num(series["inclination"]))))
+    inclination = numpy.radians(numpy.nan_to_num(series["inclination"]))  # if it is NaN, D is 0
+    askew = numpy.hypot(away, series["taylor_inertia"] * numpy.sin(2 * inclination))
     thirds = time[0] + (time[-1] - time[0]) * numpy.linspace(begin, 1, 301)
     first, middle, last = (values.max() for values in numpy.array_split(numpy.interp(thirds, time, askew), 3))
-    return ("slips" if max(first, middle, last) > ASKEW
-            or last > max(GROWS * first, STRAIGHT) else "parachute"), first, last
+    slips = max(first, middle, last) > ASKEW or last > max(GROWS * first, STRAIGHT)
+    return ("slips" if slips else "parachute"), first, last
 
 
 MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns of the shape", "of the membrane")),
@@ -83,29 +82,26 @@ class Diagram:
         kind = str(text.get("motion", "shear"))
         expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
         self.kind = MOTIONS[kind]
-        # there is no border in the range
+        # how a search ends without a border in the range
         self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"
         self.along, across, curves, literature = (keys_of(text.get(name), f"{path}: {name}")
                                                   for name in ("along", "across", "curves", "literature"))
         expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
-        self.along |= {name: number(self.along[name], f"{path}: along, {name}") for name in ("from", "to", "within")}
-        low, high, within = (self.along[name] for name in ("from", "to", "within"))
+        low, high, within = self.range = [number(self.along[name], f"{path}: along, {name}")
+                                          for name in ("from", "to", "within")]
         expect(0 < low < high and within > 1, f"{path}: along needs positive values that ascend and a factor above 1, "
                                               f"but is from {low} to {high} within {within}")
         expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
         self.across, self.begin = next(iter(across)), number(text.get("begin", 0.4), f"{path}: begin")
         expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
-        self.literature = {name: self.known(name, rows) for name, rows in literature.items()}
+        for name, rows in literature.items():
+            expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
+                   f"{name}: literature has rows of a value across, the lowest and the highest one along")
+        self.literature = {name: [[number(value, name) for value in row] for row in rows]
+                           for name, rows in literature.items()}
         self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}"))
                      for name, keys in curves.items()}
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
-
-    @staticmethod
-    def known(name, rows):
-        """Returns the rows of the literature, checked before anything is run."""
-        expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
-                     f"{name}: literature has rows of a value across, the lowest and the highest one along")
-        return [[number(value, name) for value in row] for row in rows]
 
     def settings(self, name, keys):
         """Returns the settings of a curve, one dict for each of its values across."""
@@ -119,20 +115,18 @@ class Diagram:
     def holds(self, name, row, value):
         """Returns whether the motion is the one below the border."""
         key = name, row[self.across], value
-        if key not in self.made:
-            self.made[key] = self.motion_at(name, row, value)
+        self.made[key] = self.made.get(key) or self.motion_at(name, row, value)
         said = self.made[key][0]
-        expect(said in (*self.kind.below, self.kind.above),
-                     f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time"
-               if said == "neither" else said)
+        expect(said != "neither",
+               f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time")
+        expect(said in (*self.kind.below, self.kind.above), said)
         return said != self.kind.above
 
     def motion_at(self, name, row, value):
         """Returns the motion of one run, or why there is none, its two measures, processor seconds and directory."""
         outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
-        said, *measures = "not run to its end: " + outcome.message, numpy.nan, numpy.nan
-        if outcome.done:
-            said, *measures = self.kind.tell(outcome.series, self.begin)
+        said, *measures = (self.kind.tell(outcome.series, self.begin) if outcome.done else
+                           ("not run to its end: " + outcome.message, numpy.nan, numpy.nan))
         said = said or "neither"
         told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
         log.info(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} ({told}; "
@@ -142,11 +136,8 @@ class Diagram:
     def border(self, name, row, last):
         """Returns the border and how the search ended. Searches about the last border first, then in the rest of the
         range."""
-        low, high, factor = self.along["from"], self.along["to"], self.along["within"]
-
-        def holds(value):
-            return self.holds(name, row, value)
-
+        low, high, factor = self.range
+        holds = functools.partial(self.holds, name, row)
         if last:
             found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
             if how == "edge" or found == {"fails from here": low, "holds to here": high}[how]:
@@ -157,30 +148,28 @@ class Diagram:
     def find(self):
         last = None
         for name, row in ((name, row) for name, rows in self.rows.items() for row in rows):
+            at = row[self.across]
             try:
                 low, how = self.border(name, row, last)
             except Mistake as mistake:
                 low, how = numpy.nan, str(mistake)
-            above = [key[2] for key, run in self.made.items() if key[:2] == (name, row[self.across]) and key[2] > low
-                     and run[0] == self.kind.above]
-            low, high, how = {"fails from here": (numpy.nan, low, self.from_here),
-                              "holds to here": (low, numpy.nan, self.to_here)}.get(
-                how, (low, min(above, default=numpy.nan), how))
-            self.borders[name].append((row[self.across], low, high, how))
             last = low if how == "edge" else last
+            above = [value for (*curve, value), run in self.made.items()
+                     if curve == [name, at] and value > low and run[0] == self.kind.above]
+            borders = {"fails from here": (at, numpy.nan, low, self.from_here),
+                       "holds to here": (at, low, numpy.nan, self.to_here)}
+            self.borders[name].append(borders.get(how, (at, low, min(above, default=numpy.nan), how)))
 
     def write(self, directory):
-        head = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
-        rows = [(name, *row) for name, rows in self.borders.items() for row in rows]
-        common.write_table(directory / "borders.csv", head, rows)
-        head = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
+        borders = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
+        common.write_table(directory / "borders.csv", borders,
+                           [(name, *row) for name, rows in self.borders.items() for row in rows])
+        runs = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
                 "directory"]
-        common.write_table(directory / "runs.csv", head, [(*key, *run) for key, run in self.made.items()])
+        common.write_table(directory / "runs.csv", runs, [(*key, *run) for key, run in self.made.items()])
 
-    @property
-    def found(self):
-        """Returns whether there is anything to draw."""
-        return any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows)
+    found = property(lambda self: any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows),
+                     doc="Whether there is anything to draw.")
 
     def draw(self, axes=None):
         """Returns a figure of the borders, with those of the literature."""
@@ -196,10 +185,9 @@ class Diagram:
                 bars = [middle - edges[:, 1], edges[:, 2] - middle]
                 axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
             for how, at, mark in (self.from_here, 2, "v"), (self.to_here, 1, "^"):
-                there = [(row[0], row[at]) for row in rows if row[3] == how]
-                label = None if len(edges) else name + (", below" if mark == "v" else ", above")
-                axes.plot(*numpy.array(there).reshape(-1, 2).T, mark, color=color, markersize=6, label=label
-                          if there else None)
+                there = numpy.reshape([(row[0], row[at]) for row in rows if row[3] == how], (-1, 2))
+                label = None if len(edges) or not len(there) else name + (", below" if mark == "v" else ", above")
+                axes.plot(*there.T, mark, color=color, markersize=6, label=label)
         for (name, rows), mark in zip(self.literature.items(), style.MARKS[1:] * len(self.literature)):
             x, low, high = numpy.array(rows, float).T
             middle = numpy.sqrt(low * high)

@@ -24,17 +24,12 @@ class Outline:
         """Returns n points (n, 2) at equal distances."""
         return self.at(numpy.arange(n) / n)
 
-    @property
-    def centroid(self):
-        """Returns the centroid (2,) of the enclosed area."""
+    def centred(self):
+        """Returns the same outline about the centroid of the enclosed area."""
         a = self.even(8 * len(self.points))
         b = numpy.roll(a, -1, axis=0)
         area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-        return ((a + b) * area[:, None]).sum(0) / (3 * area.sum())
-
-    def centred(self):
-        """Returns the same outline about its centroid."""
-        return Outline(self.points - self.centroid)
+        return Outline(self.points - ((a + b) * area[:, None]).sum(0) / (3 * area.sum()))
 
     def distances(self, points):
         """Returns the distances (m,) of points (m, 2) from the curve along its normal, positive outside."""
@@ -53,51 +48,32 @@ class Outline:
 
 def seen(shot, axis=1, k=8):
     """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction
-    from the middle, of those where the normal is across the line of sight. `k`: lines of parameters per cell on which
-    these points are found, exactly. Raises ValueError of a shape whose outline is met twice in a direction from its
-    middle."""
+    from the middle, of those where the normal is across the line of sight. These points are found exactly on k + 1
+    lines of each parameter in every cell. Raises ValueError of a shape whose outline is met twice in a direction from
+    its middle."""
 
     def across(cells, s, t):
         tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
         return numpy.cross(tangent_s, tangent_t)[:, axis]
 
-    return _outermost(numpy.delete(_zeros(shot, across, k), axis, axis=1))
-
-
-def _zeros(shot, function, k):
-    """Returns the positions (n, 3) on the surface where a function of (cells, s, t) vanishes, on k + 1 lines of each
-    parameter in every cell."""
-    number = len(shot.cells)
-    cell, s, t = numpy.indices((number, k + 1, k + 1)).reshape(3, -1)
-    s, t = s / k, t / k
-    values = function(cell, s, t).reshape(number, k + 1, k + 1)
+    shape = len(shot.cells), k + 1, k + 1
+    cell, s, t = numpy.indices(shape).reshape(3, -1)
+    values = across(cell, s / k, t / k).reshape(shape)
     tiny = ZERO * abs(values).max()
-    found = [numpy.array([cell, s, t])[:, abs(values).ravel() <= tiny]]
-    for along in 1, 2:  # sign changes between neighbours on a line, by bisection and secants (Illinois)
-        low, high = numpy.moveaxis(values, along, 0)[:-1], numpy.moveaxis(values, along, 0)[1:]
-        index = numpy.argwhere((low * high < 0) & (abs(low) > tiny) & (abs(high) > tiny))
-        if not len(index):
-            continue
-        step, which, other = index.T
-        fixed = other / k
-
-        def at(x):
-            return function(which, *((x, fixed) if along == 1 else (fixed, x)))
-
-        a, b = step / k, (step + 1) / k
-        fa, fb = at(a), at(b)
-        for _ in range(14):
-            x = (a * fb - b * fa) / (fb - fa)
-            fx = at(x)
-            turned = fx * fb < 0
-            a, fa = numpy.where(turned, b, a), numpy.where(turned, fb, fa / 2)
-            b, fb = x, fx
-            if (abs(fx) <= tiny * 1e-3).all():
-                break
-            fb = numpy.where(fb == 0, 1e-300, fb)
-        found.append(numpy.array([which, *((b, fixed) if along == 1 else (fixed, b))]))
+    found = [numpy.array([cell, s / k, t / k])[:, abs(values).ravel() <= tiny]]
+    for along in 1, 2:  # sign changes between neighbours on a line, by bisection
+        first, second = numpy.moveaxis(values, along, 0)[:-1], numpy.moveaxis(values, along, 0)[1:]
+        step, which, other = numpy.nonzero((first * second < 0) & (abs(first) > tiny) & (abs(second) > tiny))
+        sign, low, high = numpy.sign(first[step, which, other]), step / k, (step + 1) / k
+        for _ in range(50):
+            middle = (low + high) / 2
+            place = numpy.array([which, *((middle, other / k) if along == 1 else (other / k, middle))])
+            before = across(which, *place[1:]) * sign > 0
+            low, high = numpy.where(before, middle, low), numpy.where(before, high, middle)
+        found.append(place)
     which, s, t = numpy.concatenate(found, axis=1)
-    return shot.evaluate(shot.points, which.astype(int), s, t)
+    points = shot.evaluate(shot.points, which.astype(int), s, t)
+    return _outermost(numpy.delete(points, axis, axis=1))
 
 
 def _outermost(points):
@@ -108,9 +84,8 @@ def _outermost(points):
     order = numpy.argsort(angle)
     angle, radius, points = angle[order], radius[order], points[order]
     window = 2 * numpy.pi * 4 / len(points)
-    wide = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi])
+    wide, far = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi]), numpy.tile(radius, 3)
     first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)
-    far = numpy.tile(radius, 3)
     top = numpy.array([far[a:b].max() for a, b in zip(first, last)])
     # an outline does not fall off faster within the window, but an inner curve does
     points = points[radius > top * (1 - 3 * window)]

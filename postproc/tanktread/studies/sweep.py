@@ -20,6 +20,7 @@ import csv
 import itertools
 import os
 import pathlib
+import re
 import sys
 import time
 
@@ -30,7 +31,7 @@ from ..files import opened
 from ..interpolation import mean
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
-from .reading import decks_of, keys_of, number, spaced, values_of, whole, yaml_of
+from .common import decks_of, keys_of, number, optional, spaced, values_of, whole, yaml_of
 
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
@@ -51,8 +52,7 @@ def drawn(text):
         else:
             expect(isinstance(given, dict) and {"from", "to"} <= set(given),
                    f"{key}: random values have from and to, or are a list to draw from")
-            low, high = (number(given[end], f"{key}: {end}") for end in ("from", "to"))
-            columns[key] = [float(value) for value in spaced(key, given, low, high)(generator.random(size))]
+            columns[key] = spaced(key, given, generator.random(size))
     return [dict(zip(columns, row)) for row in zip(*columns.values())]
 
 
@@ -82,33 +82,31 @@ def columns_of(text, path):
         take = str(given.get("take", "last"))
         expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
         expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
-        found[name] = (given.get("series", name), take, number(given["at"], f"{path}: {name}, at")
-                       if "at" in given else None)
+        at = number(given["at"], f"{path}: {name}, at") if "at" in given else None
+        found[name] = given.get("series", name), take, at
     return found
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end.
-
-    A run with requested accuracy has a column `<column> error` in addition to each column of one value."""
+    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end. A run with
+    requested accuracy has a column `<column> error` in addition to each column of one value."""
     row = {}
     for name, (series, take, at) in columns.items():
-        time, values = ((outcome.series["time"], outcome.series[series]) if outcome.done
-                        else (numpy.array([]), numpy.array([])))
+        time, values = (outcome.series[one] if outcome.done else numpy.array([]) for one in ("time", series))
         if take == "all":
             row[name] = values
             continue
         kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # it is NaN where undefined
-        row[name] = numpy.nan
-        if at is not None and len(values):
-            row[name] = float(numpy.interp(at, time, values))
-        elif kept.any():
-            row[name] = float(TAKES[take](time[kept], values[kept]))
-        error = outcome.run.errors.get(series) if len(values) else None
-        if error is not None:
-            largest = error[kept].max() if kept.any() else numpy.nan
-            row[f"{name} error"] = float(numpy.interp(at, time, error) if at is not None else error[-1]
-                                         if take == "last" else largest)
+        errors = outcome.run.errors.get(series) if len(values) else None
+        take_error = TAKES["last" if take == "last" else "largest"]
+        for column, found, one in (name, values, TAKES[take]), (f"{name} error", errors, take_error):
+            if found is None:
+                continue
+            row[column] = numpy.nan
+            if at is not None and len(found):
+                row[column] = float(numpy.interp(at, time, found))
+            elif kept.any():
+                row[column] = float(one(time[kept], found[kept]))
     return row
 
 
@@ -121,7 +119,7 @@ class Sweep:
         self.name, self.study, self.decks = pathlib.Path(path).stem, study, decks_of(text, path)
         self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
-        self.study.limit = number(text["limit"], f"{path}: limit") if text.get("limit") else None
+        self.study.limit = optional(number, text, "limit", path)
         self.keys = [key for key in dict.fromkeys(key for row in self.rows for key in row)
                      if len({str(row.get(key)) for row in self.rows}) > 1]
 
@@ -143,20 +141,19 @@ class Sweep:
         progress("")
 
     def write(self, directory):
-        """Writes table.csv, without whole series, and table.h5 with them (/columns/<name>, rows padded with NaN)."""
+        """Writes table.csv, without whole series, and table.h5 with them (/columns/<name>, rows padded with NaN). The
+        attribute `unit` of keys and columns in table.h5, such as ", µm", is as the first run that ended has it."""
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
-        single = [name for name in self.columns if name not in whole]
-        errors = [f"{name} error" for name in single if any(f"{name} error" in values for values in found)]
-        single = [word for name in single for word in (name, f"{name} error") if word in single + errors]
-        found = [values | {name: values.get(name, numpy.nan) for name in errors} for values in found]
+        single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
+                  if any(word in values for values in found)]
+        found = [dict.fromkeys(single, numpy.nan) | values for values in found]
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
             for row, values, outcome in zip(self.rows, found, self.outcomes):
                 out.writerow([*(row.get(key, "") for key in self.keys), *(values[name] for name in single),
-                              outcome.status,
-                              f"{outcome.processor_seconds:.3g}", outcome.directory.name,
+                              outcome.status, f"{outcome.processor_seconds:.3g}", outcome.directory.name,
                               "" if outcome.done else outcome.message])
         with h5py.File(directory / "table.h5", "w") as file:
             file["status"] = [outcome.status for outcome in self.outcomes]
@@ -167,29 +164,23 @@ class Sweep:
                 numbers = all(isinstance(value, (int, float)) for value in values)
                 file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
             if whole:
-                found = [values | {"time": outcome.series["time"] if outcome.done else numpy.array([])}
+                found = [values | {"time": outcome.series["time"] if outcome.done else []}
                          for values, outcome in zip(found, self.outcomes)]
             file.attrs["columns"] = [*single, *whole, *(["time"] if whole else [])]
             for name in file.attrs["columns"]:
                 longest = max(numpy.size(values[name]) for values in found)
-                one = [numpy.pad(numpy.atleast_1d(values[name]), (0, longest - numpy.size(values[name])),
-                                 constant_values=numpy.nan) for values in found]
-                every = name in whole or name not in single
-                file[f"columns/{name}"] = numpy.array(one) if every else numpy.array(one)[:, 0]
-            self._write_units(file)
+                table = numpy.full((len(found), longest), numpy.nan)
+                for row, values in zip(table, found):
+                    row[:numpy.size(values[name])] = values[name]
+                file[f"columns/{name}"] = table[:, 0] if name in single else table
+            run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
+            for key in self.keys if run else []:
+                file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
+            for name in file.attrs["columns"] if run else []:
+                series = (self.columns.get(name) or self.columns.get(name.removesuffix(" error")) or [name])[0]
+                file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
         for name in "table.csv", "table.h5":
             log.info(directory / name)
-
-    def _write_units(self, file):
-        """Writes the attribute `unit` of keys and columns, such as ", µm", as the first run that ended has it."""
-        run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
-        if run is None:
-            return
-        for key in self.keys:
-            file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
-        for name in file.attrs["columns"]:
-            series = (self.columns.get(name) or self.columns.get(name.removesuffix(" error")) or [name])[0]
-            file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
 
 
 def table(directory):
@@ -215,22 +206,21 @@ def plot(directory, column, key, axes=None):
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
     others = [name for name in keys if name != key]
-    lines = [", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
-             for k in range(len(columns[column]))]
-    numbers = columns[key].dtype.kind in "fi"
+    lines = numpy.array([", ".join(f"{name.split('/')[-1]} {columns[name][k]}" for name in others)
+                         for k in range(len(columns[column]))])
+    few = len(set(lines)) <= 12
     for k, label in enumerate(dict.fromkeys(lines)):
-        chosen = [i for i, one in enumerate(lines) if one == label]
-        x, y = columns[key][chosen], columns[column][chosen]
+        x, y, color = columns[key][lines == label], columns[column][lines == label], style.RUNS[k % len(style.RUNS)]
         if y.ndim > 1:
             for i, (along, values) in enumerate(zip(x, y)):
-                axis.plot(along, values, color=style.RUNS[k % len(style.RUNS)], label=label if i == 0 else None)
+                axis.plot(along, values, color=color, label=label if i == 0 else None)
             continue
         order = numpy.argsort(x)
-        few = len(set(lines)) <= 12
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
-        axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5,
-                  color=style.RUNS[k % len(style.RUNS)] if few else style.RUNS[0], label=label if few else None)
-    if numbers and columns[key].ndim == 1 and columns[key].min() > 0 and columns[key].max() > 30 * columns[key].min():
+        axis.plot(x[order], y[order], "o", linestyle=dash, ms=3.5, color=color if few else style.RUNS[0],
+                  label=label if few else None)
+    along = columns[key]
+    if along.dtype.kind in "fi" and along.ndim == 1 and along.min() > 0 and along.max() > 30 * along.min():
         axis.set_xscale("log")
     axis.set(xlabel=labels[key], ylabel=labels[column])
     if axis.get_legend_handles_labels()[1] and others:
@@ -239,10 +229,9 @@ def plot(directory, column, key, axes=None):
 
 
 def run(path, directory=None, jobs=None, fresh=False):
-    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`.
-
-    `directory`: of table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the
-    number of cores). `fresh`: makes every run anew."""
+    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`. `directory`: of
+    table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the number of cores).
+    `fresh`: makes every run anew."""
     directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
@@ -265,19 +254,18 @@ def main():
     parser.add_argument("-o", "--picture", type=pathlib.Path, metavar="FILE",
                         help="the picture (default: <COLUMN>.png beside the table)")
     arguments = parser.parse_args()
-    directory = arguments.output or pathlib.Path("results") / pathlib.Path(arguments.study).stem
     expect(arguments.jobs > 0, "--jobs must be at least 1")
     if arguments.list:
         for row in Sweep(arguments.study, Study()).rows:
             log.info(", ".join(f"{key}={text_of(value)}" for key, value in row.items()))
         return 0
-    sweep = run(arguments.study, directory, arguments.jobs, arguments.fresh)
+    sweep = run(arguments.study, arguments.output, arguments.jobs, arguments.fresh)
     if not any(outcome.done for outcome in sweep.outcomes):
         progress(f"tanktread-sweep: none of the runs came to its end; the first one: {sweep.outcomes[0].message}\n")
         return 1
     if arguments.plot:
-        name = "".join(c if c.isalnum() or c in "._-" else "_" for c in arguments.plot[0]).strip("_")
         from ..figures import style
 
+        directory, name = sweep.study.directory.parent, re.sub(r"[^\w.-]", "_", arguments.plot[0]).strip("_")
         style.save(style.draw(plot, directory, *arguments.plot), arguments.picture or directory / f"{name}.png")
     return 0
