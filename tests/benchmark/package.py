@@ -23,8 +23,8 @@ INPUTS = tanktread.SOURCE / "inputs"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]
 __all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "command_line", "draw", "expect",
-           "final", "interpolation", "line", "numpy", "plt", "scenes_of", "studies", "style", "table", "tanktread",
-           "ticks", "worst", "yaml"]
+           "final", "footer", "interpolation", "line", "lines", "numpy", "plt", "scenes_of", "studies", "style", "table",
+           "tanktread", "ticks", "worst", "yaml"]
 
 
 def scenes_of(script):
@@ -66,6 +66,17 @@ def line(study, axes, name, jobs, measures, x=None, **pen):
     return rows
 
 
+def lines(study, axes, given, job, measures, x=None):
+    """Draws a `line` of each of the `cases` of a map (scenes/atlas.yaml), {name: settings}, over its `values`.
+
+    `job`: function of a value that returns the deck and the settings of a run. Returns the rows of all lines."""
+    rows = []
+    for (name, settings), pen in zip(given["cases"].items(), PENS):
+        jobs = {at: (job(at)[0], given.get("base", {}) | settings | job(at)[1]) for at in given["values"]}
+        rows += line(study, axes, name, jobs, measures, x, **pen)
+    return rows
+
+
 def final(name):
     """Returns the measure of `line` that is the last value of a series."""
     return lambda outcome: outcome.final[name]
@@ -81,3 +92,8 @@ def ticks(axis, values, label):
     axis.set(xscale="log", xlabel=label)
     axis.set_xticks(values, [f"{value:g}" for value in values])
     axis.minorticks_off()
+
+
+def footer(figure, text, **look):
+    """Writes a text that may hold a command, after a dollar sign, below a figure."""
+    figure.supxlabel(text.replace("$ ", r"\$ "), x=0.01, ha="left", fontsize=7.5, **look)
