@@ -12,7 +12,7 @@ import json
 import pathlib
 import subprocess
 
-from package import answer, command_line, expect, numpy, plt, style, table, tanktread
+from package import answer, command_line, expect, footer, numpy, plt, style, table, tanktread
 from tanktread.files import parsed as read
 
 PARTS = {"evaluation s": "whole evaluation", "layer far s": "far sum", "layer near s": "near elements",
@@ -65,16 +65,16 @@ def main():
     if dense:
         draw(left, dense, {"evaluation s": "whole, far sum dense"}, arguments.least, faint, "o--")
         draw(middle, dense, {"far interactions": "dense"}, arguments.least, faint, "o--")
-    for axis, title in ((left, "processor seconds of one velocity evaluation"),
-                        (middle, "pairs of points in the far sum"), (right, "bytes, mesh and fit not counted")):
+    for axis, title in zip((left, middle, right), (
+            "processor seconds of one velocity evaluation", "pairs of points in the far sum",
+            "bytes, mesh and fit not counted")):
         axis.set(title=title, xlabel="control points")
         axis.legend(loc="upper left")
     left.set_ylim(top=left.get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)
-    figure.supxlabel("\\$ build/release/tests/benchmark/benchmark --benchmark_filter=growth "
-                     "--benchmark_out=growth.json; tests/benchmark/growth.py growth.json\n"
-                     "a capsule in shear on one core, tolerance 1e-5; far sum against the dense one: "
-                     f"at most {error:.1e} of the largest velocity", x=0.01, ha="left", fontsize=7.5)
+    footer(figure, "$ build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; "
+           "tests/benchmark/growth.py growth.json\na capsule in shear on one core, tolerance 1e-5; far sum against the "
+           f"dense one: at most {error:.1e} of the largest velocity")
     style.save(figure, arguments.output)
 
 

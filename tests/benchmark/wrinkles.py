@@ -10,8 +10,7 @@ waves are degrees of 9 and more, which the flow does not force. Membranes withou
 unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
 """
 
-
-from package import SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
 import waves
 
 QUIET = 1e-3  # share of the load's power in waves below which there are none
@@ -85,7 +84,7 @@ def main():
     figure, grid = plt.subplots(count, 3, figsize=(10.8, 3.4 * count), squeeze=False)
     rows = [row for axes, modulus in zip(grid, parsed.modulus) for row in draw_row(study, axes, modulus, parsed)]
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
-    figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)
+    footer(figure, "$ " + studies.command_of(__file__, *words))
     studies.write_table(parsed.output / "wrinkles.csv", [
         "modulus", "elements_per_side", "element_size", "degree", "wavelength", "short_share",
         "taylor_inertia", "range", "seconds"], rows)
