@@ -1,9 +1,7 @@
 """Maps of the atlas about the membrane: compression, pre-stress, bending, the form of the load."""
 
-from package import PENS, RATIO, SHEAR, SIDE, final, line, numpy, plt, style, ticks
+from package import PENS, RATIO, SHEAR, SIDE, line, numpy, plt, style, ticks
 import waves
-
-PLAIN = "tests/stability/shear.yaml"  # says nothing of the mesh
 
 
 def load_form(study, given):
@@ -12,7 +10,7 @@ def load_form(study, given):
     for axis, ca in zip(axes, given["values"]):
         for load, color, offset in (("strong", style.RUNS[1], -0.19), ("weak", style.RUNS[0], 0.19)):
             for k, (mesh, settings) in enumerate(given["cases"].items()):
-                outcome = study.run(PLAIN, given["base"] | settings | {"Membrane/capillary number": ca,
+                outcome = study.run(given["deck"], given["base"] | settings | {"Membrane/capillary number": ca,
                                                                        "Membrane/load": load})
                 axis.barh(k + offset, outcome.end, 0.34, color=color, label=f"{load} form" if k == 0 else None)
                 axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
@@ -34,10 +32,9 @@ def buckling(study, given):
     rows = []
     for (name, cure), pen in zip(cures.items(), PENS):
         for n, dash in (6, ":"), (9, "-"):
-            jobs = {ca: (SHEAR, given["base"] | cure(ca) | {SIDE: n, "Membrane/capillary number": ca})
-                    for ca in given["values"]}
-            rows += line(study, (left, right), f"{name}, n = {n}", jobs, (
-                final("smallest_tension"), lambda one: waves.short_share(one.run)), linestyle=dash, **pen)
+            jobs = {ca: given["base"] | cure(ca) | {SIDE: n, "Membrane/capillary number": ca} for ca in given["values"]}
+            rows += line(study, (left, right), f"{name}, n = {n}", SHEAR, jobs, (
+                "smallest_tension", lambda one: waves.short_share(one.run)), linestyle=dash, **pen)
     left.axhline(0, color=style.FAINT, linewidth=0.9)
     for axis, label in (left, "smallest tension over G_s"), (right, "share of the load in degrees ≥ 9"):
         ticks(axis, given["values"], "Ca")

@@ -1,15 +1,14 @@
 """Maps of the atlas about the surface: poles, thin bodies, tips, meshes that are carried along."""
 
-from package import SIDE, draw, final, line, lines, numpy, plt, style, ticks
+from package import draw, line, lines, numpy, plt, style, ticks
 
 LOOKS = [(style.FAINT, "-", 3.5), (style.RUNS[1], "--", 1.4), (style.RUNS[3], "--", 1.4), (style.RUNS[0], "-", 1.4)]
 
 
 def pole_treatment(study, given):
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    rows = lines(study, [axis], given, lambda r: ("inputs/spheroid_polar.yaml", {
-        "Particle/forces": "integral", "Surface/meridional elements": r, "Surface/azimuthal elements": 2 * r}),
-        (final("pressure_l2_error"), final("drag_error")), final("n_control_points"))
+    rows = lines(study, [axis], given, lambda r: {"Surface/meridional elements": r, "Surface/azimuthal elements": 2 * r},
+                 ("pressure_l2_error", "drag_error"), "n_control_points")
     for curve in axis.lines:
         curve.set_linestyle("--" if "Gauss" in curve.get_label() else "-")
     axis.set(xscale="log", yscale="log", xlabel="control points", ylabel="L2 error of the pressure")
@@ -18,20 +17,19 @@ def pole_treatment(study, given):
 
 
 def gap(study, given):
-    def job(h):
-        return "inputs/spheroid_cube.yaml", {SIDE: 6, "Particle/semi-axes": f"[1.0, 1.0, {h}]",
-                                             "Particle/forces": "integral"}
+    def thin(h):
+        return {"Particle/semi-axes": f"[1.0, 1.0, {h}]"}
 
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    exact = {h: (job(h)[0], job(h)[1] | {"Quadrature/tolerance": 1e-10}) for h in given["values"]}
-    rows = line(study, [left], "the mesh", exact, (final("drag_error"), final("drag_x1")), color=style.FAINT,
+    tight = {h: given["base"] | thin(h) | {"Quadrature/tolerance": 1e-10} for h in given["values"]}
+    rows = line(study, [left], "the mesh", given["deck"], tight, ("drag_error", "drag_x1"), color=style.FAINT,
                 linestyle=(0, (4, 3)))
     true = {h: drag for _, h, _, drag, _ in rows}
 
     def error(outcome):
         return abs(outcome.final["drag_x1"] / true[outcome.run.value("Particle/semi-axes")[2]] - 1)
 
-    rows += lines(study, (left, right), given, job, (error, lambda one: one.kernel_evaluations))
+    rows += lines(study, (left, right), given, thin, (error, lambda one: one.kernel_evaluations))
     for axis, label in (left, "relative error of the drag"), (right, "kernel evaluations"):
         ticks(axis, given["values"], "h, half the thickness over the radius")
         axis.set(yscale="log", ylabel=label)
@@ -40,18 +38,18 @@ def gap(study, given):
 
 
 def gap_tube(study, given):
-    def job(gap):
-        return "inputs/sphere_in_tube.yaml", {"Particle/radius": round(1 - gap, 2)}
+    def radius(gap):
+        return {"Particle/radius": round(1 - gap, 2)}
 
-    finer = {gap: (job(gap)[0], job(gap)[1] | given["base"] | given["reference"]) for gap in given["values"]}
-    rows = line(study, [], "n = 9", finer, (final("velocity_x1"),))
+    finer = {gap: radius(gap) | given["base"] | given["reference"] for gap in given["values"]}
+    rows = line(study, [], "n = 9", given["deck"], finer, ("velocity_x1",))
     true = {gap: velocity for _, gap, velocity, _ in rows} | given["exact"]
 
     def error(outcome):
         return abs(outcome.final["velocity_x1"] / true[round(1 - outcome.run.value("Particle/radius"), 2)] - 1)
 
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    rows += lines(study, [axis], given, job, (error,))
+    rows += lines(study, [axis], given, radius, (error,))
     ticks(axis, list(true), "gap over the radius of the tube")
     axis.set(yscale="log", ylabel="relative error of the velocity")
     axis.legend(loc="best")
@@ -60,10 +58,9 @@ def gap_tube(study, given):
 
 def hyperbolic(study, given):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    rows = lines(study, (left, right), given, lambda ca: (
-        "inputs/hyperbolic_skalak.yaml", {"Membrane/capillary number": ca}), (
-        lambda one: one.run.snapshots()[-1].fields["mean curvature"].min(), final("smallest_tension"),
-        final("taylor_inertia"), final("n_control_points")))
+    rows = lines(study, (left, right), given, lambda ca: {"Membrane/capillary number": ca}, (
+        lambda one: one.run.snapshots()[-1].fields["mean curvature"].min(), "smallest_tension", "taylor_inertia",
+        "n_control_points"))
     for axis, label in (left, "smallest mean curvature, times radius"), (right, "smallest tension over G_s"):
         axis.axhline(0, color=style.FAINT, linewidth=0.9)
         axis.set(xlabel="Ca", ylabel=label)
@@ -76,7 +73,7 @@ def tip_traction(study, given):
     figure, (outline, along) = plt.subplots(1, 2, figsize=(9.6, 4.4))
     truth, rows = None, []
     for (name, settings), (color, dash, width) in zip(given["cases"].items(), LOOKS):
-        outcome = study.run("inputs/hyperbolic_skalak_ca0.8.yaml", given["base"] | settings)
+        outcome = study.run(given["deck"], given["base"] | settings)
         if not outcome.done:
             rows.append((name, "", "", "", outcome.message[:100]))
             continue
@@ -99,8 +96,7 @@ def drop_mesh(study, given):
     rows, values = [], given["values"]
     for j, ((motion, settings), color) in enumerate(zip(given["cases"].items(), style.RUNS)):
         for k, ca in enumerate(values):
-            outcome = study.run("inputs/drop_uniaxial.yaml",
-                                given["base"] | settings | {"Membrane/capillary number": ca})
+            outcome = study.run(given["deck"], given["base"] | settings | {"Membrane/capillary number": ca})
             stretch = _stretch(outcome.run.snapshots()[-1])
             left.barh(k + 0.27 * (j - 1), outcome.end, 0.24, color=color, label=f"`{motion}`" if k == 0 else None)
             right.barh(k + 0.27 * (j - 1), stretch, 0.24, color=color)

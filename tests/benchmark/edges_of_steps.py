@@ -70,7 +70,7 @@ def fixed_step_mesh(study, given):
 
 def viscosity_ratio(study, given):
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    rows = lines(study, (left, right), given, lambda ratio: (SHEAR, {RATIO: ratio}), (
+    rows = lines(study, (left, right), given, lambda ratio: {RATIO: ratio}, (
         lambda one: one.counts["velocity_iterations"] / one.counts["evaluations"],
         lambda one: max(worst("volume_error")(one), 1e-16), lambda one: one.counts["steps"]))
     left.set(xscale="log", xlabel="λ", ylabel="iterations a velocity", ylim=(0, None))

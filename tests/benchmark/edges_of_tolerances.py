@@ -16,8 +16,8 @@ def step_tolerance(study, given):
     for scheme in ("bs3", "rkc2", "tr-bdf2", "bdf3"):
         for constraint, words, dash, shown in ("exact", "", "-", axes[:2]), ("flux", ", `flux`", ":", axes):
             settings = given["base"] | {"Time/scheme": scheme, "Volume/constraint": constraint}
-            jobs = {tolerance: (SHEAR, settings | {"Time/tolerance": tolerance}) for tolerance in given["values"]}
-            rows += line(study, shown, SCHEMES[scheme] + words, jobs, measures, linestyle=dash, **PEN[scheme])
+            jobs = {tolerance: settings | {"Time/tolerance": tolerance} for tolerance in given["values"]}
+            rows += line(study, shown, SCHEMES[scheme] + words, SHEAR, jobs, measures, linestyle=dash, **PEN[scheme])
     for axis, label in zip(axes, ("error of D at the end", "velocity evaluations", "volume error without `exact`")):
         axis.set(xscale="log", yscale="log", xlabel="Time/tolerance", ylabel=label)
         axis.invert_xaxis()
@@ -36,10 +36,10 @@ def quadrature_tolerance(study, given):
         settings = given["base"] | settings
         reference = study.run(SHEAR, settings | {"Quadrature/tolerance": 1e-9})
         for axis, chosen in rules:
-            jobs = {value: (SHEAR, settings | rule) for value, rule in chosen.items()}
-            rows += line(study, [axis], f"D, constraint `{name}`", jobs, (_error(reference),), **pen)
+            jobs = {value: settings | rule for value, rule in chosen.items()}
+            rows += line(study, [axis], f"D, constraint `{name}`", SHEAR, jobs, (_error(reference),), **pen)
             if name == "none":
-                rows += line(study, [axis], "volume, constraint `none`", jobs, (worst("volume_error"),),
+                rows += line(study, [axis], "volume, constraint `none`", SHEAR, jobs, (worst("volume_error"),),
                              linestyle=":", mfc="none", **pen)
     left.set(xscale="log", yscale="log", xlabel="Quadrature/tolerance", ylabel="error")
     left.invert_xaxis()
