@@ -7,8 +7,9 @@ LOOKS = [(style.FAINT, "-", 3.5), (style.RUNS[1], "--", 1.4), (style.RUNS[3], "-
 
 def pole_treatment(study, given):
     figure, axis = plt.subplots(figsize=(7.2, 4.6))
-    rows = lines(study, [axis], given, lambda r: {"Surface/meridional elements": r, "Surface/azimuthal elements": 2 * r},
-                 ("pressure_l2_error", "drag_error"), "n_control_points")
+    rows = lines(study, [axis], given, lambda n: {
+        "Surface/meridional elements": n, "Surface/azimuthal elements": 2 * n}, ("pressure_l2_error", "drag_error"),
+        "n_control_points")
     for curve in axis.lines:
         curve.set_linestyle("--" if "Gauss" in curve.get_label() else "-")
     axis.set(xscale="log", yscale="log", xlabel="control points", ylabel="L2 error of the pressure")

@@ -67,8 +67,8 @@ def line(study, axes, name, deck, jobs, measures, x=None, **pen):
 
 
 def lines(study, axes, given, settings_at, measures, x=None):
-    """Draws a `line` of each of the `cases` of a map (scenes/atlas.yaml), {name: settings}, over its `values`, each with
-    the settings that `settings_at` returns for it. Returns the rows of all lines."""
+    """Draws a `line` of each of the `cases` of a map (scenes/atlas.yaml), {name: settings}, over its `values`, with the
+    settings that `settings_at` returns for each. Returns the rows of all lines."""
     rows = []
     for (name, settings), pen in zip(given["cases"].items(), PENS):
         jobs = {value: given["base"] | settings | settings_at(value) for value in given["values"]}
