@@ -13,13 +13,10 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 import textwrap
 
 from package import answer, command_line, footer, scenes_of, studies, style
-import edges_of_membranes
 import edges_of_meshes
 import edges_of_shapes
 import edges_of_steps
-import edges_of_tolerances
 
-MODULES = edges_of_steps, edges_of_membranes, edges_of_meshes, edges_of_tolerances, edges_of_shapes
 MAPS = scenes_of(__file__)  # title, text and data by the name of the map
 
 
@@ -27,13 +24,14 @@ def draw(name, study, output):
     """Draws a map, with its text and the command that makes it under the chart, and writes its table."""
     title, text, function = MAPS[name]["title"], MAPS[name]["text"], name.replace("-", "_")
     print(f"{name}: {title}", flush=True)
-    draw_map = next(getattr(module, function) for module in MODULES if hasattr(module, function))
-    figure, head, rows = draw_map(study, MAPS[name])
+    draw_map = next(getattr(module, function) for module in (edges_of_steps, edges_of_meshes, edges_of_shapes)
+                    if hasattr(module, function))
+    figure, rows = draw_map(study, MAPS[name])
     width = int(figure.get_size_inches()[0] * 15.5)
     words = "\n".join(textwrap.fill(paragraph, width) for paragraph in text.splitlines())
     figure.suptitle(title, x=0.01, ha="left", fontsize=11)
     footer(figure, f"{words}\n\n$ {studies.command_of(__file__, '--map', name)}", color=style.INK)
-    studies.write_table(output / f"{name}.csv", head, rows)
+    studies.write_table(output / f"{name}.csv", MAPS[name]["head"], rows)
     style.save(figure, output / f"{name}.png")
 
 

@@ -1,27 +1,26 @@
 """Maps of the atlas about the surface: poles, thin bodies, tips, meshes that are carried along."""
 
-from package import draw, line, lines, numpy, plt, style, ticks
+from package import draw, line, lines, numpy, panels, style, ticks
 
 LOOKS = [(style.FAINT, "-", 3.5), (style.RUNS[1], "--", 1.4), (style.RUNS[3], "--", 1.4), (style.RUNS[0], "-", 1.4)]
 
 
 def pole_treatment(study, given):
-    figure, axis = plt.subplots(figsize=(7.2, 4.6))
+    figure, (axis,) = panels(given)
     rows = lines(study, [axis], given, lambda n: {
         "Surface/meridional elements": n, "Surface/azimuthal elements": 2 * n}, ("pressure_l2_error", "drag_error"),
         "n_control_points")
     for curve in axis.lines:
         curve.set_linestyle("--" if "Gauss" in curve.get_label() else "-")
-    axis.set(xscale="log", yscale="log", xlabel="control points", ylabel="L2 error of the pressure")
     axis.legend(loc="best")
-    return figure, ["case", "control_points", "pressure_error", "drag_error", "message"], rows
+    return figure, rows
 
 
 def gap(study, given):
     def thin(h):
         return {"Particle/semi-axes": f"[1.0, 1.0, {h}]"}
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
+    figure, (left, right) = panels(given)
     tight = {h: given["base"] | thin(h) | {"Quadrature/tolerance": 1e-10} for h in given["values"]}
     rows = line(study, [left], "the mesh", given["deck"], tight, ("drag_error", "drag_x1"), color=style.FAINT,
                 linestyle=(0, (4, 3)))
@@ -31,11 +30,10 @@ def gap(study, given):
         return abs(outcome.final["drag_x1"] / true[outcome.run.value("Particle/semi-axes")[2]] - 1)
 
     rows += lines(study, (left, right), given, thin, (error, lambda one: one.kernel_evaluations))
-    for axis, label in (left, "relative error of the drag"), (right, "kernel evaluations"):
-        ticks(axis, given["values"], "h, half the thickness over the radius")
-        axis.set(yscale="log", ylabel=label)
+    for axis in left, right:
+        ticks(axis, given["values"])
     left.legend(loc="best")
-    return figure, ["rule", "half_thickness", "error", "kernel_evaluations_or_drag", "message"], rows
+    return figure, rows
 
 
 def gap_tube(study, given):
@@ -49,29 +47,26 @@ def gap_tube(study, given):
     def error(outcome):
         return abs(outcome.final["velocity_x1"] / true[round(1 - outcome.run.value("Particle/radius"), 2)] - 1)
 
-    figure, axis = plt.subplots(figsize=(7.2, 4.6))
+    figure, (axis,) = panels(given)
     rows += lines(study, [axis], given, radius, (error,))
-    ticks(axis, list(true), "gap over the radius of the tube")
-    axis.set(yscale="log", ylabel="relative error of the velocity")
+    ticks(axis, given["values"])
     axis.legend(loc="best")
-    return figure, ["case", "gap", "error_or_velocity", "message"], rows
+    return figure, rows
 
 
 def hyperbolic(study, given):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
+    figure, (left, right) = panels(given)
     rows = lines(study, (left, right), given, lambda ca: {"Membrane/capillary number": ca}, (
         lambda one: one.run.snapshots()[-1].fields["mean curvature"].min(), "smallest_tension", "taylor_inertia",
         "n_control_points"))
-    for axis, label in (left, "smallest mean curvature, times radius"), (right, "smallest tension over G_s"):
+    for axis in left, right:
         axis.axhline(0, color=style.FAINT, linewidth=0.9)
-        axis.set(xlabel="Ca", ylabel=label)
     left.legend(loc="center right", bbox_to_anchor=(1, 0.33))
-    return figure, ["mesh", "capillary_number", "smallest_curvature", "smallest_tension", "taylor_inertia",
-                    "control_points", "message"], rows
+    return figure, rows
 
 
 def tip_traction(study, given):
-    figure, (outline, along) = plt.subplots(1, 2, figsize=(9.6, 4.4))
+    figure, (outline, along) = panels(given)
     truth, rows = None, []
     for (name, settings), (color, dash, width) in zip(given["cases"].items(), LOOKS):
         outcome = study.run(given["deck"], given["base"] | settings)
@@ -85,15 +80,15 @@ def tip_traction(study, given):
         for axis, values in (outline, place), (along, size):
             axis.plot(height, values, dash, color=color, linewidth=width,
                       label=f"{name}: {100 * error:.1f} %" if error > 0 else name)
-    for axis, label in (outline, "x₁"), (along, "traction"):
-        axis.set(xlim=(-0.3, 0.3), xlabel="x₃", ylabel=label)
+    for axis in outline, along:
+        axis.set_xlim(-0.3, 0.3)
     outline.set_ylim(bottom=outline.dataLim.y1 - 0.6)
     outline.legend(loc="lower center", title="control points: error of the traction")
-    return figure, ["mesh", "control_points", "largest_error", "taylor_inertia", "message"], rows
+    return figure, rows
 
 
 def drop_mesh(study, given):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 3.8))
+    figure, (left, right) = panels(given)
     rows, values = [], given["values"]
     for j, ((motion, settings), color) in enumerate(zip(given["cases"].items(), style.RUNS)):
         for k, ca in enumerate(values):
@@ -105,10 +100,9 @@ def drop_mesh(study, given):
     for axis in left, right:
         axis.set_yticks(range(len(values)), [f"Ca = {ca:g}" for ca in values])
         axis.grid(visible=False, axis="y")
-    left.set_xlabel("time reached")
-    right.set(xlabel="largest over smallest element, by area", xscale="log")
+    right.set_xscale("log")
     figure.legend(*left.get_legend_handles_labels(), loc="upper right", ncols=3)
-    return figure, ["capillary_number", "motion", "time_reached", "area_ratio", "taylor_surface", "message"], rows
+    return figure, rows
 
 
 def _stretch(shot, k=3):

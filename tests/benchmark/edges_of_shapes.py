@@ -1,6 +1,8 @@
-"""Maps of the atlas about the particle itself: where there is no steady shape any more."""
+"""Maps of the atlas about the membrane (compression, pre-stress, bending, the form of the load) and about the particle
+itself, where there is no steady shape any more."""
 
-from package import SIDE, numpy, plt, style
+from package import PENS, RATIO, SHEAR, SIDE, line, numpy, panels, plt, style, ticks
+import waves
 from tanktread.figures import pushed as stuck
 
 STUCK = "inputs/capsule_stuck_folds.yaml"
@@ -9,7 +11,7 @@ MARKS = (8, "x"), (10, "o-")  # n, the coarse and the fine mesh
 
 
 def bursting(study, given):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
+    figure, (left, right) = panels(given)
     rows = []
     for (name, (deck, settings, meshes)), color in zip(given["cases"].items(), style.RUNS):
         axis = right if "capsule" in name else left
@@ -20,17 +22,13 @@ def bursting(study, given):
             rows.append((name, second, ca, d, apart[0] / ca, apart[1]))
         axis.plot(*coarse[:2], "x", color=color, ms=6, label=f"{name}: n = {meshes[0]}")
         axis.plot(*fine[:2], "o-", color=color, ms=3.5, label=f"n = {meshes[1]}")
-    left.set(xscale="log", xlabel="viscosity ratio λ")
-    right.set_xlabel("pre-inflation")
     for axis in left, right:
-        axis.set_ylabel("Ca at the fold")
         axis.legend()
-    return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter",
-                    "change_of_ca_relative", "change_of_d"], rows
+    return figure, rows
 
 
 def squeezing(study, given):
-    figure, axis = plt.subplots(figsize=(5.6, 4.2))
+    figure, (axis,) = panels(given)
     rows = []
     for n, mark in MARKS:
         outcome = study.run(STUCK, given["base"] | {SIDE: n})
@@ -41,13 +39,12 @@ def squeezing(study, given):
            for radius in size]
     axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
     rows += [("without film", "", *pair) for pair in zip(size, dry)]
-    axis.set(xlabel="radius of the capsule over that of the channel", ylabel="Ca above which it passes")
     axis.legend()
-    return figure, ["kind", "elements_per_side", "radius", "capillary_number"], rows
+    return figure, rows
 
 
 def wrinkling(study, given):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
+    figure, (left, right) = panels(given)
     rows = []
     for (name, parity), color in zip(given["cases"].items(), style.RUNS):
         for n, mark in MARKS:
@@ -62,11 +59,10 @@ def wrinkling(study, given):
                     right.plot(angle, wave / abs(wave).max(), color=color,
                                label=f"{name}: {crests} crests, Ca = {ca:g}")
             left.plot(given["values"], onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
-    left.set(xlabel="Ca", ylabel="E_b/(G_s R²) at onset")
-    right.set(xlabel="angle around the axis (degrees)", ylabel="radial part of the mode", ylim=(-1.1, 1.6))
+    right.set_ylim(-1.1, 1.6)
     for axis in left, right:
         axis.legend()
-    return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows
+    return figure, rows
 
 
 def onset(study, settings):
@@ -111,3 +107,61 @@ def folds(outcome):
     series = outcome.series
     return numpy.array([series[name][series["fold"] > 0]
                         for name in ("second_parameter", "parameter", "taylor_surface")])
+
+
+def load_form(study, given):
+    figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.6), sharey=True)
+    rows = []
+    for axis, ca in zip(axes, given["values"]):
+        for load, color, offset in (("strong", style.RUNS[1], -0.19), ("weak", style.RUNS[0], 0.19)):
+            for k, (mesh, settings) in enumerate(given["cases"].items()):
+                outcome = study.run(given["deck"], given["base"] | settings | {"Membrane/capillary number": ca,
+                                                                       "Membrane/load": load})
+                axis.barh(k + offset, outcome.end, 0.34, color=color, label=f"{load} form" if k == 0 else None)
+                axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
+                              fontsize=7.5, color="white")
+                rows.append((ca, mesh, load, outcome.end, outcome.message[:100]))
+        axis.set(title=f"Ca = {ca:g}", xlabel="time reached", xlim=(0, given["base"]["Time/final time"]))
+        axis.grid(visible=False, axis="y")
+    axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="paper")
+    axes[0].set_yticks(range(len(given["cases"])), given["cases"])
+    axes[0].invert_yaxis()
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=3)
+    return figure, rows
+
+
+def buckling(study, given):
+    cures = {"bending 0.02 R²G_s": lambda ca: {"Membrane/bending modulus": 0.02 / ca}, "as it is": lambda ca: {},
+             "pre-inflation 5 %": lambda ca: {"Membrane/pre-inflation": 0.05}, "λ = 5": lambda ca: {RATIO: 5.0}}
+    figure, (left, right) = panels(given)
+    rows = []
+    for (name, cure), pen in zip(cures.items(), PENS):
+        for n, dash in (6, ":"), (9, "-"):
+            jobs = {ca: given["base"] | cure(ca) | {SIDE: n, "Membrane/capillary number": ca} for ca in given["values"]}
+            rows += line(study, (left, right), f"{name}, n = {n}", SHEAR, jobs, (
+                "smallest_tension", lambda one: waves.short_share(one.run)), linestyle=dash, **pen)
+    left.axhline(0, color=style.FAINT, linewidth=0.9)
+    for axis in left, right:
+        ticks(axis, given["values"])
+    left.legend(loc="best", fontsize=7)
+    return figure, rows
+
+
+def pre_inflation(study, given):
+    capillary, inflation = given["values"], given["inflations"]
+    pairs = [(ca, alpha) for alpha in inflation for ca in capillary]
+    outcomes = study.all([(SHEAR, given["base"] | {"Membrane/capillary number": ca, "Membrane/pre-inflation": alpha})
+                          for ca, alpha in pairs])
+    smallest = [outcome.series["smallest_tension"].min() if outcome.done else numpy.nan for outcome in outcomes]
+    field = numpy.reshape(smallest, (len(inflation), len(capillary)))
+    bound = numpy.nanmax(abs(field))
+    x, y = numpy.meshgrid(capillary, 100 * numpy.array(inflation))
+    figure, (axis,) = panels(given)
+    filled = axis.contourf(x, y, field, numpy.linspace(-bound, bound, 21), cmap=style.SIGNED)
+    axis.contour(x, y, field, [0], colors=style.INK, linewidths=1.4)
+    axis.plot(x, y, ".", color=style.INK, ms=2)
+    ticks(axis, capillary)
+    axis.grid(visible=False)
+    figure.colorbar(filled, label="smallest tension over G_s")
+    rows = [(*pair, value) for pair, value in zip(pairs, smallest)]
+    return figure, rows

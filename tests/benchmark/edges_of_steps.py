@@ -1,8 +1,9 @@
-"""Maps of the atlas about steps in time: how long may they be?"""
+"""Maps of the atlas about steps in time, how long they may be, and about accuracy asked for: of a step, of the
+integrals, of the volume."""
 
 import math
 
-from package import PENS, RATIO, SHEAR, SIDE, lines, plt, studies, style, ticks, worst
+from package import PENS, RATIO, SHEAR, SIDE, line, lines, panels, studies, style, ticks, worst
 
 SCHEMES = {"bs3": "explicit, BS3", "crank-nicolson": "Crank–Nicolson, sub-iterated (the paper's)",
            "rkc2": "stabilised explicit, RKC2", "tr-bdf2": "TR-BDF2, quasi-Newton", "bdf3": "BDF3, quasi-Newton"}
@@ -37,7 +38,7 @@ def stiffness(ca, n, dilatation=1.0):
 
 def draw_steps(study, given, of):
     """Draws the largest step of every scheme over the values of a variable; of(value): settings and stiffness."""
-    figure, axis = plt.subplots(figsize=(7.6, 5))
+    figure, (axis,) = panels(given)
     values, rows = given["values"], []
     for scheme in SCHEMES:
         found = [(value, *largest_step(study, of(value)[0], scheme, of(value)[1])) for value in values]
@@ -49,10 +50,9 @@ def draw_steps(study, given, of):
                               textcoords="offset points", color=PEN[scheme]["color"])
     axis.plot(values, [2.51 / of(value)[1] for value in values], color=style.FAINT, linestyle=(0, (4, 3)),
               label="2.51/ρ, ρ by (4.5)")
-    ticks(axis, values, given["label"])
-    axis.set(yscale="log", ylabel="largest step that works, times rate")
+    ticks(axis, values)
     axis.legend(loc="best")
-    return figure, ["scheme", given["variable"], "largest_step", "note"], rows
+    return figure, rows
 
 
 def fixed_step(study, given):
@@ -69,11 +69,65 @@ def fixed_step_mesh(study, given):
 
 
 def viscosity_ratio(study, given):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    rows = lines(study, (left, right), given, lambda ratio: {RATIO: ratio}, (
+    figure, axes = panels(given)
+    rows = lines(study, axes, given, lambda ratio: {RATIO: ratio}, (
         lambda one: one.counts["velocity_iterations"] / one.counts["evaluations"],
         lambda one: max(worst("volume_error")(one), 1e-16), lambda one: one.counts["steps"]))
-    left.set(xscale="log", xlabel="λ", ylabel="iterations a velocity", ylim=(0, None))
+    axes[0].set_ylim(0, None)
+    axes[0].legend(loc="best")
+    return figure, rows
+
+
+def _error(reference):
+    return lambda outcome: max(abs(outcome.final["taylor_inertia"] - reference.final["taylor_inertia"]), 1e-9)
+
+
+def step_tolerance(study, given):
+    reference = study.run(SHEAR, given["base"] | {"Time/tolerance": 1e-7})
+    measures = _error(reference), lambda one: one.counts["evaluations"], worst("volume_error")
+    figure, axes = panels(given)
+    rows = []
+    for scheme in ("bs3", "rkc2", "tr-bdf2", "bdf3"):
+        for constraint, words, dash, shown in ("exact", "", "-", axes[:2]), ("flux", ", `flux`", ":", axes):
+            settings = given["base"] | {"Time/scheme": scheme, "Volume/constraint": constraint}
+            jobs = {tolerance: settings | {"Time/tolerance": tolerance} for tolerance in given["values"]}
+            rows += line(study, shown, SCHEMES[scheme] + words, SHEAR, jobs, measures, linestyle=dash, **PEN[scheme])
+    for axis in axes:
+        axis.invert_xaxis()
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles[::2], labels[::2], loc="upper right", ncols=3, fontsize=7, title="dotted: constraint `flux`",
+                  title_fontsize=7, bbox_to_anchor=(1, 1.012), labelspacing=0.25)
+    return figure, rows
+
+
+def quadrature_tolerance(study, given):
+    figure, (left, right) = panels(given)
+    rules = (left, {tolerance: {"Quadrature/tolerance": tolerance} for tolerance in given["tolerances"]}), (
+        right, {points: {"Quadrature/points": points, "Quadrature/rule": "fixed"} for points in given["points"]})
+    rows = []
+    for (name, settings), pen in zip(given["cases"].items(), PENS):
+        settings = given["base"] | settings
+        reference = study.run(SHEAR, settings | {"Quadrature/tolerance": 1e-9})
+        for axis, chosen in rules:
+            jobs = {value: settings | rule for value, rule in chosen.items()}
+            rows += line(study, [axis], f"D, constraint `{name}`", SHEAR, jobs, (_error(reference),), **pen)
+            if name == "none":
+                rows += line(study, [axis], "volume, constraint `none`", SHEAR, jobs, (worst("volume_error"),),
+                             linestyle=":", mfc="none", **pen)
+    left.invert_xaxis()
     left.legend(loc="best")
-    right.set(xscale="log", yscale="log", xlabel="λ", ylabel="largest volume error")
-    return figure, ["constraint", "viscosity_ratio", "iterations_a_velocity", "volume_error", "steps", "message"], rows
+    return figure, rows
+
+
+def volume_drift(study, given):
+    figure, (left, right) = panels(given)
+    rows = []
+    for (constraint, settings), color in zip(given["cases"].items(), style.RUNS):
+        series = study.run(SHEAR, given["base"] | settings).series
+        t, error, d = (series[name] for name in ("time", "volume_error", "taylor_inertia"))
+        left.plot(t[1:], abs(error[1:]).clip(1e-16), color=color, label=f"`{constraint}`")
+        right.plot(t, d, color=color)
+        rows += [(constraint, *values) for values in zip(t, error, d)]
+    left.legend(loc="center right")
+    right.set_ylim(0.45, 0.6)
+    return figure, rows

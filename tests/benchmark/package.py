@@ -81,11 +81,19 @@ def worst(name):
     return lambda outcome: numpy.nanmax(abs(outcome.series[name]))
 
 
-def ticks(axis, values, label):
+def panels(given):
+    """Returns the figure of a map (scenes/atlas.yaml) of its `size` in inches and its `axes`, with labels and scales."""
+    figure, (axes,) = plt.subplots(1, len(given["axes"]), figsize=given["size"], squeeze=False)
+    for axis, look in zip(axes, given["axes"]):
+        axis.set(**look)
+    return figure, axes
+
+
+def ticks(axis, values):
     """Marks these values on a logarithmic axis x, and no others."""
-    axis.set(xscale="log", xlabel=label)
+    axis.set_xscale("log")
     axis.set_xticks(values, [f"{value:g}" for value in values])
-    axis.minorticks_off()
+    axis.set_xticks([], minor=True)
 
 
 def footer(figure, text, **look):
