@@ -1,6 +1,5 @@
 """Imported first: the package tanktread of this source directory, and what several measurements use."""
 
-import hashlib
 import pathlib
 import sys
 
@@ -34,17 +33,6 @@ def table(head, rows):
     print("| " + " | ".join(head) + " |\n" + "|---" * len(head) + "|", flush=True)
     for row in rows:
         print("| " + " | ".join(f"{one:.3g}" if isinstance(one, float) else str(one) for one in row) + " |", flush=True)
-
-
-def changed(deck, directory, without=(), **sections):
-    """Writes a copy of a deck of inputs/ without some sections and with others replaced, and returns its path."""
-    content = {key: value for key, value in yaml.safe_load((INPUTS / f"{deck}.yaml").read_text())["Tanktread"].items()
-               if key not in without}
-    text = yaml.safe_dump({"Tanktread": content | sections})
-    path = pathlib.Path(directory) / "decks" / f"{deck}_{hashlib.sha1(text.encode()).hexdigest()[:8]}.yaml"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-    return path.resolve()
 
 
 def line(study, axes, name, deck, jobs, measures, x=None, **pen):

@@ -14,6 +14,7 @@ The steady shape depends on the capillary number alone, so fits to samples and p
 NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.
 """
 
+import functools
 import itertools
 import os
 import pathlib
@@ -57,14 +58,15 @@ class Emulator:
     messages, count = ["beyond the emulator"], 0
 
     def __init__(self, study, law):
+        self._low, self._high = SPANS[law]
         low, high = numpy.log(SPANS[law])
         nodes = (low + high) / 2 + (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(NODES) + 0.5) / NODES)
         jobs = [LAWS[law] | FINE | {"Membrane/shear modulus": float(numpy.exp(-node))} for node in nodes]
         study.all([(DECK, job) for job in jobs])
-        self._span, self._known = SPANS[law], {}
         values = numpy.array([radii(profile(study, job)) for job in jobs])
         self._radii = scipy.interpolate.BarycentricInterpolator(nodes, values)
 
+    @functools.cache
     def curve(self, capillary_number):
         radius = self._radii(numpy.log(capillary_number))
         points = numpy.column_stack([radius * numpy.cos(ANGLES), radius * numpy.sin(ANGLES)])
@@ -72,9 +74,7 @@ class Emulator:
 
     def all(self, jobs):
         numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
-        for number in set(numbers) - self._known.keys():
-            self._known[number] = [self.curve(number)] if self._span[0] < number < self._span[1] else None
-        return [self._known[number] for number in numbers]
+        return [[self.curve(number)] if self._low < number < self._high else None for number in numbers]
 
 
 def experiments(curves, errors):
