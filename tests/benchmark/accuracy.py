@@ -53,8 +53,8 @@ def main():
 
     table(["scene", "error", "mesh", "`Time/tolerance`", "`Quadrature/tolerance`", "kernel evaluations",
            "seconds over the first deck's"], lines())
-    head = ["scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"]
-    studies.write_table(parsed.output / "accuracy.csv", head, rows)
+    studies.write_table(parsed.output / "accuracy.csv", [
+        "scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"], rows)
 
 
 def scene_of(parsed):

@@ -68,19 +68,17 @@ def wrinkling(study, given):
 def onset(study, settings):
     """Returns the bending number at which the leading rate passes through zero, by secants of its logarithm, and the
     last run."""
-    known = []
-    while len(known) < 9:
-        number = (0.0045, 0.005)[len(known)] if len(known) < 2 else secant(known)
+    numbers, rates = [0.0045, 0.005], []
+    while len(rates) < 9:
+        if len(rates) > 1:
+            step = -rates[-1] * numpy.log(numbers[-1] / numbers[-2]) / (rates[-1] - rates[-2])
+            numbers.append(numbers[-1] * numpy.exp(numpy.clip(step, -0.3, 0.3)))
+        number = numbers[len(rates)]
         outcome = study.run(WRINKLED, settings | {"Membrane/bending number": float(f"{number:.6g}")})
-        known.append((number, outcome.series["leading_rate"][-1]))
-        if abs(known[-1][1]) < 5e-3:
+        rates.append(outcome.series["leading_rate"][-1])
+        if abs(rates[-1]) < 5e-3:
             break
-    return known[-1][0], outcome
-
-
-def secant(known):
-    (a, f), (b, g) = known[-2:]
-    return b * numpy.exp(numpy.clip(-g * numpy.log(b / a) / (g - f), -0.3, 0.3))
+    return number, outcome
 
 
 def along_waist(outcome):
@@ -139,7 +137,7 @@ def buckling(study, given):
         for n, dash in (6, ":"), (9, "-"):
             jobs = {ca: given["base"] | cure(ca) | {SIDE: n, "Membrane/capillary number": ca} for ca in given["values"]}
             rows += line(study, (left, right), f"{name}, n = {n}", SHEAR, jobs, (
-                "smallest_tension", lambda one: waves.short_share(one.run)), linestyle=dash, **pen)
+                "smallest_tension", lambda one: waves.Spectrum(one.run.snapshots()[-1]).short), linestyle=dash, **pen)
     left.axhline(0, color=style.FAINT, linewidth=0.9)
     for axis in left, right:
         ticks(axis, given["values"])

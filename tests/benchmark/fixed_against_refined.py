@@ -29,7 +29,13 @@ def main():
     columns, tall = max(3, len(runs)), 4.2 * (extent[2] / extent[0] + 0.25)
     figure = plt.figure(figsize=(4.2 * columns, tall + 4.4))
     grid = figure.add_gridspec(3, columns, height_ratios=[tall, 0.1, 3.4])
-    words = draw_surfaces(figure, grid, runs, shots, names, arguments.field)
+    norm, colours, pattern = field_of(shots, arguments.field)
+    for k, (shot, name) in enumerate(zip(shots, names)):
+        axis = figure.add_subplot(grid[0, k], title=name)
+        draw.draw_surface(axis, shot, arguments.field, norm, colours, *draw.VIEW)
+    words = tanktread.field_label(runs, arguments.field, pattern)
+    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
+                    label=words)
     draw_sections(*(figure.add_subplot(grid[2, k]) for k in range(3)), shots, names, arguments.field, words)
     (height, first), *others = (draw.near_tip(shot, arguments.field)[1:] for shot in shots)
     for run, (at, values) in zip(runs[1:], others):
@@ -37,19 +43,6 @@ def main():
         print(f"{run.name}: largest {arguments.field} {values.max():.5g} against {first.max():.5g}, largest difference "
               f"on the half of the section with the tip {100 * change:.2f} % of the largest")
     style.save(figure, arguments.output)
-
-
-def draw_surfaces(figure, grid, runs, shots, names, field):
-    """Draws the surfaces in the first row, and returns the label of the field."""
-    norm, colours, pattern = field_of(shots, field)
-    for k, (shot, name) in enumerate(zip(shots, names)):
-        axis = figure.add_subplot(grid[0, k])
-        draw.draw_surface(axis, shot, field, norm, colours, *draw.VIEW)
-        axis.set_title(name)
-    words = tanktread.field_label(runs, field, pattern)
-    figure.colorbar(plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, 0]), orientation="horizontal",
-                    label=words)
-    return words
 
 
 def draw_sections(outline, tip, along, shots, names, field, words):

@@ -142,8 +142,8 @@ def samples(made, generator, number):
 
 
 def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
-    """Returns a bright field with a dark particle 0.8 of it wide, blurred (pixels) and with noise (of the contrast), the
-    length of a pixel, and the position of the particle."""
+    """Returns a bright field with a dark particle 0.8 of it wide, blurred (pixels), with noise (of the contrast); the
+    length of a pixel; and the position of the particle."""
     length = numpy.ptp(curve.even(400), axis=0).max() / (0.8 * pixels)
     shift = generator.uniform(-3, 3, 2)
     x = ((numpy.arange(pixels * finer) + 0.5) / finer - pixels / 2) * length

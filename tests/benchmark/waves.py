@@ -27,11 +27,6 @@ class Spectrum:
         return self.power[SMOOTH + 1:].sum() / self.power.sum()
 
 
-def short_share(run, field="load"):
-    """Returns the share of the power of short waves in the last snapshot of a run."""
-    return Spectrum(run.snapshots()[-1], field).short
-
-
 def harmonics(directions, largest):
     """Yields (degree, order from 0, values) of the orthonormal spherical harmonics at unit vectors (3, n), by the
     stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long."""
