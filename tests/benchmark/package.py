@@ -70,7 +70,7 @@ def worst(name):
 
 
 def panels(given):
-    """Returns the figure of a map of the atlas, of its `size` (inches) and its `axes`, with labels and scales."""
+    """Returns the figure of a map of the atlas, of its `size` (inches), and its `axes` with labels and scales."""
     figure, (axes,) = plt.subplots(1, len(given["axes"]), figsize=given["size"], squeeze=False)
     for axis, look in zip(axes, given["axes"]):
         axis.set(**look)

@@ -61,11 +61,9 @@ def states(study):
     def row(name, series):
         deck = yaml.safe_load(tanktread.deck_at(f"inputs/{name}.yaml").read_text())["Tanktread"]
         time, without = deck.get("Time", {}) | until, ("Expect", "Output", "Adaptation", "Time")
-        plain, tight = (study.run(changed(name, without, Time=one), {})
-                        for one in (time, time | {"tolerance": 1e-7}))
+        plain, tight = (study.run(changed(name, without, Time=one), {}) for one in (time, time | {"tolerance": 1e-7}))
         begun = deck.get("Particle", {}) | {"initial shape": {"run": str(tight.directory.resolve())}}
-        rest, after = (study.run(changed(name, without, **more), {})
-                       for more in (search, search | {"Particle": begun}))
+        rest, after = (study.run(changed(name, without, **one), {}) for one in (search, search | {"Particle": begun}))
         lost = [one.message for one in (rest, plain, tight, after) if not one.done]
         if lost:
             return [f"`{name}`", lost[0], *[""] * 6]
