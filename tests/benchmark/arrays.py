@@ -46,8 +46,8 @@ def drag(of, arguments):
     held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed",
             "Solvers/rigid bodies": "first kind"}
     cases = itertools.product(arguments.arrays, arguments.fractions or (0.001, 0.064, 0.2), arguments.elements)
-    found = ([*case, of(*case, held)["sphere/drag_x1"][0] / (6 * numpy.pi)] for case in cases)
-    table(["array", "volume fraction", "n", "K"], ([*case, f"{k:.10g}"] for *case, k in found))
+    table(["array", "volume fraction", "n", "K"], (
+        [*case, f"{of(*case, held)['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}"] for case in cases))
 
 
 def viscosity(of, arguments):

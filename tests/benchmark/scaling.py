@@ -65,7 +65,6 @@ def main():
         for kind, (ranks, copies) in kinds.items():
             runs[kind] += summaries(words, ranks, copies)
     times = {kind: list(map(seconds, of_kind)) for kind, of_kind in runs.items()}
-    titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
     rows = []
     for phase in times["one"][0]:
         middle = [statistics.median(run.get(phase, 0) for run in all_runs) for all_runs in times.values()]
@@ -73,7 +72,7 @@ def main():
             one, several, *side = middle
             capacity = [many * one / each for each in side]
             rows.append([phase, one, several, one / several, *capacity, *(one / several / each for each in capacity)])
-    table(["seconds", *titles], rows)
+    table(["seconds", "1 rank", f"{many} ranks", "ratio", *["capacity", "efficiency"] * arguments.capacity], rows)
     one, other = runs["one"][0], runs["many"][0]
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
         print(f"{key}: {one['counts'][key]:.10g} and {other['counts'][key]:.10g}")

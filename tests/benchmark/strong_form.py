@@ -16,11 +16,10 @@ def main():
     parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="default: %(default)s")
     arguments = parser.parse_args()
     weak, strong = map(tanktread.run, arguments.runs or [made("weak"), made("strong")])
-    figure, axes = plt.subplot_mosaic([["upper", "section"], ["lower", "section"]], figsize=(9.6, 4.6),
-                                      width_ratios=[1.1, 1])
-    axes["upper"].sharex(axes["lower"])
-    draw_series(axes["upper"], axes["lower"], weak, strong)
-    draw_sections(axes["section"], weak, strong)
+    figure, axes = plt.subplot_mosaic("AC;BC", figsize=(9.6, 4.6), width_ratios=[1.1, 1])
+    axes["A"].sharex(axes["B"])
+    draw_series(axes["A"], axes["B"], weak, strong)
+    draw_sections(axes["C"], weak, strong)
     style.save(figure, arguments.output)
 
 

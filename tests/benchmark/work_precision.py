@@ -37,10 +37,6 @@ class Scene:
         # the choice that colours stand for: the one with most options, the scheme before others
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
 
-    def label(self, picked):
-        """Returns what differs from the default."""
-        return ", ".join(option for choice, option in picked.items() if option != self.default[choice]) or "default"
-
     def combinations(self, differences, only):
         """Yields the default, then every pick that differs from it in one choice, then in two."""
         choices = [choice for choice in self.choices if not only or choice in only]
@@ -73,7 +69,8 @@ class Scene:
             for choice, option in picked.items():
                 settings |= self.choices[choice][option] or {}
             ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
-            outcome, label = study.run(decks, settings, ranks), self.label(picked)
+            outcome = study.run(decks, settings, ranks)
+            label = ", ".join(one for choice, one in picked.items() if one != self.default[choice]) or "default"
             if not outcome.done:
                 print(f"{label}: {outcome.status}: {outcome.message}", flush=True)
                 rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
