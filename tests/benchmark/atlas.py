@@ -18,20 +18,19 @@ import edges_of_shapes
 import edges_of_steps
 
 MAPS = scenes_of(__file__)  # title, text and data by the name of the map
+FUNCTIONS = vars(edges_of_steps) | vars(edges_of_meshes) | vars(edges_of_shapes)
 
 
 def draw(name, study, output):
     """Draws a map, with its text and the command that makes it under the chart, and writes its table."""
-    title, text, function = MAPS[name]["title"], MAPS[name]["text"], name.replace("-", "_")
-    print(f"{name}: {title}", flush=True)
-    draw_map = next(getattr(module, function) for module in (edges_of_steps, edges_of_meshes, edges_of_shapes)
-                    if hasattr(module, function))
-    figure, rows = draw_map(study, MAPS[name])
+    given = MAPS[name]
+    print(f"{name}: {given['title']}", flush=True)
+    figure, rows = FUNCTIONS[name.replace("-", "_")](study, given)
     width = int(figure.get_size_inches()[0] * 15.5)
-    words = "\n".join(textwrap.fill(paragraph, width) for paragraph in text.splitlines())
-    figure.suptitle(title, x=0.01, ha="left", fontsize=11)
+    words = "\n".join(textwrap.fill(paragraph, width) for paragraph in given["text"].splitlines())
+    figure.suptitle(given["title"], x=0.01, ha="left", fontsize=11)
     footer(figure, f"{words}\n\n$ {studies.command_of(__file__, '--map', name)}", color=style.INK)
-    studies.write_table(output / f"{name}.csv", MAPS[name]["head"], rows)
+    studies.write_table(output / f"{name}.csv", given["head"], rows)
     style.save(figure, output / f"{name}.png")
 
 
@@ -42,11 +41,12 @@ def main():
     parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")
     studies.arguments(parser, "results/atlas", jobs=1)
     parsed = parser.parse_args()
+    study = studies.study(parsed)
     for name in parsed.map:
         if parsed.list:
             print(f"{name:22}{MAPS[name]['title']}")
         else:
-            draw(name, studies.study(parsed), parsed.output)
+            draw(name, study, parsed.output)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@ from package import PENS, RATIO, SHEAR, SIDE, line, numpy, panels, plt, style, t
 import waves
 from tanktread.figures import pushed as stuck
 
-STUCK = "inputs/capsule_stuck_folds.yaml"
-WRINKLED = "inputs/capsule_wrinkles.yaml"
 MARKS = (8, "x"), (10, "o-")  # n, the coarse and the fine mesh
 
 
@@ -31,7 +29,7 @@ def squeezing(study, given):
     figure, (axis,) = panels(given)
     rows = []
     for n, mark in MARKS:
-        outcome = study.run(STUCK, given["base"] | {SIDE: n})
+        outcome = study.run(given["deck"], given["base"] | {SIDE: n})
         size, ca, _ = folds(outcome)
         axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
         rows += [("with a film", n, *pair) for pair in zip(size, ca)]
@@ -50,7 +48,7 @@ def wrinkling(study, given):
         for n, mark in MARKS:
             onsets = []
             for ca in given["values"]:
-                bending, outcome = onset(study, parity | {"Membrane/capillary number": ca, SIDE: n})
+                bending, outcome = onset(study, given["deck"], parity | {"Membrane/capillary number": ca, SIDE: n})
                 angle, wave = along_waist(outcome)
                 crests = number_of_crests(angle, wave)
                 onsets.append(bending)
@@ -65,7 +63,7 @@ def wrinkling(study, given):
     return figure, rows
 
 
-def onset(study, settings):
+def onset(study, deck, settings):
     """Returns the bending number at which the leading rate passes through zero, by secants of its logarithm, and the
     last run."""
     numbers, rates = [0.0045, 0.005], []
@@ -74,7 +72,7 @@ def onset(study, settings):
             step = -rates[-1] * numpy.log(numbers[-1] / numbers[-2]) / (rates[-1] - rates[-2])
             numbers.append(numbers[-1] * numpy.exp(numpy.clip(step, -0.3, 0.3)))
         number = numbers[len(rates)]
-        outcome = study.run(WRINKLED, settings | {"Membrane/bending number": float(f"{number:.6g}")})
+        outcome = study.run(deck, settings | {"Membrane/bending number": float(f"{number:.6g}")})
         rates.append(outcome.series["leading_rate"][-1])
         if abs(rates[-1]) < 5e-3:
             break
