@@ -12,33 +12,13 @@ from a finer run, relative to the largest value. Kernel evaluations are the same
 are printed as multiples of those that the first deck takes.
 """
 
-
-from package import SHEAR, SIDE, answer, command_line, expect, numpy, studies, table, tanktread
+from package import SHEAR, SIDE, answer, command_line, expect, numpy, scenes_of, studies, table, tanktread
 from tanktread.interpolation import difference
 
 DEMANDS = [1e-2, 1e-3, 1e-4]
 # Time/tolerance and Quadrature/tolerance
 TOLERANCES = [(1e-3, 1e-3), (3e-4, 3e-4), (1e-4, 1e-4), (2e-5, 1e-5), (4e-6, 1e-5)]
-
-
-def _refined(n, tolerance):
-    return {SIDE: n, "Adaptation/surface tolerance": tolerance}
-
-
-MESHES = [(f"n = {n}", {SIDE: n}) for n in (3, 4, 6, 8, 10)]
-REFINED = [(f"n = {n}, surface tolerance {tolerance:g}", _refined(n, tolerance)) for n, tolerance in
-           ((4, 1.6e-3), (4, 8e-4), (6, 8e-4), (6, 4e-4), (6, 2e-4), (8, 1e-4))]
-# name: title, deck, settings of all runs, series, settings of the reference run (None: the expected value), meshes
-SCENES = {
-    "shear": ("capsule in shear, Ca = 0.3, to 7.5", SHEAR, {}, "taylor_inertia", {SIDE: 14}, MESHES),
-    "ratio": ("the same, viscosity ratio 5", SHEAR, {"Particle/viscosity ratio": 5.0}, "taylor_inertia", {SIDE: 12},
-              MESHES),
-    "refined": ("Skalak capsule drawn out, Ca = 0.6, mesh refined", "inputs/hyperbolic_skalak.yaml", {},
-                "taylor_inertia", _refined(10, 4e-5), REFINED),
-    "drop": ("drop in uniaxial extension", "inputs/drop_uniaxial.yaml", {}, "taylor_inertia",
-             {SIDE: 12} | {"Time/tolerance": 1e-6}, MESHES),
-    "tube": ("capsule that nearly fills a tube", "inputs/capsule_in_tube.yaml", {}, "velocity_x1", None, MESHES[1:]),
-}
+SCENES = scenes_of(__file__)
 
 
 def main():
@@ -53,15 +33,14 @@ def main():
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="another key of that deck")
     studies.arguments(parser, "results/accuracy")
     parsed = parser.parse_args()
-    study, scenes = studies.study(parsed), {name: SCENES[name] for name in parsed.scene}
-    if parsed.deck:
-        scenes = {"deck": scene_of(parsed)}
+    study = studies.study(parsed)
+    scenes = {"deck": scene_of(parsed)} if parsed.deck else {name: SCENES[name] for name in parsed.scene}
     unit = study.run(SHEAR, {"Output/interval": 0.75}).processor_seconds
     rows = []
 
     def lines():
         for name, scene in scenes.items():
-            found = runs(study, *scene[1:])
+            found = runs(study, scene)
             rows.extend((name, mesh, *tolerances, error, one.kernel_evaluations, one.processor_seconds)
                         for mesh, tolerances, one, error in found)
             for demand in DEMANDS:
@@ -69,12 +48,13 @@ def main():
                 mesh, tolerances, one, error = min(good or found, key=lambda entry: (
                     entry[2].kernel_evaluations if good else entry[3]))
                 met = f"{demand:g}" if good else f"{demand:g}: not met, {error:.1e}"
-                yield [scene[0], met, mesh, *tolerances, float(one.kernel_evaluations), one.processor_seconds / unit]
+                yield [scene["title"], met, mesh, *tolerances, float(one.kernel_evaluations),
+                       one.processor_seconds / unit]
 
     table(["scene", "error", "mesh", "`Time/tolerance`", "`Quadrature/tolerance`", "kernel evaluations",
            "seconds over the first deck's"], lines())
-    head = ["scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"]
-    studies.write_table(parsed.output / "accuracy.csv", head, rows)
+    studies.write_table(parsed.output / "accuracy.csv", [
+        "scene", "mesh", "time", "quadrature", "error", "kernel_evaluations", "seconds"], rows)
 
 
 def scene_of(parsed):
@@ -83,37 +63,36 @@ def scene_of(parsed):
     expect(len(values) > 1 and all(value.isdigit() for value in values),
            "--mesh needs a key and two or more whole numbers")
     name = key.rsplit("/", 1)[-1]
-    finest = {key: int(1.5 * int(values[-1]))}
-    meshes = [(f"{name} = {value}", {key: int(value)}) for value in values]
-    return parsed.deck, parsed.deck, tanktread.runs.settings_of(parsed.set), parsed.series, finest, meshes
+    return {"title": parsed.deck, "deck": parsed.deck, "base": tanktread.runs.settings_of(parsed.set),
+            "series": parsed.series, "reference": {key: int(1.5 * int(values[-1]))},
+            "meshes": {f"{name} = {value}": {key: int(value)} for value in values}}
 
 
-def settings(base, mesh, tolerances):
-    return base | {"Time/tolerance": tolerances[0], "Quadrature/tolerance": tolerances[1]} | mesh
-
-
-def runs(study, deck, base, series, reference, meshes):
+def runs(study, scene):
     """Returns mesh, tolerances, outcome and relative error of every run that came to its end: largest over the run
     against a finer run, or at the end against the value that the deck expects."""
-    truth = None
-    if reference:
-        finer = study.run(deck, settings(base, reference, (5e-6, 1e-6)))
+    def run(tolerances, mesh):
+        pair = dict(zip(("Time/tolerance", "Quadrature/tolerance"), tolerances))
+        return study.run(scene["deck"], scene["base"] | pair | mesh)
+
+    series, found, truth = scene["series"], [], None
+    if scene["reference"]:
+        finer = run((5e-6, 1e-6), scene["reference"])
         expect(finer.done, f"the reference did not come to its end: {finer.message}")
         truth = finer.series
-    found = []
-    for name, mesh in meshes:
+    for name, mesh in scene["meshes"].items():
         for tolerances in TOLERANCES:
-            one = study.run(deck, settings(base, mesh, tolerances))
+            one = run(tolerances, mesh)
             if not one.done:
                 continue
             values = one.series[series]
             if truth:
-                largest = numpy.nanmax(abs(truth[series]))
-                error = difference(one.series["time"], values, truth["time"], truth[series]) / largest
+                error = difference(one.series["time"], values, truth["time"], truth[series]) / numpy.nanmax(
+                    abs(truth[series]))
             else:
                 error = abs(values[-1] / one.run.value(f"Expect/{series}/value") - 1)
             found.append((name, tolerances, one, error))
-    expect(found, f"no run of {deck} came to its end")
+    expect(found, f"no run of {scene['deck']} came to its end")
     return found
 
 

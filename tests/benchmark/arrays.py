@@ -12,18 +12,13 @@ Nunan & Keller (J. Fluid Mech. 142, 1984).
 """
 
 import itertools
-import pathlib
 
-from package import answer, command_line, numpy, table, tanktread
+from package import SCENES, answer, command_line, numpy, table, tanktread
 
 ARRAYS = {"simple": (1, numpy.eye(3)), "body-centred": (2, (1 - 2 * numpy.eye(3)) / 2),
           "face-centred": (4, (1 - numpy.eye(3)) / 2)}
 K = {"simple": (3.787, -0.858), "body-centred": (0.14079, 1.57281), "face-centred": (0.23611, 1.50926)}
 FLOWS = {"alpha": "uniaxial extension", "beta": "simple shear"}
-DECK = """Tanktread:
-  Particles: {sphere: {shape: sphere}}
-  Time: {scheme: bs3, fixed step: 1.0e-6, final time: 1.0e-6}
-"""
 
 
 def main():
@@ -35,15 +30,12 @@ def main():
     parser.add_argument("--quadrature", type=float, default=1e-7, help="Quadrature/tolerance (default: %(default)g)")
     parser.add_argument("--arrays", nargs="+", choices=ARRAYS, default=list(ARRAYS), help="(default: all)")
     arguments = parser.parse_args()
-    deck = pathlib.Path("results/arrays.yaml").resolve()
-    deck.parent.mkdir(exist_ok=True)
-    deck.write_text(DECK)
 
     def of(array, fraction, n, settings):
         """Returns the series of a run."""
         spheres, vectors = ARRAYS[array]
         side = (4 * numpy.pi / 3 * spheres / fraction) ** (1 / 3)
-        return tanktread.run(deck, settings | {
+        return tanktread.run(SCENES / "arrays.yaml", settings | {
             "Domain/lattice vectors": (side * vectors).ravel().tolist(), "Quadrature/tolerance": arguments.quadrature,
             "Particles/sphere/Surface/elements per side": n}).series
 
@@ -54,8 +46,8 @@ def drag(of, arguments):
     held = {"Flow/type": "uniform", "Flow/velocity": "[1, 0, 0]", "Particles/sphere/motion": "prescribed",
             "Solvers/rigid bodies": "first kind"}
     cases = itertools.product(arguments.arrays, arguments.fractions or (0.001, 0.064, 0.2), arguments.elements)
-    found = ([*case, of(*case, held)["sphere/drag_x1"][0] / (6 * numpy.pi)] for case in cases)
-    table(["array", "volume fraction", "n", "K"], ([*case, f"{k:.10g}"] for *case, k in found))
+    table(["array", "volume fraction", "n", "K"], (
+        [*case, f"{of(*case, held)['sphere/drag_x1'][0] / (6 * numpy.pi):.10g}"] for case in cases))
 
 
 def viscosity(of, arguments):

@@ -12,33 +12,25 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 
 import textwrap
 
-from package import answer, command_line, studies, style
-import edges_of_membranes
+from package import answer, command_line, footer, scenes_of, studies, style
 import edges_of_meshes
 import edges_of_shapes
 import edges_of_steps
-import edges_of_tolerances
 
-MAPS = {}
-for module in edges_of_steps, edges_of_membranes, edges_of_meshes, edges_of_tolerances, edges_of_shapes:
-    MAPS |= {function.__name__.replace("_", "-"): function for function in module.MAPS}
-
-
-def caption(figure, function, command):
-    """What the map shows, and the command that makes it, under the chart."""
-    width = int(figure.get_size_inches()[0] * 15.5)
-    paragraphs = [" ".join(part.split()) for part in function.__doc__.split("\n\n")]
-    words = "\n".join(textwrap.fill(part, width) for part in paragraphs[1:])
-    figure.suptitle(paragraphs[0], x=0.01, ha="left", fontsize=11)
-    figure.supxlabel(f"{words}\n\n$ {command}".replace("$ ", r"\$ "), x=0.01, ha="left", fontsize=7.5, color=style.INK)
+MAPS = scenes_of(__file__)  # title, text and data by the name of the map
+FUNCTIONS = vars(edges_of_steps) | vars(edges_of_meshes) | vars(edges_of_shapes)
 
 
 def draw(name, study, output):
-    function = MAPS[name]
-    print(f"{name}: {function.__doc__.splitlines()[0]}", flush=True)
-    figure, head, rows = function(study)
-    caption(figure, function, studies.command_of(__file__, "--map", name))
-    studies.write_table(output / f"{name}.csv", head, rows)
+    """Draws a map, with its text and the command that makes it under the chart, and writes its table."""
+    given = MAPS[name]
+    print(f"{name}: {given['title']}", flush=True)
+    figure, rows = FUNCTIONS[name.replace("-", "_")](study, given)
+    width = int(figure.get_size_inches()[0] * 15.5)
+    words = "\n".join(textwrap.fill(paragraph, width) for paragraph in given["text"].splitlines())
+    figure.suptitle(given["title"], x=0.01, ha="left", fontsize=11)
+    footer(figure, f"{words}\n\n$ {studies.command_of(__file__, '--map', name)}", color=style.INK)
+    studies.write_table(output / f"{name}.csv", given["head"], rows)
     style.save(figure, output / f"{name}.png")
 
 
@@ -49,13 +41,12 @@ def main():
     parser.add_argument("--list", action="store_true", help="print the maps and what they show, run nothing")
     studies.arguments(parser, "results/atlas", jobs=1)
     parsed = parser.parse_args()
-    if parsed.list:
-        for name in parsed.map:
-            print(f"{name:22}{MAPS[name].__doc__.splitlines()[0]}")
-        return
     study = studies.study(parsed)
     for name in parsed.map:
-        draw(name, study, parsed.output)
+        if parsed.list:
+            print(f"{name:22}{MAPS[name]['title']}")
+        else:
+            draw(name, study, parsed.output)
 
 
 if __name__ == "__main__":

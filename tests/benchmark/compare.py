@@ -28,23 +28,14 @@ import re
 import shutil
 import sys
 
-from package import INPUTS, SIDE, command_line, numpy, table, tanktread, yaml
+from package import INPUTS, SIDE, command_line, numpy, scenes_of, table, tanktread, yaml
 from power_balance import ENDS
 
 # Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their
 # own ends. Round-off grows from step to step in suspensions, so they end after about ten steps. Two branches end before
 # their fold, with exit code 3. capsule_stuck fails at 330, where the gap is smaller than Channel/contact gap.
-SOONER = {name: ENDS[name] for name in ("capsule_capillary", "capsule_constriction", "capsule_cylinder", "capsule_step",
-                                        "shear_paper", "suspension")} | {
-    "capsule_expansion": 2, "capsule_stuck": 200, "red_cell_file": "8 ms", "red_cell_slit": "5 ms",
-    "sheared_suspension": 1, "sphere_rolling_down_wall": 1.5, "sphere_settling_to_wall": 1, "vesicle_aspirated": 100,
-    "viscoelastic_membrane": 6, "decks/capsule_in_tube": 2, "decks/capsule_through_constriction": 1}
-SHORTER = {name: {"Time/final time": end} for name, end in SOONER.items()} | {
-    "capsule_branch": {"Continuation/points": 3}, "capsule_stuck_folds": {"Continuation/points": 2},
-    "drop_folds": {"Continuation/second values": [5]}, "drop_shear_folds": {"Continuation/points": 5},
-    "drop_shear_hysteresis": {"Continuation/points": 4}, "sphere_constriction": {"Time/fixed step": 0.01},
-    "decks/sphere_free_in_throat": {"Time/fixed step": 0.01},
-    "decks/sphere_held_in_throat": {SIDE: 6, "Channel/axial elements": 80}}
+SOONER = ("capsule_capillary", "capsule_constriction", "capsule_cylinder", "capsule_step", "shear_paper", "suspension")
+SHORTER = {name: {"Time/final time": ENDS[name]} for name in SOONER} | scenes_of(__file__)
 
 # Series that count work. The table shows their totals and ratios; they are not compared as results. Series in seconds
 # are left out because they measure the machine. Step sizes and estimated errors are compared only if the runs have the

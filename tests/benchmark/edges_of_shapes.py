@@ -1,65 +1,35 @@
-"""Maps of the atlas about the particle itself: where there is no steady shape any more."""
+"""Maps of the atlas about the membrane (compression, pre-stress, bending, the form of the load) and about the particle
+itself, where there is no steady shape any more."""
 
-from package import SIDE, numpy, plt, style
+from package import PENS, RATIO, SHEAR, SIDE, line, numpy, panels, plt, style, ticks
+import waves
 from tanktread.figures import pushed as stuck
 
-DROP = "inputs/drop_folds.yaml"
-SHEARED = "inputs/drop_shear_folds.yaml"
-CAPSULE = "inputs/capsule_branch.yaml"
-STUCK = "inputs/capsule_stuck_folds.yaml"
-WRINKLED = "inputs/capsule_wrinkles.yaml"
-ELLIPSOID = {"Flow/type": "planar hyperbolic", "Particle/shape": "ellipsoid",
-             "Particle/semi-axes": "[1.8785, 0.7653, 0.6957]",
-             "Particle/initial shape/stretch": "[0.7167, 1.1541, 1.2091]"}  # 2.7 : 1.1 : 1, at first 1.6 : 1.05 : 1
-INFLATED = {"Continuation/second parameter": "Membrane/pre-inflation",
-            "Continuation/second values": "[0.15, 0.2, 0.3, 0.4]", "Continuation/points": 12}
+MARKS = (8, "x"), (10, "o-")  # n, the coarse and the fine mesh
 
 
-def bursting(study):
-    """Where drops and capsules burst: the folds of their steady branches
-
-    Left: critical Ca = μEa/σ of drops against their viscosity in uniaxial extension (-x₁/2, -x₂/2, x₃)E and planar
-    hyperbolic flow (x₁, 0, -x₃)E, and in simple shear at the rate E. Right: critical Ca = μEa/G_s of neo-Hookean
-    capsules in uniaxial extension against the pre-inflation of the radius. Each is a fold that `Continuation` locates
-    and goes on with; the table has D there, and how far the mesh before is off.
-
-    Survives: smaller Ca. Skalak membranes harden, and have no fold."""
-    curves = [("drop, uniaxial", DROP, {}, (5, 6)), ("drop, planar", DROP, ELLIPSOID, (5, 6)),
-              ("drop, shear", SHEARED, {}, (7, 8)), ("neo-Hookean capsule, uniaxial", CAPSULE, INFLATED, (10, 12))]
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
+def bursting(study, given):
+    figure, (left, right) = panels(given)
     rows = []
-    for (name, deck, settings, meshes), color in zip(curves, style.RUNS):
+    for (name, (deck, settings, meshes)), color in zip(given["cases"].items(), style.RUNS):
         axis = right if "capsule" in name else left
-        coarse, fine = (folds(study.run(deck, settings | {SIDE: n})) for n in meshes)
+        coarse, fine = (folds(study.run(f"inputs/{deck}.yaml", settings | {SIDE: n})) for n in meshes)
         for second, ca, d in fine.T:
             before = coarse[1:, coarse[0] == second]
             apart = abs(before[:, 0] - (ca, d)) if before.size else (numpy.nan, numpy.nan)
             rows.append((name, second, ca, d, apart[0] / ca, apart[1]))
-        axis.plot(coarse[0], coarse[1], "x", color=color, ms=6, label=f"{name}: n = {meshes[0]}")
-        axis.plot(fine[0], fine[1], "o-", color=color, ms=3.5, label=f"n = {meshes[1]}")
-    left.set(xscale="log", xlabel="viscosity ratio λ")
-    right.set_xlabel("pre-inflation")
+        axis.plot(*coarse[:2], "x", color=color, ms=6, label=f"{name}: n = {meshes[0]}")
+        axis.plot(*fine[:2], "o-", color=color, ms=3.5, label=f"n = {meshes[1]}")
     for axis in left, right:
-        axis.set_ylabel("Ca at the fold")
         axis.legend()
-    return figure, ["scene", "viscosity_ratio_or_pre_inflation", "capillary_number", "taylor_parameter",
-                    "change_of_ca_relative", "change_of_d"], rows
+    return figure, rows
 
 
-def squeezing(study):
-    """The largest capsule that a constriction lets through
-
-    Neo-Hookean capsules, pre-inflated by 0.1, in a round channel that narrows to half its radius, the pressure drop
-    held. Smaller ones than the curve tells pass; larger ones rest before the throat, on a branch of steady shapes whose
-    fold, in the pressure drop or in the size, is that curve. Ca = μV/G_s, V being the mean velocity of the empty
-    channel. The wall repels the membrane, so that a film stays; broken line: a membrane without film and friction,
-    axisymmetric, whatever the viscosity ratio (postproc/tanktread-figure stuck).
-
-    Survives: a smaller or softer capsule, a larger pressure drop."""
-    figure, axis = plt.subplots(figsize=(5.6, 4.2))
-    values, rows = "[0.65, 0.6, 0.55]", []
-    for n, mark in ((8, "x"), (10, "o-")):
-        outcome = study.run(STUCK, {SIDE: n, "Continuation/second values": values})
+def squeezing(study, given):
+    figure, (axis,) = panels(given)
+    rows = []
+    for n, mark in MARKS:
+        outcome = study.run(given["deck"], given["base"] | {SIDE: n})
         size, ca, _ = folds(outcome)
         axis.plot(size, ca, mark, color=style.RUNS[0], ms=4, label=f"Continuation, n = {n}")
         rows += [("with a film", n, *pair) for pair in zip(size, ca)]
@@ -67,28 +37,18 @@ def squeezing(study):
            for radius in size]
     axis.plot(size, dry, "--", color=style.RUNS[1], label="without film and friction")
     rows += [("without film", "", *pair) for pair in zip(size, dry)]
-    axis.set(xlabel="radius of the capsule over that of the channel", ylabel="Ca above which it passes")
     axis.legend()
-    return figure, ["kind", "elements_per_side", "radius", "capillary_number"], rows
+    return figure, rows
 
 
-def wrinkling(study):
-    """How stiff against bending a capsule must be to stay smooth
-
-    Neo-Hookean capsule in uniaxial extension, not pre-inflated: its waist is compressed. Left: the bending number
-    E_b/(G_s R²) at which the leading mode of the smooth steady shape has the rate zero, for waves with an even and with
-    an odd number of crests around the axis (Spectrum/parity), on two meshes; below, they grow. Right: that mode along
-    the waist; the table has the number of its crests.
-
-    Survives: a stiffer membrane, pre-inflation."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.2))
-    numbers, rows = (0.1, 0.15, 0.2, 0.3), []
-    for parity, name, color in (("[1, 1, 1]", "even", style.RUNS[0]), ("[-1, 1, 1]", "odd", style.RUNS[1])):
-        for n, mark in ((8, "x"), (10, "o-")):
+def wrinkling(study, given):
+    figure, (left, right) = panels(given)
+    rows = []
+    for (name, parity), color in zip(given["cases"].items(), style.RUNS):
+        for n, mark in MARKS:
             onsets = []
-            for ca in numbers:
-                bending, outcome = onset(study, {"Membrane/capillary number": ca, "Spectrum/parity": parity,
-                                                 SIDE: n})
+            for ca in given["values"]:
+                bending, outcome = onset(study, given["deck"], parity | {"Membrane/capillary number": ca, SIDE: n})
                 angle, wave = along_waist(outcome)
                 crests = number_of_crests(angle, wave)
                 onsets.append(bending)
@@ -96,58 +56,108 @@ def wrinkling(study):
                 if ca == 0.2 and n == 10:
                     right.plot(angle, wave / abs(wave).max(), color=color,
                                label=f"{name}: {crests} crests, Ca = {ca:g}")
-            left.plot(numbers, onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
-    left.set(xlabel="Ca", ylabel="E_b/(G_s R²) at onset")
-    right.set(xlabel="angle around the axis (degrees)", ylabel="radial part of the mode", ylim=(-1.1, 1.6))
+            left.plot(given["values"], onsets, mark, color=color, ms=5, label=f"{name}, n = {n}")
+    right.set_ylim(-1.1, 1.6)
     for axis in left, right:
         axis.legend()
-    return figure, ["crests_even_or_odd", "elements_per_side", "capillary_number", "bending_number", "crests"], rows
+    return figure, rows
 
 
-def onset(study, settings):
-    """The bending number at which the leading rate passes through zero, by secants of its logarithm; and the last
-    run."""
-    known = []
-    while len(known) < 9:
-        number = (0.0045, 0.005)[len(known)] if len(known) < 2 else secant(known)
-        outcome = study.run(WRINKLED, settings | {"Membrane/bending number": float(f"{number:.6g}")})
-        known.append((number, outcome.series["leading_rate"][-1]))
-        if abs(known[-1][1]) < 5e-3:
+def onset(study, deck, settings):
+    """Returns the bending number at which the leading rate passes through zero, by secants of its logarithm, and the
+    last run."""
+    numbers, rates = [0.0045, 0.005], []
+    while len(rates) < 9:
+        if len(rates) > 1:
+            step = -rates[-1] * numpy.log(numbers[-1] / numbers[-2]) / (rates[-1] - rates[-2])
+            numbers.append(numbers[-1] * numpy.exp(numpy.clip(step, -0.3, 0.3)))
+        number = numbers[len(rates)]
+        outcome = study.run(deck, settings | {"Membrane/bending number": float(f"{number:.6g}")})
+        rates.append(outcome.series["leading_rate"][-1])
+        if abs(rates[-1]) < 5e-3:
             break
-    return known[-1][0], outcome
-
-
-def secant(known):
-    (a, f), (b, g) = known[-2:]
-    step = -g * numpy.log(b / a) / (g - f)
-    return b * numpy.exp(numpy.clip(step, -0.3, 0.3))
+    return number, outcome
 
 
 def along_waist(outcome):
-    """Angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis."""
+    """Returns angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis."""
     shot = outcome.run.snapshots()[-1]
-    kinds = outcome.run.summary["modes"]
-    rates = {k: outcome.series[f"rate_{k}"][-1] for k, kind in kinds.items() if kind == "shape"}
-    mode = shot.fields[f"mode {max(rates, key=rates.get)}"]
+    rates = {k: outcome.series[f"rate_{k}"][-1] for k, kind in outcome.run.summary["modes"].items() if kind == "shape"}
     waist = numpy.flatnonzero(abs(shot.points[:, 2]) < 1e-9)
-    angle = numpy.degrees(numpy.arctan2(shot.points[waist, 1], shot.points[waist, 0]))
+    place = shot.points[waist, :2]
+    angle = numpy.degrees(numpy.arctan2(place[:, 1], place[:, 0]))
     order = numpy.unique(numpy.round(angle, 6), return_index=True)[1]
-    across = shot.points[waist, :2] / numpy.linalg.norm(shot.points[waist, :2], axis=1)[:, None]
-    return angle[order], (mode[waist, :2] * across).sum(axis=1)[order]
+    mode = shot.fields[f"mode {max(rates, key=rates.get)}"][waist, :2]
+    return angle[order], ((mode * place).sum(axis=1) / numpy.linalg.norm(place, axis=1))[order]
 
 
 def number_of_crests(angle, wave):
-    """The degree of the largest Fourier coefficient."""
+    """Returns the degree of the largest Fourier coefficient."""
     turns = numpy.radians(angle)
     weight = (numpy.roll(turns, -1) - numpy.roll(turns, 1)) % (2 * numpy.pi)
     return int(numpy.argmax([abs((weight * wave * numpy.exp(-1j * m * turns)).sum()) for m in range(30)]))
 
 
 def folds(outcome):
-    """Rows: the second parameter, critical Ca and D there; as far as the run came."""
+    """Returns rows of the second parameter, critical Ca and D there, as far as the run came."""
     series = outcome.series
     return numpy.array([series[name][series["fold"] > 0]
                         for name in ("second_parameter", "parameter", "taylor_surface")])
 
 
-MAPS = [bursting, squeezing, wrinkling]
+def load_form(study, given):
+    figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.6), sharey=True)
+    rows = []
+    for axis, ca in zip(axes, given["values"]):
+        for load, color, offset in (("strong", style.RUNS[1], -0.19), ("weak", style.RUNS[0], 0.19)):
+            for k, (mesh, settings) in enumerate(given["cases"].items()):
+                outcome = study.run(given["deck"], given["base"] | settings | {"Membrane/capillary number": ca,
+                                                                       "Membrane/load": load})
+                axis.barh(k + offset, outcome.end, 0.34, color=color, label=f"{load} form" if k == 0 else None)
+                axis.annotate(f"{outcome.end:.2f}", (0, k + offset), (3, 0), textcoords="offset points", va="center",
+                              fontsize=7.5, color="white")
+                rows.append((ca, mesh, load, outcome.end, outcome.message[:100]))
+        axis.set(title=f"Ca = {ca:g}", xlabel="time reached", xlim=(0, given["base"]["Time/final time"]))
+        axis.grid(visible=False, axis="y")
+    axes[1].plot(0.664, 1 - 0.19, "x", color=style.INK, ms=7, mew=1.6, label="paper")
+    axes[0].set_yticks(range(len(given["cases"])), given["cases"])
+    axes[0].invert_yaxis()
+    figure.legend(*axes[1].get_legend_handles_labels(), loc="upper right", ncols=3)
+    return figure, rows
+
+
+def buckling(study, given):
+    cures = {"bending 0.02 R²G_s": lambda ca: {"Membrane/bending modulus": 0.02 / ca}, "as it is": lambda ca: {},
+             "pre-inflation 5 %": lambda ca: {"Membrane/pre-inflation": 0.05}, "λ = 5": lambda ca: {RATIO: 5.0}}
+    figure, (left, right) = panels(given)
+    rows = []
+    for (name, cure), pen in zip(cures.items(), PENS):
+        for n, dash in (6, ":"), (9, "-"):
+            jobs = {ca: given["base"] | cure(ca) | {SIDE: n, "Membrane/capillary number": ca} for ca in given["values"]}
+            rows += line(study, (left, right), f"{name}, n = {n}", SHEAR, jobs, (
+                "smallest_tension", lambda one: waves.Spectrum(one.run.snapshots()[-1]).short), linestyle=dash, **pen)
+    left.axhline(0, color=style.FAINT, linewidth=0.9)
+    for axis in left, right:
+        ticks(axis, given["values"])
+    left.legend(loc="best", fontsize=7)
+    return figure, rows
+
+
+def pre_inflation(study, given):
+    capillary, inflation = given["values"], given["inflations"]
+    pairs = [(ca, alpha) for alpha in inflation for ca in capillary]
+    outcomes = study.all([(SHEAR, given["base"] | {"Membrane/capillary number": ca, "Membrane/pre-inflation": alpha})
+                          for ca, alpha in pairs])
+    smallest = [outcome.series["smallest_tension"].min() if outcome.done else numpy.nan for outcome in outcomes]
+    field = numpy.reshape(smallest, (len(inflation), len(capillary)))
+    bound = numpy.nanmax(abs(field))
+    x, y = numpy.meshgrid(capillary, 100 * numpy.array(inflation))
+    figure, (axis,) = panels(given)
+    filled = axis.contourf(x, y, field, numpy.linspace(-bound, bound, 21), cmap=style.SIGNED)
+    axis.contour(x, y, field, [0], colors=style.INK, linewidths=1.4)
+    axis.plot(x, y, ".", color=style.INK, ms=2)
+    ticks(axis, capillary)
+    axis.grid(visible=False)
+    figure.colorbar(filled, label="smallest tension over G_s")
+    rows = [(*pair, value) for pair, value in zip(pairs, smallest)]
+    return figure, rows

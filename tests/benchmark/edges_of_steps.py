@@ -1,8 +1,9 @@
-"""Maps of the atlas about steps in time: how long may they be?"""
+"""Maps of the atlas about steps in time, how long they may be, and about accuracy asked for: of a step, of the
+integrals, of the volume."""
 
 import math
 
-from package import PENS, RATIO, SHEAR, SIDE, line, plt, studies, style, ticks, worst
+from package import PENS, RATIO, SHEAR, SIDE, line, lines, panels, studies, style, ticks, worst
 
 SCHEMES = {"bs3": "explicit, BS3", "crank-nicolson": "Crank–Nicolson, sub-iterated (the paper's)",
            "rkc2": "stabilised explicit, RKC2", "tr-bdf2": "TR-BDF2, quasi-Newton", "bdf3": "BDF3, quasi-Newton"}
@@ -35,10 +36,10 @@ def stiffness(ca, n, dilatation=1.0):
     return (1 + dilatation) * 2 * n / (2 * ca)
 
 
-def draw_steps(study, variable, label, values, of):
-    """Draws the largest step of every scheme over a variable; of(value): settings and stiffness."""
-    figure, axis = plt.subplots(figsize=(7.6, 5))
-    rows = []
+def draw_steps(study, given, of):
+    """Draws the largest step of every scheme over the values of a variable; of(value): settings and stiffness."""
+    figure, (axis,) = panels(given)
+    values, rows = given["values"], []
     for scheme in SCHEMES:
         found = [(value, *largest_step(study, of(value)[0], scheme, of(value)[1])) for value in values]
         rows += [(scheme, *one) for one in found]
@@ -49,69 +50,84 @@ def draw_steps(study, variable, label, values, of):
                               textcoords="offset points", color=PEN[scheme]["color"])
     axis.plot(values, [2.51 / of(value)[1] for value in values], color=style.FAINT, linestyle=(0, (4, 3)),
               label="2.51/ρ, ρ by (4.5)")
-    ticks(axis, values, label)
-    axis.set(yscale="log", ylabel="largest step that works, times rate")
+    ticks(axis, values)
     axis.legend(loc="best")
-    return figure, ["scheme", variable, "largest_step", "note"], rows
+    return figure, rows
 
 
-def fixed_step(study):
-    """Largest fixed step against the capillary number
-
-    Neo-Hookean capsule in shear, 98 control points. The stiffer the membrane (small Ca) the faster it answers: an
-    explicit scheme must follow the fastest mode of the mesh, whose rate is ρ ~ 1/Ca, so Δt ρ ≤ 2.51; the sub-iteration
-    of Crank–Nicolson contracts only for Δt ρ < 2, and eight of them have to do, implicit or not.
-
-    Survives: an iteration that knows the stiff part (TR-BDF2 or BDF3 with the frozen Jacobian), whose step is bound by
-    accuracy; as many stages as the step needs (RKC2). Arrows: no edge found."""
-    return draw_steps(study, "capillary_number", "Ca", [0.02, 0.05, 0.1, 0.2, 0.3, 0.6],
-                      lambda ca: ({SIDE: 4, "Membrane/capillary number": ca}, stiffness(ca, 4)))
+def fixed_step(study, given):
+    return draw_steps(study, given, lambda ca: ({SIDE: 4, "Membrane/capillary number": ca}, stiffness(ca, 4)))
 
 
-def fixed_step_dilatation(study):
-    """Largest fixed step against Skalak's C
-
-    Skalak capsule in shear, Ca = 0.3, 98 control points. A membrane that resists dilatation has ρ ~ (1 + C)/Ca.
-
-    Survives: the frozen Jacobian, which holds the dilatation."""
-    return draw_steps(study, "area_dilatation", "C", [1.0, 3.0, 10.0, 30.0, 100.0], lambda c: (
+def fixed_step_dilatation(study, given):
+    return draw_steps(study, given, lambda c: (
         {SIDE: 4, "Membrane/law": "Skalak", "Membrane/area dilatation": c}, stiffness(0.3, 4, c)))
 
 
-def fixed_step_mesh(study):
-    """Largest fixed step against the mesh
-
-    Neo-Hookean capsule in shear, Ca = 0.3. Forces of the membrane grow with the wave number, k of (4.5), and finer
-    meshes carry shorter waves: the largest step of an explicit scheme and of the sub-iteration halves when elements do.
-
-    Survives: the frozen Jacobian, at a cost that does not depend on the mesh."""
-    return draw_steps(study, "elements_per_side", "n, elements along a side of the cube", [3, 4, 5, 6],
-                      lambda n: ({SIDE: n}, stiffness(0.3, n)))
+def fixed_step_mesh(study, given):
+    return draw_steps(study, given, lambda n: ({SIDE: n}, stiffness(0.3, n)))
 
 
-def viscosity_ratio(study):
-    """Viscosity ratio towards 0 and 100
-
-    Neo-Hookean capsule in shear, Ca = 0.3, 98 control points, to γ̇t = 1. The equation (2.4) for the velocity, (1 − (1
-    − λ)H) v = …, loses its breathing mode as λ → 0 and eleven more modes, rigid motions and strains, grow slow as λ →
-    ∞. Left: iterations that its solver needs, with the flux taken out of its unknowns (`exact`, `flux`) and without
-    (`none`). Right: the volume error of the run.
-
-    Survives: the flux constraint inside the system, which holds the breathing mode; its iterations stay bounded at both
-    ends."""
-    figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.4))
-    base = {SIDE: 4, "Time/final time": 1.0, "Membrane/load measure": "current", "Output/interval": 1.0}
-    rows = []
-    for constraint, pen in zip(("exact", "none"), PENS):
-        jobs = {ratio: (SHEAR, base | {RATIO: ratio, "Volume/constraint": constraint})
-                for ratio in (0.001, 0.01, 0.1, 0.3, 3.0, 10.0, 30.0, 100.0)}
-        rows += line(study, axes, f"Volume/constraint `{constraint}`", jobs, (
-            lambda one: one.counts["velocity_iterations"] / one.counts["evaluations"],
-            lambda one: max(worst("volume_error")(one), 1e-16), lambda one: one.counts["steps"]), **pen)
-    axes[0].set(xscale="log", xlabel="λ", ylabel="iterations a velocity", ylim=(0, None))
+def viscosity_ratio(study, given):
+    figure, axes = panels(given)
+    rows = lines(study, axes, given, lambda ratio: {RATIO: ratio}, (
+        lambda one: one.counts["velocity_iterations"] / one.counts["evaluations"],
+        lambda one: max(worst("volume_error")(one), 1e-16), lambda one: one.counts["steps"]))
+    axes[0].set_ylim(0, None)
     axes[0].legend(loc="best")
-    axes[1].set(xscale="log", yscale="log", xlabel="λ", ylabel="largest volume error")
-    return figure, ["constraint", "viscosity_ratio", "iterations_a_velocity", "volume_error", "steps", "message"], rows
+    return figure, rows
 
 
-MAPS = [fixed_step, fixed_step_dilatation, fixed_step_mesh, viscosity_ratio]
+def _error(reference):
+    return lambda outcome: max(abs(outcome.final["taylor_inertia"] - reference.final["taylor_inertia"]), 1e-9)
+
+
+def step_tolerance(study, given):
+    reference = study.run(SHEAR, given["base"] | {"Time/tolerance": 1e-7})
+    measures = _error(reference), lambda one: one.counts["evaluations"], worst("volume_error")
+    figure, axes = panels(given)
+    rows = []
+    for scheme in ("bs3", "rkc2", "tr-bdf2", "bdf3"):
+        for constraint, words, dash, shown in ("exact", "", "-", axes[:2]), ("flux", ", `flux`", ":", axes):
+            settings = given["base"] | {"Time/scheme": scheme, "Volume/constraint": constraint}
+            jobs = {tolerance: settings | {"Time/tolerance": tolerance} for tolerance in given["values"]}
+            rows += line(study, shown, SCHEMES[scheme] + words, SHEAR, jobs, measures, linestyle=dash, **PEN[scheme])
+    for axis in axes:
+        axis.invert_xaxis()
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles[::2], labels[::2], loc="upper right", ncols=3, fontsize=7, title="dotted: constraint `flux`",
+                  title_fontsize=7, bbox_to_anchor=(1, 1.012), labelspacing=0.25)
+    return figure, rows
+
+
+def quadrature_tolerance(study, given):
+    figure, (left, right) = panels(given)
+    rules = (left, {tolerance: {"Quadrature/tolerance": tolerance} for tolerance in given["tolerances"]}), (
+        right, {points: {"Quadrature/points": points, "Quadrature/rule": "fixed"} for points in given["points"]})
+    rows = []
+    for (name, settings), pen in zip(given["cases"].items(), PENS):
+        settings = given["base"] | settings
+        reference = study.run(SHEAR, settings | {"Quadrature/tolerance": 1e-9})
+        for axis, chosen in rules:
+            jobs = {value: settings | rule for value, rule in chosen.items()}
+            rows += line(study, [axis], f"D, constraint `{name}`", SHEAR, jobs, (_error(reference),), **pen)
+            if name == "none":
+                rows += line(study, [axis], "volume, constraint `none`", SHEAR, jobs, (worst("volume_error"),),
+                             linestyle=":", mfc="none", **pen)
+    left.invert_xaxis()
+    left.legend(loc="best")
+    return figure, rows
+
+
+def volume_drift(study, given):
+    figure, (left, right) = panels(given)
+    rows = []
+    for (constraint, settings), color in zip(given["cases"].items(), style.RUNS):
+        series = study.run(SHEAR, given["base"] | settings).series
+        t, error, d = (series[name] for name in ("time", "volume_error", "taylor_inertia"))
+        left.plot(t[1:], abs(error[1:]).clip(1e-16), color=color, label=f"`{constraint}`")
+        right.plot(t, d, color=color)
+        rows += [(constraint, *values) for values in zip(t, error, d)]
+    left.legend(loc="center right")
+    right.set_ylim(0.45, 0.6)
+    return figure, rows

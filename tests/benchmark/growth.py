@@ -12,12 +12,16 @@ import json
 import pathlib
 import subprocess
 
-from package import answer, command_line, expect, numpy, plt, style, table, tanktread
+from package import answer, command_line, expect, footer, numpy, plt, style, table, tanktread
 from tanktread.files import parsed as read
 
 PARTS = {"evaluation s": "whole evaluation", "layer far s": "far sum", "layer near s": "near elements",
          "layer self s": "own elements", "layer setup s": "nodes and forces", "projection s": "sparse solves",
          "membrane s": "membrane"}
+CHARTS = [  # title, lines with the far sum as chosen, lines with the dense one
+    ("processor seconds of one velocity evaluation", PARTS, {"evaluation s": "whole, far sum dense"}),
+    ("pairs of points in the far sum", {"far interactions": "far sum as chosen"}, {"far interactions": "dense"}),
+    ("bytes, mesh and fit not counted", {"bytes peak": "highest", "bytes kept": "kept"}, {})]
 KEYS = [*PARTS, "volume s", "setup s", "far interactions", "far error", "bytes kept", "bytes peak"]
 
 
@@ -57,24 +61,17 @@ def main():
                      if one["name"].startswith("growth/") and f"/dense:{kind}" in one["name"]] for kind in (0, 1))
     table(["", *(f"{one['points']:.0f}" for one in trees), "exponent"], (
         [key, *(f"{one[key]:.4g}" for one in trees), exponent(trees, key, arguments.least)] for key in KEYS))
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(12.6, 4.4))
-    colors, faint = style.RUNS + [style.FAINT, style.INK], [style.FAINT]
-    draw(left, trees, PARTS, arguments.least, colors)
-    draw(middle, trees, {"far interactions": "far sum as chosen"}, arguments.least, colors)
-    draw(right, trees, {"bytes peak": "highest", "bytes kept": "kept"}, arguments.least, colors)
-    if dense:
-        draw(left, dense, {"evaluation s": "whole, far sum dense"}, arguments.least, faint, "o--")
-        draw(middle, dense, {"far interactions": "dense"}, arguments.least, faint, "o--")
-    for axis, title in ((left, "processor seconds of one velocity evaluation"),
-                        (middle, "pairs of points in the far sum"), (right, "bytes, mesh and fit not counted")):
+    figure, axes = plt.subplots(1, 3, figsize=(12.6, 4.4))
+    for axis, (title, of_trees, of_dense) in zip(axes, CHARTS):
+        draw(axis, trees, of_trees, arguments.least, style.RUNS + [style.FAINT, style.INK])
+        draw(axis, dense, of_dense if dense else {}, arguments.least, [style.FAINT], "o--")
         axis.set(title=title, xlabel="control points")
         axis.legend(loc="upper left")
-    left.set_ylim(top=left.get_ylim()[1] * 1000)  # room for the legend
+    axes[0].set_ylim(top=axes[0].get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)
-    figure.supxlabel("\\$ build/release/tests/benchmark/benchmark --benchmark_filter=growth "
-                     "--benchmark_out=growth.json; tests/benchmark/growth.py growth.json\n"
-                     "a capsule in shear on one core, tolerance 1e-5; far sum against the dense one: "
-                     f"at most {error:.1e} of the largest velocity", x=0.01, ha="left", fontsize=7.5)
+    footer(figure, "$ build/release/tests/benchmark/benchmark --benchmark_filter=growth --benchmark_out=growth.json; "
+           "tests/benchmark/growth.py growth.json\na capsule in shear on one core, tolerance 1e-5; far sum against the "
+           f"dense one: at most {error:.1e} of the largest velocity")
     style.save(figure, arguments.output)
 
 

@@ -85,17 +85,6 @@ def of_velocity(study, key, tolerances, reference, scenes):
     print_errors(study, f"error/`{key}` at", tolerances, scenes, cells)
 
 
-def quadrature(study):
-    of_velocity(study, "Quadrature/tolerance", [1e-2, 1e-3, 1e-4, 1e-5], 1e-9, SCENES["deformed"])
-
-
-def solvers(study):
-    # without a linear system, and with one that the checkpoint holds the solution of
-    without = "capsule in shear", "adaptive mesh, ratio 0.2"
-    of_velocity(study, "Solvers/tolerance", [1e-3, 1e-4, 1e-6, 1e-8], 1e-12,
-                {name: one for name, one in SCENES["deformed"].items() if name not in without})
-
-
 def distance(one, other, k=32):
     """Returns the largest distance of the nodes of one snapshot from the surface of another: to tangent planes of a
     fine grid on each cell."""
@@ -134,23 +123,26 @@ def of_shape(study, key, tolerances, reference, scenes, also):
     print_errors(study, f"error/`{key}` (iterations of NOX) at", tolerances, scenes, cells)
 
 
-def steady(study):
-    of_shape(study, "Steady/tolerance", [1e-4, 1e-6, 1e-8], 1e-11, SCENES["steady"], {"Solvers/tolerance": 1e-12})
-
-
-def periodic(study):
-    of_shape(study, "Periodic/tolerance", [1e-3, 1e-4, 1e-5], 1e-7, SCENES["periodic"], {
-        "Periodic/period": 9.1, "Periodic/turn": 180, SIDE: 4, "Time/tolerance": 1e-8, "Time/steady tolerance": 1e-30})
+# without a linear system, and with one that the checkpoint holds the solution of
+WITHOUT = "capsule in shear", "adaptive mesh, ratio 0.2"
+TABLES = {  # name: function, and its arguments
+    "quadrature": (of_velocity, "Quadrature/tolerance", [1e-2, 1e-3, 1e-4, 1e-5], 1e-9, SCENES["deformed"]),
+    "solvers": (of_velocity, "Solvers/tolerance", [1e-3, 1e-4, 1e-6, 1e-8], 1e-12,
+                {name: one for name, one in SCENES["deformed"].items() if name not in WITHOUT}),
+    "adaptation": (adaptation,),
+    "steady": (of_shape, "Steady/tolerance", [1e-4, 1e-6, 1e-8], 1e-11, SCENES["steady"], {"Solvers/tolerance": 1e-12}),
+    "periodic": (of_shape, "Periodic/tolerance", [1e-3, 1e-4, 1e-5], 1e-7, SCENES["periodic"], {
+        "Periodic/period": 9.1, "Periodic/turn": 180, SIDE: 4, "Time/tolerance": 1e-8, "Time/steady tolerance": 1e-30})}
 
 
 def main():
-    tables = {one.__name__: one for one in (quadrature, solvers, adaptation, steady, periodic)}
     parser = command_line(__doc__)
-    parser.add_argument("tables", nargs="*", choices=[[], *tables], help="(default: all)")
+    parser.add_argument("tables", nargs="*", choices=[[], *TABLES], help="(default: all)")
     studies.arguments(parser, "results/other_tolerances", limit=1800, jobs=2)
     parsed = parser.parse_args()
-    for name in parsed.tables or tables:
-        tables[name](studies.study(parsed))
+    for name in parsed.tables or TABLES:
+        print_table, *given = TABLES[name]
+        print_table(studies.study(parsed), *given)
 
 
 if __name__ == "__main__":

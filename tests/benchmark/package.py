@@ -1,6 +1,5 @@
 """Imported first: the package tanktread of this source directory, and what several measurements use."""
 
-import hashlib
 import pathlib
 import sys
 
@@ -19,18 +18,14 @@ except ModuleNotFoundError as error:
 plt = style.plt
 plt.switch_backend("Agg")
 plt.rcParams.update(style.STYLE)
-INPUTS = tanktread.SOURCE / "inputs"
+INPUTS, SCENES = tanktread.SOURCE / "inputs", tanktread.SOURCE / "tests/benchmark/scenes"
 SHEAR, RATIO, SIDE = "inputs/shear_neo_hookean.yaml", "Particle/viscosity ratio", "Surface/elements per side"
 PENS = [{"color": color, "marker": mark, "ms": 5} for color, mark in zip(style.RUNS, style.MARKS)]
-__all__ = ["INPUTS", "PENS", "RATIO", "SHEAR", "SIDE", "answer", "changed", "command_line", "draw", "expect",
-           "final", "interpolation", "line", "numpy", "plt", "scenes_of", "studies", "style", "table", "tanktread",
-           "ticks", "worst", "yaml"]
 
 
 def scenes_of(script):
     """Returns the content of scenes/<name of the script>.yaml."""
-    path = pathlib.Path(script)
-    return tanktread.files.parsed(path.parent / "scenes" / f"{path.stem}.yaml", kind=dict)
+    return tanktread.files.parsed(SCENES / f"{pathlib.Path(script).stem}.yaml", kind=dict)
 
 
 def table(head, rows):
@@ -40,35 +35,33 @@ def table(head, rows):
         print("| " + " | ".join(f"{one:.3g}" if isinstance(one, float) else str(one) for one in row) + " |", flush=True)
 
 
-def changed(deck, directory, without=(), **sections):
-    """Writes a copy of a deck of inputs/ without some sections and with others replaced, and returns its path."""
-    content = {key: value for key, value in yaml.safe_load((INPUTS / f"{deck}.yaml").read_text())["Tanktread"].items()
-               if key not in without}
-    text = yaml.safe_dump({"Tanktread": content | sections})
-    path = pathlib.Path(directory) / "decks" / f"{deck}_{hashlib.sha1(text.encode()).hexdigest()[:8]}.yaml"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-    return path.resolve()
-
-
-def line(study, axes, name, jobs, measures, x=None, **pen):
+def line(study, axes, name, deck, jobs, measures, x=None, **pen):
     """Makes the runs of a line of a figure and draws it: one measure on each of the axes, which may be fewer.
 
-    `jobs`: {x: (deck, settings)}; `measures`: functions of an outcome, and `x` another one for what is not known
-    before. Returns rows (name, x, *measures, message), with NaN of runs that did not come to their end."""
+    `jobs`: {x: settings}; `measures`: functions of an outcome, or names of series, whose last values are drawn; `x`: a
+    series whose last values are drawn instead of those of `jobs`. Returns rows (name, x, *measures, message), with NaN
+    of runs that did not come to their end."""
     rows = []
-    for at, (deck, settings) in jobs.items():
+    for at, settings in jobs.items():
         outcome = study.run(deck, settings)
-        values = [measure(outcome) if outcome.done else numpy.nan for measure in measures]
-        rows.append((name, x(outcome) if x and outcome.done else at, *values, outcome.message[:100]))
+        values = [numpy.nan] * len(measures)
+        if outcome.done:
+            values = [outcome.final[one] if isinstance(one, str) else one(outcome) for one in measures]
+            at = outcome.final[x] if x else at
+        rows.append((name, at, *values, outcome.message[:100]))
     for axis, column in zip(axes, zip(*(row[2:-1] for row in rows))):
         axis.plot([row[1] for row in rows], column, label=name, **pen)
     return rows
 
 
-def final(name):
-    """Returns the measure of `line` that is the last value of a series."""
-    return lambda outcome: outcome.final[name]
+def lines(study, axes, given, settings_at, measures, x=None):
+    """Draws a `line` of each of the `cases` of a map (scenes/atlas.yaml), {name: settings}, over its `values`, with the
+    settings that `settings_at` returns for each. Returns the rows of all lines."""
+    rows = []
+    for (name, settings), pen in zip(given["cases"].items(), PENS):
+        jobs = {value: given["base"] | settings | settings_at(value) for value in given["values"]}
+        rows += line(study, axes, name, given["deck"], jobs, measures, x, **pen)
+    return rows
 
 
 def worst(name):
@@ -76,8 +69,21 @@ def worst(name):
     return lambda outcome: numpy.nanmax(abs(outcome.series[name]))
 
 
-def ticks(axis, values, label):
+def panels(given):
+    """Returns the figure of a map of the atlas, of its `size` (inches), and its `axes` with labels and scales."""
+    figure, (axes,) = plt.subplots(1, len(given["axes"]), figsize=given["size"], squeeze=False)
+    for axis, look in zip(axes, given["axes"]):
+        axis.set(**look)
+    return figure, axes
+
+
+def ticks(axis, values):
     """Marks these values on a logarithmic axis x, and no others."""
-    axis.set(xscale="log", xlabel=label)
+    axis.set_xscale("log")
     axis.set_xticks(values, [f"{value:g}" for value in values])
-    axis.minorticks_off()
+    axis.set_xticks([], minor=True)
+
+
+def footer(figure, text, **look):
+    """Writes a text that may hold a command, after a dollar sign, below a figure."""
+    figure.supxlabel(text.replace("$ ", r"\$ "), x=0.01, ha="left", fontsize=7.5, **look)

@@ -13,13 +13,9 @@ Prints a table; decks without the series with the sentence that says why. Runs a
 
 import sys
 
-from package import INPUTS, answer, numpy, table, tanktread, yaml
+from package import INPUTS, answer, numpy, scenes_of, table, tanktread, yaml
 
-ENDS = {"suspension": 0.4, "sheared_suspension": 0.4, "capsule_stuck": 30, "capsule_capillary": 2, "capsule_bend": 2,
-        "capsule_lifted_from_wall": 4, "shear_paper": 1, "capsule_step": 2, "capsule_expansion": 3,
-        "red_cell_treading": 0.02, "viscous_membrane": 4, "hyperbolic_skalak_ca0.8": 3, "drop_four_roll": 4,
-        "capsule_constriction": 1, "shear_neo_hookean_ca0.6": 6, "shear_neo_hookean_ca0.45": 6, "capsule_cylinder": 2,
-        "oscillating_shear": 2, "capsule_treading": 2}
+ENDS = scenes_of(__file__)
 MESHES = {"elements per side", "azimuthal elements", "meridional elements", "axial elements"}
 
 

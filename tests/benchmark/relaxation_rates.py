@@ -12,18 +12,12 @@ kept under results/relaxation_rates.
 
 import sys
 
-from package import RATIO, SIDE, answer, expect, numpy, table, tanktread
+from package import RATIO, SCENES, SIDE, answer, expect, numpy, table, tanktread
 
 HARMONICS = range(2, 7)
 LARGEST_ODD = 8  # n
-SCENES = {"drop, viscosity ratio 0.1": 0.1, "drop, viscosity ratio 1": 1.0, "drop, viscosity ratio 10": 10.0,
+SPHERES = {"drop, viscosity ratio 0.1": 0.1, "drop, viscosity ratio 1": 1.0, "drop, viscosity ratio 10": 10.0,
           "capsule, slow": None, "capsule, fast": None}
-DECK = """Tanktread:
-  Flow: {type: quiescent}
-  Particle: {shape: sphere}
-  Quadrature: {tolerance: 1.0e-7}
-  Solvers: {projection: least squares}
-"""
 
 
 def drop_rate(l, ratio):
@@ -42,26 +36,26 @@ def capsule_rates(l, dilatation=3.0):
 
 
 def exact(scene, l):
-    return drop_rate(l, SCENES[scene]) if SCENES[scene] else float(capsule_rates(l)[scene.endswith("fast")])
+    return drop_rate(l, SPHERES[scene]) if SPHERES[scene] else float(capsule_rates(l)[scene.endswith("fast")])
 
 
-def modes(study, deck, scene, n, odd):
+def modes(study, scene, n, odd):
     """Returns the rates of the modes nearest to the middle of the harmonics', without rigid motions and the volume."""
-    membrane = {"Membrane/law": "surface tension", "Membrane/surface tension": 1.0} if SCENES[scene] else {
+    membrane = {"Membrane/law": "surface tension", "Membrane/surface tension": 1.0} if SPHERES[scene] else {
         "Membrane/shear modulus": 1.0}
     rates = [exact(scene, l) for l in HARMONICS]
     number = 5 * n  # slow modes of higher harmonics, which bend only, lie between those of the harmonics looked at
     spectrum = {"Spectrum/number": number, "Spectrum/near": (min(rates) + max(rates)) / 2}
-    outcome = study.run(deck, membrane | spectrum | {RATIO: SCENES[scene] or 1.0, SIDE: n}
+    outcome = study.run(SCENES / "relaxation_rates.yaml", membrane | spectrum | {RATIO: SPHERES[scene] or 1.0, SIDE: n}
                         | ({"Spectrum/parity": [1, 1, -1]} if odd else {}))
     expect(outcome.done, outcome.message)
     kinds = outcome.run.summary["modes"]
     return [outcome.final[f"rate_{k}"] for k in range(1, number + 1) if kinds[str(k)] == "shape"]
 
 
-def rows(study, deck, meshes):
-    for scene in SCENES:
-        found = {(n, odd): modes(study, deck, scene, n, odd) for odd in (False, True) for n in meshes
+def rows(study, meshes):
+    for scene in SPHERES:
+        found = {(n, odd): modes(study, scene, n, odd) for odd in (False, True) for n in meshes
                  if not odd or n <= LARGEST_ODD}
         for l in HARMONICS:
             value, odd = exact(scene, l), l % 2 == 1
@@ -76,10 +70,7 @@ def rows(study, deck, meshes):
 def main():
     meshes = sorted(map(int, sys.argv[1:])) or [6, 8, 12]
     study = tanktread.Study(directory="results/relaxation_rates")
-    study.directory.mkdir(parents=True, exist_ok=True)
-    deck = study.directory.resolve() / "deck.yaml"
-    deck.write_text(DECK)
-    table(["scene", "harmonic", "rate", *(f"n = {n}" for n in meshes), "order"], rows(study, deck, meshes))
+    table(["scene", "harmonic", "rate", *(f"n = {n}" for n in meshes), "order"], rows(study, meshes))
 
 
 if __name__ == "__main__":

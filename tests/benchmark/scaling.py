@@ -26,18 +26,14 @@ import tempfile
 from package import answer, command_line, table, tanktread, yaml
 
 
-def summaries(program, deck, settings, ranks, copies):
-    """Returns the summaries of some runs that are made at the same time."""
+def summaries(words, ranks, copies):
+    """Returns the summaries of some runs that are made at the same time, by a program with its arguments."""
+    words = ["mpirun", "--bind-to", "none", "-n", str(ranks), *words, "--quiet", "--output"]
     with tempfile.TemporaryDirectory() as where:
         places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
-        runs = []
-        for place in places:
-            words = ["mpirun", "--bind-to", "none", "-n", str(ranks), str(program), str(deck), "--quiet", "--output",
-                     str(place), *(word for setting in settings for word in ("--set", setting))]
-            runs.append(subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                                         env=os.environ | tanktread.ENVIRONMENT))
-        said = [run.communicate()[1] for run in runs]
-        for place, error in zip(places, said):
+        runs = [subprocess.Popen([*words, place], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                 env=os.environ | tanktread.ENVIRONMENT) for place in places]
+        for place, error in zip(places, [run.communicate()[1] for run in runs]):
             if not (place / "summary.yaml").exists():
                 sys.exit(error.strip() or "the run wrote no summary")
         return [yaml.safe_load((place / "summary.yaml").read_text()) for place in places]
@@ -60,23 +56,23 @@ def main():
                         help="measure what the machine gives (default: do)")
     parser.add_argument("--program", default=tanktread.PROGRAM)
     arguments = parser.parse_args()
-    settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
-    many = arguments.ranks
+    words, many = [arguments.program, arguments.deck], arguments.ranks
+    for setting in arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]:
+        words += ["--set", setting]
     kinds = {"one": (1, 1), "many": (many, 1)} | ({"side": (1, many)} if arguments.capacity else {})
     runs = {kind: [] for kind in kinds}
     for _ in range(arguments.repeat):
         for kind, (ranks, copies) in kinds.items():
-            runs[kind] += summaries(arguments.program, arguments.deck, settings, ranks, copies)
-    times = {kind: [seconds(summary) for summary in of_kind] for kind, of_kind in runs.items()}
-    titles = ["1 rank", f"{many} ranks", "ratio"] + (["capacity", "efficiency"] if arguments.capacity else [])
+            runs[kind] += summaries(words, ranks, copies)
+    times = {kind: list(map(seconds, of_kind)) for kind, of_kind in runs.items()}
     rows = []
     for phase in times["one"][0]:
-        middle = {kind: statistics.median(run.get(phase, 0) for run in all_runs) for kind, all_runs in times.items()}
-        if min(middle.values()) > 0:
-            ratio = middle["one"] / middle["many"]
-            capacity = [many * middle["one"] / middle["side"]] if arguments.capacity else []
-            rows.append([phase, middle["one"], middle["many"], ratio, *capacity, *(ratio / one for one in capacity)])
-    table(["seconds", *titles], rows)
+        middle = [statistics.median(run.get(phase, 0) for run in all_runs) for all_runs in times.values()]
+        if min(middle) > 0:
+            one, several, *side = middle
+            capacity = [many * one / each for each in side]
+            rows.append([phase, one, several, one / several, *capacity, *(one / several / each for each in capacity)])
+    table(["seconds", "1 rank", f"{many} ranks", "ratio", *["capacity", "efficiency"] * arguments.capacity], rows)
     one, other = runs["one"][0], runs["many"][0]
     for key in ("evaluations", "solver_iterations", "kernel_evaluations_far"):
         print(f"{key}: {one['counts'][key]:.10g} and {other['counts'][key]:.10g}")

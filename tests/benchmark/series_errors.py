@@ -18,21 +18,11 @@ is below 1e-9. Results are kept in DIR and are found again.
 import sys
 
 from compare import WORK, natural_unit
-from package import INPUTS, RATIO, SIDE, answer, command_line, expect, interpolation, numpy, studies, table
+from package import INPUTS, SIDE, answer, command_line, expect, interpolation, numpy, scenes_of, studies, table
 from power_balance import MESHES, finer
 
 DEFAULTS = {SIDE: 6, "Time/tolerance": 1e-4, "Quadrature/tolerance": 1e-4}
-SCENES = {  # name: (deck, settings in addition to DEFAULTS)
-    "capsule in shear": ("shear_neo_hookean", {}),
-    "viscosity ratio 5": ("shear_neo_hookean", {RATIO: 5}),
-    "with bending": ("shear_bending", {}),
-    "shear to and fro": ("oscillating_shear", {}),
-    "refined capsule": ("hyperbolic_skalak", {}),
-    "red cell": ("red_cell_si", {}),
-    "drop": ("drop_uniaxial", {}),
-    "capsule in tube": ("capsule_in_tube", {}),
-    "lattice": ("sheared_lattice", {}),
-}
+SCENES = scenes_of(__file__)
 # Series that are no results: times, work, step sizes, numbers of points and particles, positions of gaps, which jump
 # between gaps of equal width, and estimates of errors, whose exact value is 0.
 LEFT_OUT = WORK | {"time", "time_step", "step_error", "n_control_points", "particle_at_wall", "first_of_gap",
@@ -85,9 +75,9 @@ def errors(first, fine):
 
 def errors_of(study, name):
     """Returns the errors of a scene, whose two runs are made."""
-    deck = INPUTS / f"{SCENES[name][0]}.yaml"
+    deck = INPUTS / f"{SCENES[name]['deck']}.yaml"
     surface = "Particles/defaults/Surface" if "\n  Particles:" in deck.read_text() else "Surface"
-    base, runs = {key.replace("Surface", surface): value for key, value in DEFAULTS.items()} | SCENES[name][1], []
+    base, runs = {key.replace("Surface", surface): value for key, value in DEFAULTS.items()} | SCENES[name]["set"], []
     for _ in range(2):
         outcome = study.run(deck, base)
         expect(outcome.done, f"{name}: {outcome.message}")

@@ -14,58 +14,24 @@ minutes on finer ones.
 """
 
 from compare import differences_of
-from package import RATIO, SIDE, answer, command_line, studies, table
+from package import answer, command_line, scenes_of, studies, table
 
-EXPLICIT = {"Time/scheme": "bs3"}  # no Jacobian, from which the iterated wall is missing
-MANY = {"Solvers/velocity/Belos/Maximum Iterations": 600}  # without a preconditioner
-FIVE = {RATIO: 5, SIDE: 6}
-SMALL = {"Solvers/tolerance": 1e-12, "Time/fixed step": 5e-4, "Time/final time": 2.5e-3, "Output/interval": 1e-3,
-         "Time/iteration tolerance": 1e-12, "Time/newton tolerance": 1e-10, "Time/newton iterations": 30}
-COARSE = {RATIO: 5, SIDE: 4, "Tube/azimuthal elements": 8, "Tube/axial elements": 12}
-BENT = {RATIO: 5, SIDE: 3, "Channel/azimuthal elements": 8, "Time/final time": 1e-3}
-TUBE = [{"Solvers/tube": form} | (MANY if form == "block" else {})
-        for form in ("schur", "block triangular", "block diagonal", "block")]
-LAYER = [{"Solvers/double layer": form} for form in ("assembled", "matrix-free")]
-FROZEN = [{"Solvers/frozen operator": "assembled"}]
+TABLES = scenes_of(__file__)
 
 
-def krylov(system, preconditioners):
+def krylov(system, choices):
     """Returns the choices of a preconditioner and a Krylov solver for a system."""
     return [chosen | {f"Solvers/{system}/iterative solver": solver, f"Solvers/{system}/Belos/Maximum Iterations": 2000}
             # without a preconditioner GMRES is not restarted
             | ({f"Solvers/{system}/Belos/Num Blocks": 600} if (solver, *chosen.values()) == ("GMRES", "block") else {})
-            for chosen in preconditioners for solver in ("GMRES", "BICGSTAB", "TFQMR")]
-
-
-def preconditioners(system):
-    return [{f"Solvers/{system}/preconditioner": kind} for kind in ("none", "neumann", "recycled")]
-
-
-# table: {scene: (deck, settings, choices)}; the first choice is what the others are compared with
-TABLES = {
-    "krylov": {
-        "velocity, ratio 5": ("shear_neo_hookean", FIVE | {"Time/final time": 1},
-                              krylov("velocity", preconditioners("velocity"))),
-        "blocks in a tube, ratio 5": ("capsule_capillary", FIVE | {"Time/final time": 0.5}, krylov("velocity", [
-            {"Solvers/tube": form} for form in ("block", "block diagonal", "block triangular")])),
-        "implicit step": ("shear_neo_hookean", {SIDE: 6, "Time/final time": 1},
-                          krylov("implicit step", preconditioners("implicit step")))},
-    "eliminations": {
-        "capsule in a tube, ratio 5": ("capsule_in_tube", SMALL | COARSE, TUBE + FROZEN),
-        "capsule in a channel, ratio 5": ("capsule_bend", SMALL | BENT | EXPLICIT, [
-            {"Solvers/wall": form} for form in ("factored", "iterative")]),
-        "capsule in shear, ratio 5": ("shear_neo_hookean", SMALL | FIVE, LAYER + FROZEN),
-        "two settling spheres": ("settling_spheres", SMALL, [{**one, "Solvers/velocity/preconditioner": kind}
-                                                             for one in LAYER for kind in ("own", "none", "recycled")]),
-        "capsule, drop and ball": ("capsule_drop_ball", SMALL, LAYER + FROZEN)},
-}
+            for chosen in choices for solver in ("GMRES", "BICGSTAB", "TFQMR")]
 
 
 def rows(study, scenes):
-    for scene, (deck, settings, choices) in scenes.items():
-        first = None
-        for choice in choices:
-            outcome = study.run(f"inputs/{deck}.yaml", settings | choice)
+    for scene, given in scenes.items():
+        choices, first = given["choices"], None
+        for choice in krylov(given["krylov"], choices) if "krylov" in given else choices:
+            outcome = study.run(f"inputs/{given['deck']}.yaml", given["settings"] | choice)
             words = ", ".join(f"`{key.split('/')[-1]}: {value}`" for key, value in choice.items() if "Belos" not in key)
             if not outcome.done:
                 yield [scene, words, outcome.message, "", "", "", ""]
@@ -81,7 +47,7 @@ def rows(study, scenes):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("table", choices=TABLES)
+    parser.add_argument("table", choices=("krylov", "eliminations"))
     studies.arguments(parser, "results/solvers", limit=None)
     parsed = parser.parse_args()
     table(["scene", "choice", "iterations per velocity", "per implicit step", "seconds in the systems",

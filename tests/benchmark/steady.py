@@ -13,9 +13,11 @@ that starts from the end of the run has the same labels. `branch`: the branch of
 without its spectrum, from Ca = 0.1 up to the fold and back.
 """
 
+import hashlib
 import itertools
+import pathlib
 
-from package import SIDE, answer, changed, command_line, expect, table, tanktread, yaml
+from package import INPUTS, SIDE, answer, command_line, expect, table, tanktread, yaml
 
 FOLDER, KRYLOV = "results/steady", ["GMRES", "BICGSTAB", "TFQMR"]
 SEARCHED = ["drop_steady", "capsule_steady"]
@@ -24,9 +26,20 @@ STATES = {"capsule_in_tube": "velocity_x1"} | dict.fromkeys(  # deck: series tha
      "hyperbolic_skalak_ca0.8", "shear_neo_hookean"), "taylor_surface")
 
 
+def changed(deck, without=(), **sections):
+    """Writes a copy of a deck of inputs/ without some sections and with others replaced, and returns its path."""
+    content = {key: value for key, value in yaml.safe_load((INPUTS / f"{deck}.yaml").read_text())["Tanktread"].items()
+               if key not in without}
+    text = yaml.safe_dump({"Tanktread": content | sections})
+    path = pathlib.Path(FOLDER) / "decks" / f"{deck}_{hashlib.sha1(text.encode()).hexdigest()[:8]}.yaml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path.resolve()
+
+
 def solvers(study):
     def evaluations(scene, settings):
-        outcome = study.run(changed(scene, FOLDER, ("Spectrum", "Expect")), settings | {
+        outcome = study.run(changed(scene, ("Spectrum", "Expect")), settings | {
             SIDE: 6, "Quadrature/tolerance": 1e-7, "Steady/iterations": 40})
         return outcome.counts["evaluations"] if outcome.done else "-"
 
@@ -48,11 +61,9 @@ def states(study):
     def row(name, series):
         deck = yaml.safe_load(tanktread.deck_at(f"inputs/{name}.yaml").read_text())["Tanktread"]
         time, without = deck.get("Time", {}) | until, ("Expect", "Output", "Adaptation", "Time")
-        plain, tight = (study.run(changed(name, FOLDER, without, Time=one), {})
-                        for one in (time, time | {"tolerance": 1e-7}))
+        plain, tight = (study.run(changed(name, without, Time=one), {}) for one in (time, time | {"tolerance": 1e-7}))
         begun = deck.get("Particle", {}) | {"initial shape": {"run": str(tight.directory.resolve())}}
-        rest, after = (study.run(changed(name, FOLDER, without, **more), {})
-                       for more in (search, search | {"Particle": begun}))
+        rest, after = (study.run(changed(name, without, **one), {}) for one in (search, search | {"Particle": begun}))
         lost = [one.message for one in (rest, plain, tight, after) if not one.done]
         if lost:
             return [f"`{name}`", lost[0], *[""] * 6]
@@ -66,7 +77,7 @@ def states(study):
 
 
 def branch(study):
-    deck = changed("drop_branch", FOLDER, ("Spectrum", "Expect", "Solvers"))
+    deck = changed("drop_branch", ("Spectrum", "Expect", "Solvers"))
 
     def row(n):
         outcome = study.run(deck, {"Membrane/capillary number": 0.1, SIDE: n})

@@ -16,11 +16,10 @@ def main():
     parser.add_argument("-o", "--output", default="strong_form.png", metavar="FILE", help="default: %(default)s")
     arguments = parser.parse_args()
     weak, strong = map(tanktread.run, arguments.runs or [made("weak"), made("strong")])
-    figure = plt.figure(figsize=(9.6, 4.6))
-    grid = figure.add_gridspec(2, 2, width_ratios=[1.1, 1])
-    upper = figure.add_subplot(grid[0, 0])
-    draw_series(upper, figure.add_subplot(grid[1, 0], sharex=upper), weak, strong)
-    draw_sections(figure.add_subplot(grid[:, 1]), weak, strong)
+    figure, axes = plt.subplot_mosaic("AC;BC", figsize=(9.6, 4.6), width_ratios=[1.1, 1])
+    axes["A"].sharex(axes["B"])
+    draw_series(axes["A"], axes["B"], weak, strong)
+    draw_sections(axes["C"], weak, strong)
     style.save(figure, arguments.output)
 
 
@@ -49,13 +48,12 @@ def draw_series(upper, lower, weak, strong):
 
 def draw_sections(axis, weak, strong):
     *_, regular, last = strong.snapshots()
-    for name, run, shot, color, width in (("weak form", weak, weak.snapshot_at(regular.time), style.RUNS[0], 1.6),
-                                          ("strong form", strong, regular, style.RUNS[1], 1.6),
-                                          ("strong form", strong, last, style.RUNS[1], 0.7)):
-        shot = shot.scaled(run)
+    for name, shot, color, width in (("weak", weak.snapshot_at(regular.time).scaled(weak), style.RUNS[0], 1.6),
+                                     ("strong", regular.scaled(strong), style.RUNS[1], 1.6),
+                                     ("strong", last.scaled(strong), style.RUNS[1], 0.7)):
         pieces = draw.section(shot, (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2)
         axis.add_collection(LineCollection(pieces, colors=color, linewidths=width,
-                                           label=f"{name}, t = {shot.time:.4g}"))
+                                           label=f"{name} form, t = {shot.time:.4g}"))
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
     axis.margins(y=0.15)  # room for the legend

@@ -14,9 +14,11 @@ The steady shape depends on the capillary number alone, so fits to samples and p
 NODES runs a law, interpolated by Chebyshev polynomials in its logarithm; how far it is from runs in between is printed.
 """
 
+import functools
 import itertools
 import os
 import pathlib
+import types
 
 from package import INPUTS, SIDE, answer, command_line, expect, numpy, table, tanktread
 import scipy.interpolate
@@ -44,8 +46,7 @@ def profile(study, settings):
 
 def radii(curve):
     """Returns the distances of a curve from its centroid at ANGLES."""
-    points = curve.even(3000)
-    points = numpy.vstack([points, points[:1]])
+    points = curve.even(3000)[numpy.arange(3001) % 3000]  # closed
     angle = numpy.unwrap(numpy.arctan2(points[:, 1], points[:, 0]))
     spline = scipy.interpolate.CubicSpline(angle, numpy.linalg.norm(points, axis=1), bc_type="periodic")
     return spline(angle[0] + (ANGLES - angle[0]) % (2 * numpy.pi))
@@ -57,14 +58,15 @@ class Emulator:
     messages, count = ["beyond the emulator"], 0
 
     def __init__(self, study, law):
+        self._low, self._high = SPANS[law]
         low, high = numpy.log(SPANS[law])
         nodes = (low + high) / 2 + (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(NODES) + 0.5) / NODES)
         jobs = [LAWS[law] | FINE | {"Membrane/shear modulus": float(numpy.exp(-node))} for node in nodes]
         study.all([(DECK, job) for job in jobs])
-        self._span, self._known = SPANS[law], {}
         values = numpy.array([radii(profile(study, job)) for job in jobs])
         self._radii = scipy.interpolate.BarycentricInterpolator(nodes, values)
 
+    @functools.cache
     def curve(self, capillary_number):
         radius = self._radii(numpy.log(capillary_number))
         points = numpy.column_stack([radius * numpy.cos(ANGLES), radius * numpy.sin(ANGLES)])
@@ -72,22 +74,18 @@ class Emulator:
 
     def all(self, jobs):
         numbers = [settings["Flow/mean velocity"] / settings["Membrane/shear modulus"] for _, settings in jobs]
-        for number in numbers:
-            if number not in self._known:
-                self._known[number] = [self.curve(number)] if self._span[0] < number < self._span[1] else None
-        return [self._known[number] for number in numbers]
+        return [[self.curve(number)] if self._low < number < self._high else None for number in numbers]
 
 
 def experiments(curves, errors):
-    """Experiments of a fit with these points (n, 2), one a speed."""
+    """Returns experiments of a fit with these points (n, 2), one a speed."""
     found = []
     for speed, points, error in zip(SPEEDS, curves, errors):
-        datum = fit_data.OutlineData.__new__(fit_data.OutlineData)
-        datum.name, datum.at, datum.axis, datum.scale, datum.error = f"speed {speed}", None, 1, 1.0, error
-        datum.points, datum.count, datum.places, datum.free_scale, datum.scale_error = points, len(points), 2, False, 0
-        one = fit_data.Experiment.__new__(fit_data.Experiment)
-        one.name, one.settings, one.unknowns, one.data = datum.name, {"Flow/mean velocity": speed}, [], [datum]
-        found.append(one)
+        datum = fit_data.OutlineData.__new__(fit_data.OutlineData)  # whose constructor reads a file
+        vars(datum).update(name=f"speed {speed}", at=None, axis=1, scale=1.0, error=error, points=points,
+                           count=len(points), places=2, free_scale=False, scale_error=0)
+        found.append(types.SimpleNamespace(name=datum.name, settings={"Flow/mean velocity": speed}, unknowns=[],
+                                           data=[datum]))
     return found
 
 
@@ -117,7 +115,7 @@ def told(law, noise, fits):
             sum(other.runs_test() < -2 for _, other in fits)]
 
 
-def print_rows(study, seed, rows):
+def print_rows(study, rows, number, seed):
     """Makes the emulators, prints how far they are from runs in between, and a table of the rows."""
     made = {law: Emulator(study, law) for law in LAWS}
     for law, one in made.items():
@@ -126,7 +124,7 @@ def print_rows(study, seed, rows):
         off = max(abs(one.curve(number).distances(curve.even(POINTS))).max() for number, curve in known.items())
         print(f"{law}: the emulator is {off / RADIUS:.1e} of the radius from runs in between")
     table(["law", "noise", "mean error of G_s ± its standard error", "spread", "stated error", "spread / stated",
-           "law told (AIC + 10)", "runs test refuses the other"], rows(made, numpy.random.default_rng(seed)))
+           "law told (AIC + 10)", "runs test refuses the other"], rows(made, numpy.random.default_rng(seed), number))
 
 
 def both(law, data, made):
@@ -134,21 +132,18 @@ def both(law, data, made):
     return tuple(fitted(name, data, made[name], 1.5 * MODULUS) for name in (law, other))
 
 
-def samples(study, number):
-    def rows(made, generator):
-        for law, noise in itertools.product(LAWS, (0.005, 0.02)):
-            truth, fits = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS], []
-            for _ in range(number):
-                noisy = [points + noise * RADIUS * generator.standard_normal(points.shape) for points in truth]
-                fits.append(both(law, experiments(noisy, [noise * RADIUS] * len(SPEEDS)), made))
-            yield told(law, f"{100 * noise:g} %", fits)
-
-    print_rows(study, 1, rows)
+def samples(made, generator, number):
+    for law, noise in itertools.product(LAWS, (0.005, 0.02)):
+        truth, fits = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS], []
+        for _ in range(number):
+            noisy = [points + noise * RADIUS * generator.standard_normal(points.shape) for points in truth]
+            fits.append(both(law, experiments(noisy, [noise * RADIUS] * len(SPEEDS)), made))
+        yield told(law, f"{100 * noise:g} %", fits)
 
 
 def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
-    """A bright field with a dark particle 0.8 of it wide, blurred (pixels) and with noise (of the contrast); and the
-    length of a pixel."""
+    """Returns a bright field with a dark particle 0.8 of it wide, blurred (pixels), with noise (of the contrast); the
+    length of a pixel; and the position of the particle."""
     length = numpy.ptp(curve.even(400), axis=0).max() / (0.8 * pixels)
     shift = generator.uniform(-3, 3, 2)
     x = ((numpy.arange(pixels * finer) + 0.5) / finer - pixels / 2) * length
@@ -161,26 +156,23 @@ def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
     return image + 0.5 * noise * generator.standard_normal(image.shape), length, shift
 
 
-def pictures(study, number):
-    def rows(made, generator):
-        for law in LAWS:
-            truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
-            for _ in range(number):
-                points, errors = [], []
-                for curve in truth:
-                    image, length, shift = picture(curve, generator)
-                    found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
-                    points.append(((found - (image.shape[0] - 1) / 2) * [1, -1] + shift) * length)
-                    off.extend(curve.distances(points[-1]) / length)
-                    errors.append(error * length)
-                fits.append(both(law, experiments(points, errors), made))
-            yield told(law, f"pictures; edge {numpy.mean(off):+.3f} ± {numpy.std(off):.3f} pixel", fits)
-
-    print_rows(study, 2, rows)
+def pictures(made, generator, number):
+    for law in LAWS:
+        truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
+        for _ in range(number):
+            points, errors = [], []
+            for curve in truth:
+                image, length, shift = picture(curve, generator)
+                found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
+                points.append(((found - (image.shape[0] - 1) / 2) * [1, -1] + shift) * length)
+                off.extend(curve.distances(points[-1]) / length)
+                errors.append(error * length)
+            fits.append(both(law, experiments(points, errors), made))
+        yield told(law, f"pictures; edge {numpy.mean(off):+.3f} ± {numpy.std(off):.3f} pixel", fits)
 
 
 def write(study, directory):
-    """Outlines of a finer mesh than the fit's, in units of 0.01 tube radii, with noise of half a per cent of the
+    """Writes outlines of a finer mesh than the fit's, in units of 0.01 tube radii, with noise of half a per cent of the
     radius, each at a place of its own."""
     generator = numpy.random.default_rng(5)
     directory.mkdir(parents=True, exist_ok=True)
@@ -209,11 +201,9 @@ def main():
         write(study, parsed.write)
     if parsed.exact:
         exact(study)
-    if parsed.samples:
-        samples(study, parsed.samples)
-    if parsed.pictures:
-        pictures(study, parsed.pictures)
-    return 0
+    for seed, rows, number in (1, samples, parsed.samples), (2, pictures, parsed.pictures):
+        if number:
+            print_rows(study, rows, number, seed)
 
 
 if __name__ == "__main__":

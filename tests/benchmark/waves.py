@@ -27,11 +27,6 @@ class Spectrum:
         return self.power[SMOOTH + 1:].sum() / self.power.sum()
 
 
-def short_share(run, field="load"):
-    """Returns the share of the power of short waves in the last snapshot of a run."""
-    return Spectrum(run.snapshots()[-1], field).short
-
-
 def harmonics(directions, largest):
     """Yields (degree, order from 0, values) of the orthonormal spherical harmonics at unit vectors (3, n), by the
     stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long."""
@@ -55,14 +50,13 @@ def _on_the_sphere(snapshot, field, gauss=6):
     nodes = nodes - nodes.mean(0)
     values = numpy.asarray(snapshot.fields[field]).reshape(len(nodes), -1)
     points, weights = numpy.polynomial.legendre.leggauss(gauss)
-    places, areas, found = [], [], []
+    found = []
     for p, _, cells in by_degree(snapshot.cells):
         table, by_s, by_t = (grid_table(p, (points + 1) / 2, *order) for order in ((0, 0), (1, 0), (0, 1)))
         place, along, across = (one @ nodes[cells] for one in (table, by_s, by_t))
         solid = abs((place * numpy.cross(along, across)).sum(-1)) / numpy.linalg.norm(place, axis=-1) ** 3
-        places.append(place.reshape(-1, 3))
-        areas.append((solid * numpy.outer(weights, weights).ravel() / 4).ravel())
-        found.append((table @ values[cells]).reshape(-1, values.shape[1]))
-    places = numpy.concatenate(places)
+        areas = solid * numpy.outer(weights, weights).ravel() / 4
+        found.append((place.reshape(-1, 3), areas.ravel(), (table @ values[cells]).reshape(-1, values.shape[1])))
+    places, areas, values = map(numpy.concatenate, zip(*found))
     radii = numpy.linalg.norm(places, axis=1)
-    return radii.mean(), (places / radii[:, None]).T, numpy.concatenate(areas), numpy.concatenate(found)
+    return radii.mean(), (places / radii[:, None]).T, areas, values

@@ -16,7 +16,7 @@ import itertools
 import math
 import pathlib
 
-from package import answer, command_line, expect, interpolation, numpy, plt, studies, style
+from package import answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
 from tanktread.files import parsed as read
 from tanktread.files import table
 
@@ -29,29 +29,20 @@ class Scene:
     """A study file. `choices`: {choice: {option: settings}}; the first option is the default."""
 
     def __init__(self, path, curves):
-        text = read(path)
+        text = {"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path)
         self.name, self.title, self.curves = pathlib.Path(path).stem, text["title"], curves
-        self.decks, self.base, self.error = text["deck"], text.get("base", {}), text["error"]
-        self.choices = {choice: {name: keys or {} for name, keys in options.items()}
-                        for choice, options in text["choices"].items()}
-        self.levels, self.pairs = text.get("levels", [1e-3, 1e-4, 1e-5]), text.get("pairs")
+        self.decks, self.base, self.error, self.choices, self.levels, self.pairs = (
+            text[key] for key in ("deck", "base", "error", "choices", "levels", "pairs"))
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
         # the choice that colours stand for: the one with most options, the scheme before others
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
 
-    def label(self, picked):
-        """Returns what differs from the default."""
-        return ", ".join(option for choice, option in picked.items() if option != self.default[choice]) or "default"
-
     def combinations(self, differences, only):
         """Yields the default, then every pick that differs from it in one choice, then in two."""
-        yield self.default
         choices = [choice for choice in self.choices if not only or choice in only]
-        groups = [(choice,) for choice in choices]
-        if differences > 1:
-            groups += [pair for pair in itertools.combinations(choices, 2)
-                       if self.pairs is None or set(pair) in map(set, self.pairs)]
-        for group in groups:
+        for group in itertools.chain(*(itertools.combinations(choices, k) for k in range(differences + 1))):
+            if len(group) == 2 and self.pairs is not None and set(group) not in map(set, self.pairs):
+                continue
             others = [[option for option in self.choices[choice] if option != self.default[choice]] for choice in group]
             for options in itertools.product(*others):
                 yield self.default | dict(zip(group, options))
@@ -76,16 +67,17 @@ class Scene:
         for picked in self.combinations(differences, only):
             settings = dict(self.base)
             for choice, option in picked.items():
-                settings |= self.choices[choice][option]
+                settings |= self.choices[choice][option] or {}
             ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
-            outcome, label = study.run(decks, settings, ranks), self.label(picked)
+            outcome = study.run(decks, settings, ranks)
+            label = ", ".join(one for choice, one in picked.items() if one != self.default[choice]) or "default"
             if not outcome.done:
                 print(f"{label}: {outcome.status}: {outcome.message}", flush=True)
                 rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
                 continue
-            points.append(Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
-                                outcome.kernel_evaluations, outcome.counts.get("evaluations", 1)))
-            one = points[-1]
+            one = Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
+                        outcome.kernel_evaluations, outcome.counts.get("evaluations", 1))
+            points.append(one)
             rows.append((*picked.values(), one.error, one.seconds, one.kernels, one.evaluations, ""))
             print(f"{label:44} error {one.error:.2e}  {one.seconds:7.2f} s  {one.kernels:.3g} kernel, "
                   f"{one.evaluations} velocity evaluations", flush=True)
@@ -100,10 +92,9 @@ def kind(option):
 
 def front(points, cost):
     """Returns the points that no other beats in both, by rising cost."""
-    best, kept = math.inf, []
+    kept = []
     for point in sorted(points, key=lambda one: (getattr(one, cost), one.error)):
-        if point.error < best:
-            best = point.error
+        if point.error < (kept[-1].error if kept else math.inf):
             kept.append(point)
     return kept
 
@@ -150,13 +141,10 @@ def report(scene, points):
         print(f"the default has error {default.error:.2e} for {mine:.4g} {unit}; the least for that is {least:.4g}, "
               f"{mine / least:.2f} times less, by {best.label} with error {best.error:.2e}")
     for level in scene.levels:
-        reaching = [one for one in points if one.error <= level]
-        if not reaching:
-            print(f"error {level:g}: none")
-            continue
-        best = min(reaching, key=lambda one: one.seconds)
-        print(f"error {level:g}: best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
-              f"{best.evaluations} velocity evaluations")
+        best = min((one for one in points if one.error <= level), key=lambda one: one.seconds, default=None)
+        print(f"error {level:g}: " + ("none" if best is None else (
+            f"best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
+            f"{best.evaluations} velocity evaluations")))
 
 
 def main():
@@ -187,11 +175,10 @@ def main():
         draw(axis, points, cost, colors, families, numbers)
     draw_legend(axes[2], colors, numbers)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
-    words = [parsed.study] + (["--differences", "1"] if parsed.differences == 1 else [])
-    words += ["--only", *parsed.only] if parsed.only else []
+    words = [parsed.study, *["--differences", "1"] * (parsed.differences == 1),
+             *(["--only", *parsed.only] if parsed.only else [])]
     against = f", against {scene.error['curve'] if parsed.curves else 'a finer run'}" if "curve" in scene.error else ""
-    figure.supxlabel(rf"\$ {studies.command_of(__file__, *words)}" f"\nerror: {scene.error.get('text', '')}{against}",
-                     x=0.01, ha="left", fontsize=7.5)
+    footer(figure, f"$ {studies.command_of(__file__, *words)}\nerror: {scene.error.get('text', '')}{against}")
     studies.write_table(parsed.output / f"{scene.name}.csv",
                         [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")

@@ -10,8 +10,7 @@ waves are degrees of 9 and more, which the flow does not force. Membranes withou
 unstable wave, so the shortest that elements carry grows fastest, about two elements long. Bending moduli in R^2 G_s.
 """
 
-
-from package import SHEAR, SIDE, answer, command_line, expect, interpolation, numpy, plt, studies, style
+from package import SHEAR, SIDE, answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
 import waves
 
 QUIET = 1e-3  # share of the load's power in waves below which there are none
@@ -23,30 +22,26 @@ def measured(study, n, modulus, parsed):
                             "Membrane/bending modulus": modulus / parsed.ca, "Output/interval": 0.5,
                             "Time/tolerance": 3e-4, "Particle/orientation": "[20.0, 35.0, 50.0]"})
     if not one.done:
-        return one, None, numpy.nan, numpy.nan
+        return one, None, None, None
     found = [waves.Spectrum(shot) for shot in one.run.snapshots() if shot.time >= parsed.time - 2]
     found[0].power = sum(each.power / each.power.sum() for each in found) / len(found)
-    t, d = one.series["time"], one.series["taylor_inertia"]
-    t, d = t[t >= parsed.time - 2], d[t >= parsed.time - 2]
-    return one, found[0], interpolation.mean(t, d), numpy.ptp(d)
-
-
-def element_size(n):
-    """Returns the mean size of an element on the unit sphere."""
-    return (4 * numpy.pi / (6 * n * n)) ** 0.5
+    late = one.series["time"] >= parsed.time - 2
+    d = one.series["taylor_inertia"][late]
+    return one, found[0], interpolation.mean(one.series["time"][late], d), numpy.ptp(d)
 
 
 def draw_row(study, axes, modulus, parsed):
     """Draws spectra, D over time and wavelengths of one modulus, and returns rows of the table."""
     left, middle, right = axes
     rows, lengths = [], []
-    for n, color in zip(parsed.meshes, style.RUNS):
+    sizes = (4 * numpy.pi / (6 * numpy.square(parsed.meshes))) ** 0.5  # mean sizes of elements on the unit sphere
+    for n, size, color in zip(parsed.meshes, sizes, style.RUNS):
         one, spectrum, mean, reach = measured(study, n, modulus, parsed)
         if spectrum is None:
             print(f"n = {n}: {one.message}")
             continue
         # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
-        wave, size = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax()), element_size(n)
+        wave = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax())
         waved, length = spectrum.short > QUIET, spectrum.wavelength(wave)
         rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.short, mean, reach,
                      one.seconds))
@@ -62,7 +57,6 @@ def draw_row(study, axes, modulus, parsed):
     left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
              ylabel="power of the load", ylim=(1e-9, 2))
     middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][6], 1.1 * rows[-1][6]))
-    sizes = numpy.array([element_size(n) for n in parsed.meshes])
     right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
     right.plot(1 / sizes, 2.25 * sizes, color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
     right.set(xlabel="elements a radius", ylabel="wavelength over R", ylim=(0, 0.9))
@@ -85,7 +79,7 @@ def main():
     figure, grid = plt.subplots(count, 3, figsize=(10.8, 3.4 * count), squeeze=False)
     rows = [row for axes, modulus in zip(grid, parsed.modulus) for row in draw_row(study, axes, modulus, parsed)]
     words = ["--meshes", *map(str, parsed.meshes), "--modulus", *(f"{m:g}" for m in parsed.modulus)]
-    figure.supxlabel(r"\$ " + studies.command_of(__file__, *words), x=0.01, ha="left", fontsize=7.5)
+    footer(figure, "$ " + studies.command_of(__file__, *words))
     studies.write_table(parsed.output / "wrinkles.csv", [
         "modulus", "elements_per_side", "element_size", "degree", "wavelength", "short_share",
         "taylor_inertia", "range", "seconds"], rows)
