@@ -136,6 +136,26 @@ def a_branch_coarsens_its_mesh_at_every_point():
     check(points.max() > 300 and points[-1] == points[0] == 56, points)
 
 
+def a_branch_in_the_radius_keeps_a_drop_with_surfactant_similar():
+    """With equal capillary, elasticity and Peclet numbers, shape and concentration do not depend on the radius; nor does the shape on the rate."""
+    text = """
+Tanktread:
+  Flow: {type: simple shear}
+  Membrane: {law: surface tension, capillary number: 0.1}
+  Interface: {surfactant: {elasticity number: 0.3, Peclet number: 3.0}}
+  Surface: {elements per side: 3}
+  Quadrature: {tolerance: 1.0e-6}
+  Steady: {tolerance: 1.0e-8}
+"""
+    for parameter in "Particle/radius", "Flow/shear rate":
+        run(deck(text), "--set", f"Continuation/parameter={parameter}", "--set", "Continuation/to=1.5", "--output", "similar", "--overwrite",
+            "--quiet")
+        check(series("similar", "parameter")[-1] == 1.5, series("similar", "parameter"))
+        for name in "surfactant_mass", "taylor_inertia", "largest_concentration":
+            values = series("similar", name)
+            check(abs(values - values[0]).max() < 1e-4, parameter, name, values)  # of quadrature and searches; it was 0.02 to 0.3
+
+
 def a_branch_without_a_fold_says_so():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.09", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[2]", "--output", "no_fold", "--quiet",

@@ -80,13 +80,13 @@ std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
   };
   add("choice", choice());
   add("fields", fields());
-  add("snapshots", snapshots());
   add("compression", compression(signs));
   add("stiffness", stiffness(signs));
   add("fold", fold(signs));
   add("stretch", stretch(signs));
   add("gap", gap(signs));
   add("volume", volume(signs));
+  add("snapshots", snapshots());
   return sentences;
 }
 
@@ -114,7 +114,7 @@ std::string Warnings::fields() const {
 
 std::string Warnings::snapshots() const {
   const double interval = scene_.snapshot_interval(), step = scene_.time.fixed_step.value_or(0);
-  if (scene_.lands_on_snapshots() || step <= interval * (1 + 1e-9)) return {};
+  if (!scene_.output.interval || scene_.lands_on_snapshots() || step <= interval * (1 + 1e-9)) return {};
   return formatted("Time/fixed step %g is longer than Output/interval %g: each step has at most one snapshot", step, interval);
 }
 

@@ -41,6 +41,20 @@ TEST(Warnings, AreSilentAboutAHealthyRun) {
                                                                 // that agrees with other methods to five digits
 }
 
+TEST(Warnings, TellOfSnapshotsThatAreLeftOut) {
+  Told often({"Time/fixed step=0.2", "Output/interval=0.1"}), seldom({"Time/fixed step=0.1", "Output/interval=0.1"});
+  EXPECT_TRUE(names(often.first(at(0.2, 0)), "Output/interval"));
+  EXPECT_EQ(seldom.first(at(0.1, 0)), "");
+}
+
+TEST(Warnings, TellOfSurfaceFieldsOfAnEarlierRun) {
+  const std::vector<std::string> clean{"Membrane/law=surface tension", "Particle/initial shape/run=."};
+  std::vector<std::string> covered = clean;
+  covered.emplace_back("Interface/surfactant/elasticity number=0.2");
+  EXPECT_TRUE(names(Told(covered).first(at(0.1, 0)), "surfactant"));
+  EXPECT_EQ(Told(clean).first(at(0.1, 0)), "");
+}
+
 TEST(Warnings, TellOfCompressionWithoutBendingOnce) {
   Told run({"Membrane/capillary number=0.1"});
   for (int k = 0; k < 10; ++k) EXPECT_EQ(run.first(at(0.1, -0.13)), "");  // the waves need time to grow
