@@ -90,6 +90,7 @@ class Run {
       resume(*resumed);
       return;
     }
+    for (const Warning& warning : first_warnings(scene_)) warn(warning);
     state_.x = particle_->start();
     prepare();
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);

@@ -19,6 +19,7 @@
 #include "motion/periodic.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
+#include "scene/particles/warnings.hpp"
 #include "scene/searches.hpp"
 #include "scene/series/surface_fields.hpp"
 #include "scene/particles/particle_system.hpp"
@@ -40,11 +41,13 @@ class SteadyRun {
         results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
     ranks_.measure(phases_);
     state_.x = system_->particle->start();
+    rest_ = system_->particle->body().rest, unstressed_ = system_->particle->body().unstressed;
   }
 
   int go() {
     stop_where_told();
     if (ranks_.rank() == 0 && !request_.quiet) std::fputs(plan_text(chosen_).c_str(), stdout);
+    for (const Warning& warning : first_warnings(scene_)) results_.warn(warning.sentence);
     clock_.emplace(phases_, "steady shape");
     try {
       failure_ = coupling::failure_of_any([this] { scene_.continuation.present ? follow() : look(); });
@@ -167,20 +170,13 @@ class SteadyRun {
       found_.point = *point;
       write();
       earlier_coarsenings_ = totals_.coarsenings;
-      if (ranks_.rank() == 0 && !request_.quiet) tell(k, *point);
+      if (ranks_.rank() == 0 && !request_.quiet)
+        std::printf("  %-11d %s%s\n", k, at({point->parameter, point->second}).c_str(), point->fold ? ", a fold" : "");
+      if (const std::string remark = scene_.continuation.remark(*point); !remark.empty()) results_.warn(remark);
     }
   }
 
-  void tell(int k, const motion::BranchPoint& point) const {
-    std::printf("  %-11d %s%s\n", k, at({point.parameter, point.second}).c_str(), point.fold ? ", a fold" : "");
-  }
-
-  /// Returns the parameters as text.
-  std::string at(const Parameters& parameters) const {
-    const std::optional<std::string>& second = scene_.continuation.second_parameter;
-    return formatted("%s %.8g", scene_.continuation.parameter.c_str(), parameters[0]) +
-           (second ? formatted(", %s %.8g", second->c_str(), parameters[1]) : "");
-  }
+  std::string at(const Parameters& parameters) const { return scene_.continuation.text(parameters[0], parameters[1]); }
 
   /// Makes this system the current one. The results then refer to its mesh; the previous system and its mesh may be deleted.
   void use(std::shared_ptr<System> system) {
@@ -199,6 +195,8 @@ class SteadyRun {
     const auto clock = phases_.time("set-up");
     auto made = std::make_shared<System>(with_field_lengths_of(scene_, request_.changed(settings_of(scene_.continuation, parameters))), ranks_,
                                          phases_, told_);
+    if (mesh_ && !(made->particle->body().rest == rest_ && made->particle->body().unstressed == unstressed_))
+      throw UserError("the mesh has adapted, but the resting or unstressed shape depends on this key: set Adaptation/enabled to false");
     if (mesh_) carry_to(*made, *mesh_);
     const int points = made->particle->body().space.n_points, expected = system_->particle->body().space.n_points;
     if (points != expected)
@@ -377,6 +375,7 @@ class SteadyRun {
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
   std::optional<output::Checkpoint> mesh_;                              // mesh of systems_; not set if it is the mesh of the deck
+  Net rest_, unstressed_;                                               // resting and unstressed shapes on the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;

@@ -37,8 +37,8 @@ void ContinuationOptions::declare(deck::Section& section) {
   section.key("points", points, deck::between(2, 100000), "1",
               "largest number of computed points on the branch of steady shapes, folds included");
   section.key("fold tolerance", fold_tolerance, deck::between(1e-12, 1e-2), "1",
-              "largest allowed relative error of the value of the continuation parameter at a fold, where the branch of steady shapes "
-              "turns back");
+              "largest allowed error of the continuation parameter at a fold, where the branch of steady shapes turns back, divided by the "
+              "larger of the parameter there and a twentieth of the interval to Continuation/to");
   section.key("second parameter", second_parameter, deck::Choice{},
               "path of a second numerical key of the deck, for example Particle/viscosity ratio, to find how the fold depends on it. The "
               "branch is followed to its first fold with the value of this key in the deck. Then only the fold is computed, for each of "
@@ -48,6 +48,16 @@ void ContinuationOptions::declare(deck::Section& section) {
               "spaced, or have a constant ratio, need the least work");
   if (second_parameter.has_value() != second_values.has_value())
     throw UserError(section.path("second parameter") + " and " + section.path("second values") + " belong together: give both or none.");
+}
+
+std::string ContinuationOptions::text(double value, double second) const {
+  return formatted("%s %.8g", parameter.c_str(), value) + (second_parameter ? formatted(", %s %.8g", second_parameter->c_str(), second) : "");
+}
+
+std::string ContinuationOptions::remark(const BranchPoint& point) const {
+  if (!point.fold || !(point.rest > fold_tolerance)) return {};
+  return formatted("the error of the fold at %s is %.1g, above Continuation/fold tolerance: set smaller tolerances of Quadrature and Steady",
+                   text(point.parameter, point.second).c_str(), point.rest);
 }
 
 void BranchPoint::add_columns(bool follows_fold, Columns& to) const {
@@ -242,7 +252,9 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    unit_ = std::abs(parameter - start_) / std::max(change, 0.01 * options_.largest_change);  // the parameter may not change the shape
+    // If the parameter does not change the shape, it counts as much as a hundredth of the largest change per twentieth of the way.
+    const double least = 0.01 * options_.largest_change * std::abs(parameter - start_) / (std::abs(way) / 20);
+    unit_ = std::abs(parameter - start_) / std::max(change, least);
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;
     ahead_.front().first.place.q = start_ / unit_;
     solved->s = step_ = length(solved->place - last_.front().place);

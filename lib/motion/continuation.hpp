@@ -15,6 +15,8 @@
 
 namespace tanktread::motion {
 
+struct BranchPoint;
+
 /// Options of the continuation, `Continuation/*` of the deck.
 struct ContinuationOptions {
   bool present = false;              ///< true if the deck has the section Continuation
@@ -29,6 +31,8 @@ struct ContinuationOptions {
   std::optional<std::vector<double>> second_values;  ///< values of the second parameter in sequence, after its value in the deck
 
   void declare(deck::Section& section);
+  std::string remark(const BranchPoint& point) const;   ///< returns a warning if the error of a fold is above its tolerance, otherwise ""
+  std::string text(double value, double second) const;  ///< returns values of the parameter and of the second parameter with their names
 };
 
 /// A steady shape on a branch.
@@ -37,7 +41,7 @@ struct BranchPoint {
   Net x;
   bool fold = false;   ///< true if the parameter reverses its direction here
   int iterations = 0;  ///< number of NOX iterations
-  double rest = 0;     ///< estimated error of the shape
+  double rest = 0;     ///< estimated error of the shape; at a fold, of the parameter, see Continuation/fold tolerance
 
   void add_columns(bool follows_fold, Columns& to) const;
 };

@@ -36,8 +36,13 @@ struct Parabola {
 /// Returns the fold near three consecutive points of the branch, or nothing if no fold is found. The fold is the vertex of the parabola through three
 /// points. One of them is replaced by a new point near the vertex until the parameter at the vertex changes by less than the tolerance. Then the
 /// branch is solved at the vertex. New points keep a distance from the others, because errors of points that are close together move the vertex.
+/// For the same reason the search ends if the points have approached each other to a fraction `narrow` of their first distance. Solved::rest of the
+/// fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the interval.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
+  constexpr double relative_misfit = 1e-2;  // largest error of the first parabola; it falls with the third power of the distance of the points
+  const double narrow = std::min(0.25, std::cbrt(options_.fold_tolerance / relative_misfit));
+  const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
   Place normal = three[2].place - three[0].place;
   const double size = length(normal);
@@ -45,24 +50,38 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   for (int k = 0; k < most; ++k) {
     const double middle = three[1].s, left = three[0].s - middle, right = three[2].s - middle;
     const Parabola parabola({left, 0, right}, {three[0].place.q, three[1].place.q, three[2].place.q});
-    const double vertex = parabola.vertex(), q = parabola.value(vertex), allowed = options_.fold_tolerance * std::abs(q);
-    // At this distance from the vertex, the parameter differs by a sixteenth of the tolerance.
-    const double closest = std::sqrt(allowed / std::abs(parabola.coefficients[2])) / 4;
-    const double apart = std::max(closest, (right - left) / 8);
-    const auto nearest = [&](double s) { return std::ranges::min({left, 0., right}, {}, [&](double at) { return std::abs(s - at); }); };
-    double s = vertex;
-    if (const double near = nearest(vertex); std::abs(vertex - near) < apart) s = near + std::copysign(apart, vertex - near);
-    const bool crowded = std::abs(s - nearest(s)) < apart / 2, found = crowded || std::abs(q - before) < allowed;
-    if (found) s = vertex;
+    const double vertex = parabola.vertex(), q = parabola.value(vertex);
+    if (!std::isfinite(vertex)) return {};
+    const double scale = std::max(std::abs(q), std::abs(options_.to - start_) / unit_ / 20), allowed = options_.fold_tolerance * scale;
+    const std::array at{left, 0., right};
+    const auto nearest = [&at](double s) {
+      return static_cast<std::size_t>(std::ranges::min_element(at, {}, [s](double one) { return std::abs(one - s); }) - at.begin());
+    };
+    const double reach = std::max(std::abs(left - vertex), std::abs(right - vertex)), apart = (right - left) / 8;
+    const bool flat = std::abs(parabola.coefficients[2]) * reach * reach < allowed;  // all three points have the parameter of the vertex
+    const bool last = right - left < narrow * first || k + 1 == most, found = flat || last || std::abs(q - before) < allowed;
+    const double change = flat || std::isnan(before) ? 0 : std::abs(q - before);
     before = q;
+    const std::size_t near = nearest(vertex);
+    double s = vertex;
+    if (!found && std::abs(vertex - at[near]) < apart) {
+      const double aside = std::copysign(apart, vertex - at[near]);
+      s = at[near] + aside;
+      if (std::abs(s - at[nearest(s)]) < apart / 2) s = at[near] - aside;  // there is a point already
+    }
     const Eigen::RowVector3d weights = parabola.weights(s);
     Place predicted{Net::Zero(x_.rows(), 3), 0};
     for (std::size_t i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
-    auto solved = on_plane(predicted, normal, std::min(steady_.tolerance, allowed / 4));
+    auto solved = on_plane(predicted, normal, std::clamp(allowed / 4, steady_.tolerance / 10, steady_.tolerance));
+    if (!solved) solved = on_plane(predicted, normal, std::max(steady_.tolerance, allowed / 4));  // errors of the quadrature may prevent more
     if (!solved) return {};
     solved->s = middle + s;
-    if (found && (crowded || std::abs(solved->place.q - q) < allowed)) return Fold{std::move(*solved), std::move(normal)};
-    three[std::abs(left - vertex) > std::abs(right - vertex) ? 0 : 2] = std::move(*solved);
+    const double error = std::max(change, std::abs(solved->place.q - q));
+    if (last || (found && error < allowed)) {
+      solved->rest = error / scale;
+      return Fold{std::move(*solved), std::move(normal)};
+    }
+    three[found ? near : std::abs(left - vertex) > std::abs(right - vertex) ? 0 : 2] = std::move(*solved);
     std::ranges::sort(three, {}, &Solved::s);
   }
   return {};

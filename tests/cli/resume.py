@@ -79,7 +79,7 @@ def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
         text = DECK.replace("Time: {", f"Time: {{ scheme: {scheme},").replace("final time: 2.0", "final time: 1.0")
         deck(text.replace("interval: 0.25", "interval: 0.2"))
         run("deck.yaml", "--output", f"whole_{scheme}", "--quiet")
-        _kill_after(f"killed_{scheme}", 12, "deck.yaml", "--output", f"killed_{scheme}", "--quiet")
+        _kill_after(f"killed_{scheme}", 5, "deck.yaml", "--output", f"killed_{scheme}", "--quiet")
         run("--resume", f"killed_{scheme}", "--quiet")
         _same_bits(f"whole_{scheme}", f"killed_{scheme}")
 

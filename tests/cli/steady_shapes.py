@@ -156,6 +156,23 @@ Tanktread:
             check(abs(values - values[0]).max() < 1e-4, parameter, name, values)  # of quadrature and searches; it was 0.02 to 0.3
 
 
+def a_branch_whose_resting_shape_changes_needs_a_fixed_mesh():
+    text = """
+Tanktread:
+  Flow: {type: simple shear, shear rate: 1.0}
+  Membrane: {law: surface tension, surface tension: 12.5}
+  Surface: {elements per side: 4}
+  Adaptation: {enabled: true, surface tolerance: 4.0e-5, levels: 1}
+  Steady: {}
+  Continuation: {parameter: Particle/radius, to: 1.4}
+"""
+    said = run(deck(text), "--output", "refused", "--quiet", code=3).stderr
+    check("set Adaptation/enabled to false" in said and "what was reached is in refused" in said, said)
+    run(deck(text), "--output", "fixed", "--quiet", "--set", "Adaptation/enabled=false")
+    sizes = series("fixed", "volume") / series("fixed", "parameter")**3
+    check(abs(sizes / sizes[0] - 1).max() < 1e-10, sizes)  # the volume belongs to the radius; on the adapted mesh it stayed the same
+
+
 def a_branch_without_a_fold_says_so():
     said = run(deck(DECK), "--set", "Continuation/parameter=Membrane/capillary number", "--set", "Continuation/to=0.09", "--set",
                "Continuation/second parameter=Particle/viscosity ratio", "--set", "Continuation/second values=[2]", "--output", "no_fold", "--quiet",

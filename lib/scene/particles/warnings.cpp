@@ -66,6 +66,20 @@ StepFindings::StepFindings(const Scene& scene, const Scene& first, const Columns
   element = std::sqrt(std::accumulate(areas.begin(), areas.end(), 0.) / n_elements);
 }
 
+std::vector<Warning> first_warnings(const Scene& scene) {
+  std::vector<Warning> found;
+  const auto forgets = [](const Scene& one) {
+    return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
+  };
+  if (std::ranges::any_of(scene.alone(), forgets))
+    found.push_back({"fields", "surfactant and other surface fields start as in a new run: Particle/initial shape/run gives the shape only"});
+  const double interval = scene.snapshot_interval(), step = scene.time.fixed_step.value_or(0);
+  if (scene.runs_in_time() && scene.output.interval && !scene.lands_on_snapshots() && step > interval * (1 + 1e-9))
+    found.push_back(
+        {"snapshots", formatted("Time/fixed step %g is longer than Output/interval %g: each step has at most one snapshot", step, interval)});
+  return found;
+}
+
 bool Warnings::fresh(const Warning& warning) {
   if (std::ranges::find(memory_.said, warning.kind, &Warning::kind) != memory_.said.end()) return false;
   memory_.said.push_back(warning);
@@ -79,14 +93,12 @@ std::vector<std::string> Warnings::sentences(const StepFindings& signs) {
     if (!sentence.empty() && fresh(warning)) sentences.push_back(warning.sentence);
   };
   add("choice", choice());
-  add("fields", fields());
   add("compression", compression(signs));
   add("stiffness", stiffness(signs));
   add("fold", fold(signs));
   add("stretch", stretch(signs));
   add("gap", gap(signs));
   add("volume", volume(signs));
-  add("snapshots", snapshots());
   return sentences;
 }
 
@@ -102,20 +114,6 @@ std::string Warnings::choice() const {
     return "the total area is so stiff that many time steps are needed: a Membrane/global area dilatation of 1e4 conserves it nearly as "
            "well";
   return {};
-}
-
-std::string Warnings::fields() const {
-  const auto forgets = [](const Scene& one) {
-    return one.particle.shape.initial && one.particle.shape.initial->run && (one.surfactant || one.maxwell_membrane() || !one.fields.empty());
-  };
-  if (!std::ranges::any_of(scene_.alone(), forgets)) return {};
-  return "surfactant and other surface fields start as in a new run: Particle/initial shape/run gives the shape only";
-}
-
-std::string Warnings::snapshots() const {
-  const double interval = scene_.snapshot_interval(), step = scene_.time.fixed_step.value_or(0);
-  if (!scene_.output.interval || scene_.lands_on_snapshots() || step <= interval * (1 + 1e-9)) return {};
-  return formatted("Time/fixed step %g is longer than Output/interval %g: each step has at most one snapshot", step, interval);
 }
 
 /// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave

@@ -34,6 +34,9 @@ struct Warning {
   std::string kind, sentence;
 };
 
+/// Returns the warnings at the start of a run or a search: that surface fields of an earlier run are not used, that snapshots are left out.
+std::vector<Warning> first_warnings(const Scene& scene);
+
 class Warnings {
  public:
   /// Data with which a resumed run continues.
@@ -56,8 +59,6 @@ class Warnings {
 
  private:
   std::string choice() const;
-  std::string fields() const;     ///< about surface fields that do not continue those of an earlier run
-  std::string snapshots() const;  ///< about snapshots that are left out
   std::string compression(const StepFindings& signs);
   std::string stiffness(const StepFindings& signs);
   std::string fold(const StepFindings& signs) const;
