@@ -170,7 +170,7 @@ Tanktread:
     check("set Adaptation/enabled to false" in said and "what was reached is in refused" in said, said)
     run(deck(text), "--output", "fixed", "--quiet", "--set", "Adaptation/enabled=false")
     sizes = series("fixed", "volume") / series("fixed", "parameter")**3
-    check(abs(sizes / sizes[0] - 1).max() < 1e-10, sizes)  # the volume belongs to the radius; on the adapted mesh it stayed the same
+    check(abs(sizes / sizes[0] - 1).max() < 1e-5, sizes)  # of the searches; on the adapted mesh, volumes kept the first radius, 0.6 at the end
 
 
 def a_branch_without_a_fold_says_so():
