@@ -29,6 +29,8 @@ struct Parabola {
   double value(double s) const { return coefficients.dot(Eigen::Vector3d(1, s, s * s)); }
   /// Returns the weights of the three points in the parabola's value at s.
   Eigen::RowVector3d weights(double s) const { return Eigen::RowVector3d(1, s, s * s) * inverse; }
+  /// Returns the weights of the three points in the parabola's slope at s.
+  Eigen::RowVector3d slope_weights(double s) const { return Eigen::RowVector3d(0, 1, 2 * s) * inverse; }
 };
 
 }  // namespace
@@ -44,9 +46,13 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   const double narrow = std::min(0.25, std::cbrt(options_.fold_tolerance / relative_misfit));
   const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
-  Place normal = three[2].place - three[0].place;
-  const double size = length(normal);
-  normal = {normal.x / size, normal.q / size};
+  const auto unit = [this](const Place& way) { return Place{way.x / length(way), way.q / length(way)}; };
+  const auto combined = [&](const Eigen::RowVector3d& weights) {
+    Place sum{Net::Zero(x_.rows(), 3), 0};
+    for (std::size_t i = 0; i < 3; ++i) sum = sum.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
+    return sum;
+  };
+  const Place normal = unit(three[2].place - three[0].place);
   for (int k = 0; k < most; ++k) {
     const double middle = three[1].s, left = three[0].s - middle, right = three[2].s - middle;
     const Parabola parabola({left, 0, right}, {three[0].place.q, three[1].place.q, three[2].place.q});
@@ -69,9 +75,7 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
       s = at[near] + aside;
       if (std::abs(s - at[nearest(s)]) < apart / 2) s = at[near] - aside;  // there is a point already
     }
-    const Eigen::RowVector3d weights = parabola.weights(s);
-    Place predicted{Net::Zero(x_.rows(), 3), 0};
-    for (std::size_t i = 0; i < 3; ++i) predicted = predicted.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
+    const Place predicted = combined(parabola.weights(s));
     auto solved = on_plane(predicted, normal, std::clamp(allowed / 4, steady_.tolerance / 10, steady_.tolerance));
     if (!solved) solved = on_plane(predicted, normal, std::max(steady_.tolerance, allowed / 4));  // errors of the quadrature may prevent more
     if (!solved) return {};
@@ -79,7 +83,7 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
     const double error = std::max(change, std::abs(solved->place.q - q));
     if (last || (found && error < allowed)) {
       solved->rest = error / scale;
-      return Fold{std::move(*solved), std::move(normal)};
+      return Fold{std::move(*solved), unit(combined(parabola.slope_weights(s)))};
     }
     three[found ? near : std::abs(left - vertex) > std::abs(right - vertex) ? 0 : 2] = std::move(*solved);
     std::ranges::sort(three, {}, &Solved::s);
