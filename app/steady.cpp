@@ -19,12 +19,12 @@
 #include "motion/periodic.hpp"
 #include "record/plan.hpp"
 #include "record/results.hpp"
+#include "scene/particles/particle_system.hpp"
 #include "scene/particles/warnings.hpp"
 #include "scene/searches.hpp"
-#include "scene/series/surface_fields.hpp"
-#include "scene/particles/particle_system.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
+#include "scene/series/surface_fields.hpp"
 #include "scene/steady_system.hpp"
 #include "system/agreement.hpp"
 
@@ -41,7 +41,6 @@ class SteadyRun {
         results_(scene, request, system_->particle->body(), system_->particle->bezier(), ranks_) {
     ranks_.measure(phases_);
     state_.x = system_->particle->start();
-    rest_ = system_->particle->body().rest, unstressed_ = system_->particle->body().unstressed;
   }
 
   int go() {
@@ -158,6 +157,7 @@ class SteadyRun {
     check({scene_.continuation.to, first[1]});
     for (const double second : scene_.continuation.second_values.value_or(std::vector<double>())) check({first[0], second});
     systems_.emplace_front(first, system_);
+    rest_ = system_->particle->body().rest, unstressed_ = system_->particle->body().unstressed;
     motion::Branch branch([this](double parameter, double second) { return equations_at({parameter, second}); },
                           [&](double parameter, std::vector<Net>& shapes) { return adapt_at({parameter, first[1]}, shapes); }, scene_.continuation,
                           scene_.steady, scene_.solvers, first[0], first[1], state_.x);
@@ -176,6 +176,7 @@ class SteadyRun {
     }
   }
 
+  /// Returns the parameters as text.
   std::string at(const Parameters& parameters) const { return scene_.continuation.text(parameters[0], parameters[1]); }
 
   /// Makes this system the current one. The results then refer to its mesh; the previous system and its mesh may be deleted.
@@ -375,7 +376,7 @@ class SteadyRun {
   std::shared_ptr<System> system_;
   std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
   std::optional<output::Checkpoint> mesh_;                              // mesh of systems_; not set if it is the mesh of the deck
-  Net rest_, unstressed_;                                               // resting and unstressed shapes on the mesh of the deck
+  Net rest_, unstressed_;                                               // resting and unstressed shapes of a branch on the mesh of the deck
   output::Entries<std::string> chosen_;
   Results results_;
   motion::State state_;

@@ -31,7 +31,7 @@ class MassSolver {
   /// Returns S^-1 d for the mass matrix S = s (3.6), to a relative residual of 1e-13 in each component.
   Net solve(const Eigen::SparseMatrix<double>& s, const Net& d);
 
-  /// Returns S^-1 d for a scalar field d, shape (N), on a surface without symmetry.
+  /// Returns S^-1 d for a scalar field d, shape (N), to the same residual. Only for a solver without symmetry.
   Eigen::VectorXd solve_scalar(const Eigen::SparseMatrix<double>& s, const Eigen::VectorXd& d);
 
   int iterations() const { return iterations_; }  ///< iterations of the last solve with a mass matrix S (3.6); 0 if S was factored

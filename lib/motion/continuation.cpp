@@ -169,9 +169,7 @@ Branch::Place Branch::predicted(const Place& t) const {
 std::optional<Branch::Solved> Branch::stepped() {
   constexpr double least = 1e-6;
   const Solved& now = last_.back();
-  Place t = now.place - last_[last_.size() - 2].place;
-  const double before = length(t);
-  t = {t.x / before, t.q / before};
+  const Place t = unit(now.place - last_[last_.size() - 2].place);
   const auto near = [&](const std::optional<Solved>& solved) { return solved && length(solved->place - now.place) < 2 * step_; };
   for (double first = step_; step_ > least * first; step_ *= 0.5) {
     Place next = predicted(t);
@@ -203,9 +201,7 @@ void Branch::adapt() {
     first_ = family_(last_.back().place.q * unit_, second_);
     for (std::size_t i = 0; i < 2; ++i) last_[i].place.x = std::move(shapes[i]);
     ahead_.front().first = last_[1];
-    Place t = last_[1].place - last_[0].place;
-    const double size = length(t);
-    t = {t.x / size, t.q / size};
+    const Place t = unit(last_[1].place - last_[0].place);
     for (Solved& one : last_) {
       auto solved = on_plane(one.place, t, steady_.tolerance);
       if (!solved) solved = at_parameter(one.place.q * unit_, one.place.x);
@@ -252,7 +248,7 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    // If the parameter does not change the shape, it counts as much as a hundredth of the largest change per twentieth of the way.
+    // The shape may not depend on the parameter. The scaled parameter therefore changes by at least 0.01 largest_change over a twentieth of the way.
     const double least = 0.01 * options_.largest_change * std::abs(parameter - start_) / (std::abs(way) / 20);
     unit_ = std::abs(parameter - start_) / std::max(change, least);
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;

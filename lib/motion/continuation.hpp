@@ -103,6 +103,10 @@ class Branch {
   };
   double inner(const Place& a, const Place& b) const;
   double length(const Place& a) const { return std::sqrt(inner(a, a)); }
+  Place unit(const Place& a) const {
+    const double size = length(a);
+    return {a.x / size, a.q / size};
+  }
   std::optional<Solved> at_parameter(double parameter, const Net& x);
   std::optional<Solved> on_plane(const Place& predicted, const Place& normal, double tolerance);
   std::optional<Solved> stepped();

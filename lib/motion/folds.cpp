@@ -38,15 +38,15 @@ struct Parabola {
 /// Returns the fold near three consecutive points of the branch, or nothing if no fold is found. The fold is the vertex of the parabola through three
 /// points. One of them is replaced by a new point near the vertex until the parameter at the vertex changes by less than the tolerance. Then the
 /// branch is solved at the vertex. New points keep a distance from the others, because errors of points that are close together move the vertex.
-/// For the same reason the search ends if the points have approached each other to a fraction `narrow` of their first distance. Solved::rest of the
-/// fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the interval.
+/// The search also ends when the distance of the outer points has shrunk by the factor `narrow`, because errors of the quadrature then dominate.
+/// Solved::rest of the fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the interval.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
-  constexpr double relative_misfit = 1e-2;  // largest error of the first parabola; it falls with the third power of the distance of the points
+  constexpr double relative_misfit = 1e-2;  // largest error of the parameter at the first vertex, divided by the parameter. It falls with the third
+                                            // power of the distance of the points
   const double narrow = std::min(0.25, std::cbrt(options_.fold_tolerance / relative_misfit));
   const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
-  const auto unit = [this](const Place& way) { return Place{way.x / length(way), way.q / length(way)}; };
   const auto combined = [&](const Eigen::RowVector3d& weights) {
     Place sum{Net::Zero(x_.rows(), 3), 0};
     for (std::size_t i = 0; i < 3; ++i) sum = sum.along(three[i].place, weights[static_cast<Eigen::Index>(i)]);
