@@ -14,7 +14,7 @@ Tanktread:
   Particle: { shape: sphere }
   Membrane: { law: neo-Hookean, capillary number: 0.3 }
   Surface: { mesh: cube, elements per side: 3 }
-  Time: { final time: 2.0, tolerance: 1.0e-5 }
+  Time: { final time: 10.0, tolerance: 1.0e-6 }
   Output: { interval: 0.1 }
 """
 KILLS = 20

@@ -16,7 +16,7 @@ Tanktread:
   Particle: { shape: sphere }
   Membrane: { law: neo-Hookean, capillary number: 0.3 }
   Surface: { mesh: cube, elements per side: 3 }
-  Time: { final time: 4.0, tolerance: 1.0e-5 }
+  Time: { final time: 8.0, tolerance: 1.0e-5 }
   Output: { interval: 0.25 }
 """
 OWN_TIME = ["wall_seconds"]  # the only series that may differ
@@ -76,7 +76,7 @@ def _kill_when(holds, *arguments):
 
 def a_killed_run_goes_on_to_the_same_last_bit_under_every_scheme():
     for scheme in "auto", "tr-bdf2", "bdf3", "bs3", "rkc2", "crank-nicolson":
-        text = DECK.replace("Time: {", f"Time: {{ scheme: {scheme},").replace("final time: 2.0", "final time: 1.0")
+        text = DECK.replace("Time: {", f"Time: {{ scheme: {scheme},")
         deck(text.replace("interval: 0.25", "interval: 0.2"))
         run("deck.yaml", "--output", f"whole_{scheme}", "--quiet")
         _kill_after(f"killed_{scheme}", 5, "deck.yaml", "--output", f"killed_{scheme}", "--quiet")
