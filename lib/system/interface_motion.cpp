@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "base/small_matrices.hpp"
@@ -87,24 +87,33 @@ Vec3 mean_rotation(const Net& from_mean, const Net& b, const Net& v) {
 /// Returns the velocity of the points y in a rotation about the origin.
 Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rotation.transpose()); }
 
+/// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor parameter D in the plane normal to the axis.
+double weight_of_axis(double m) {
+  constexpr double elongated = 0.06;  // D = 20 %: the mesh of such a drop turns with its shape
+  const double along = m / elongated;
+  return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
+}
+
 /// Returns the angular velocity Omega_s (4.14) of a shape that moves with the velocity u at the sites y. The area weight of a site is |b|, with the
 /// volume gradient b = dV/dx of its control point.
 Vec3 rotation_of_shape(const Net& y, const Net& normals, const Net& b, const Net& u) {
-  constexpr double hold = 1e-3;  // number added to the diagonal of `moments`, divided by `inertia`. Without it, noise would dominate the result if
-                                 // the shape deviates from a sphere by less than 3 %. With it, the result tends to 0, and the mesh rotates
-                                 // with the fluid
-  Mat3 moments = Mat3::Zero();
+  Mat3 moments = Mat3::Zero(), second = Mat3::Zero();
   Vec3 across = Vec3::Zero();
-  double inertia = 0;
   for (Eigen::Index i = 0; i < y.rows(); ++i) {
     const double area = b.row(i).norm();
     const Vec3 n = normals.row(i).transpose(), arm = Vec3(y.row(i).transpose()).cross(n);
     moments += area * arm * arm.transpose();
     across += area * arm * u.row(i).dot(n);
-    inertia += area * y.row(i).squaredNorm();
+    second += area * y.row(i).transpose() * y.row(i);
   }
-  moments.diagonal().array() += hold * inertia;
-  return moments.ldlt().solve(across);
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(moments);
+  Vec3 rotation = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = axes.eigenvectors().col(k);
+    const double inertia = second.trace() - axis.dot(second * axis);
+    rotation += weight_of_axis(axes.eigenvalues()[k] / inertia) * axis.dot(across) / inertia * axis;
+  }
+  return rotation;
 }
 
 /// State of a drop: at its control points the positions x, the volume gradient b = dV/dx and the fluid velocity v; at its collocation sites the
@@ -118,10 +127,9 @@ struct Moving {
 RigidMotion shared_motion(const Moving& drop) {
   const Eigen::RowVector3d middle = drop.x.colwise().mean();
   const Net from_mean = drop.x.rowwise() - middle, y = drop.places.rowwise() - middle;
-  const Vec3 rotation = mean_rotation(from_mean, drop.b, drop.v);
-  const Eigen::RowVector3d mean = mean_motion(from_mean, drop.b, drop.v - rotated(rotation, from_mean));
-  const Net rest = drop.velocities - (rotated(rotation, y).rowwise() + mean);
-  return {mean.transpose(), rotation + rotation_of_shape(y, drop.normals, drop.b, rest)};
+  const Vec3 of_fluid = mean_rotation(from_mean, drop.b, drop.v);
+  const Eigen::RowVector3d mean = mean_motion(from_mean, drop.b, drop.v - rotated(of_fluid, from_mean));
+  return {mean.transpose(), rotation_of_shape(y, drop.normals, drop.b, drop.velocities.rowwise() - mean)};
 }
 
 /// Returns the rotation about the mean of the control points that fits `from` best to `to`.

@@ -20,12 +20,12 @@ Vec3 site_normal(const spline::Space& space, const Net& x, std::span<const splin
 ///
 ///   u = W + n n.(v - W) + (1 - n n).w,   w = 0 (`normal`)  or  w = -speed Q A0 Q^T M0^{-1} dE1/dx (`relaxed`)    (4.6)
 ///
-/// W (4.14) is the rigid motion of the drop. The mesh moves with W: the mesh of a drop that is convected or rotated as a whole moves rigidly, and the
-/// mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean membrane of modulus 1 whose unstressed
-/// shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape, and the rotation Q turns the initial
-/// shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tension pulls through the fluid. Elements
-/// therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The equations of motion are no stiffer than
-/// for a capsule with the capillary number Ca = mu rate R_C / (mu speed). On all other particles u = v.
+/// W (4.14) is the rigid motion of the drop's shape. The mesh moves with W: the mesh of a drop that is convected, or of an elongated drop that is
+/// rotated as a whole, moves rigidly. The mesh of a steady shape stays fixed while the fluid tank-treads around it. E1 is the energy of a neo-Hookean
+/// membrane of modulus 1 whose unstressed shape is the initial shape. A0 and M0 are the single layer and the mass matrix of the drop's initial shape,
+/// and the rotation Q turns the initial shape with the mesh. The relaxed mesh slides along the interface like an elastic membrane that its tension
+/// pulls through the fluid. Elements therefore keep their shape, and the mesh comes to rest where E1 is smallest on the given interface. The
+/// equations of motion are no stiffer than for a capsule with the capillary number Ca = mu rate R_C / (mu speed). On all other particles u = v.
 class InterfaceMotion {
  public:
   /// `initial`: net that the meshes relax towards. `mass`: factored mass matrix M0 of `initial`. References, except `initial`, must outlive this

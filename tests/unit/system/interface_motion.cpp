@@ -53,7 +53,7 @@ TEST(InterfaceMotion, NormalMotionHasNoPartAlongTheInterface) {
   const Net v = drop.velocity("normal", drop.sphere);
   const auto [across, along] = drop.components(drop.sphere, v);
   EXPECT_GT(across, 0.1);
-  EXPECT_LT(along, 1e-10);  // round-off of the interpolation, and of a vanishing rotation, divided by its regularisation 1e-3
+  EXPECT_LT(along, 1e-10);  // round-off of the interpolation
 }
 
 // The flow deforms a sphere under constant tension like a sphere of another viscosity: S = 2 mu E V 5 (lambda - 1)/(2 lambda + 3). Batchelor 1970,
@@ -108,23 +108,36 @@ TEST(InterfaceMotion, AFlowThatCarriesTheDropAlongCarriesItsMesh) {
   }
 }
 
-// A rotating observer only adds the velocity of the rotating frame.
+// A rotating observer only adds the velocity of the rotating frame. Only the mesh of an elongated drop follows its shape: see the next test.
 TEST(InterfaceMotion, AFlowThatTurnsTheDropTurnsItsMesh) {
   Drop drop;
   drop.flow.type = "linear";
   const Mat3 strain = (Mat3() << 0.3, -0.2, 1, 0.1, -0.4, 0.2, -0.3, 0.5, 0.1).finished();
   const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
   Net x = drop.sphere;
-  x.col(0) *= 1.2, x.col(2) *= 0.9;
+  x.col(0) *= 2, x.col(2) *= 0.5;
   x = x.rowwise() + Eigen::RowVector3d(0.4, -1, 2);
-  for (const Net& shape : {drop.sphere, x})
-    for (const char* motion : {"material", "normal", "relaxed"}) {
-      drop.flow.gradient = strain;
-      const Net held = drop.velocity(motion, shape);
-      drop.flow.gradient = strain + turns;
-      const Net turned = drop.velocity(motion, shape);
-      EXPECT_LT((turned - shape * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << motion;  // round-off
-    }
+  const auto velocity = [&](const char* motion, const Net& shape, const Mat3& gradient) {
+    drop.flow.gradient = gradient;
+    return drop.velocity(motion, shape);
+  };
+  for (const char* motion : {"material", "normal", "relaxed"}) {
+    const Net held = velocity(motion, x, strain), turned = velocity(motion, x, strain + turns);
+    EXPECT_LT((turned - x * turns.transpose() - held).norm(), 1e-12 * turned.norm()) << motion;  // round-off
+  }
+  const Net carried = velocity("material", drop.sphere, strain + turns) - velocity("material", drop.sphere, strain);
+  EXPECT_LT((carried - drop.sphere * turns.transpose()).norm(), 1e-12 * carried.norm());  // round-off
+}
+
+// A sphere does not change if it rotates: its mesh stays at rest, so that it does not have to follow a rotation that nobody sees.
+TEST(InterfaceMotion, AFlowThatTurnsASphereDoesNotTurnItsMesh) {
+  Drop drop;
+  drop.flow.type = "linear";
+  drop.parameters.volume.constraint = "none";
+  const Mat3 turns = (Mat3() << 0, -0.7, 2, 0.7, 0, 0.4, -2, -0.4, 0).finished();
+  drop.flow.gradient = turns;
+  for (const char* motion : {"normal", "relaxed"})
+    EXPECT_LT(drop.velocity(motion, drop.sphere).norm(), 1e-2 * (drop.sphere * turns.transpose()).norm()) << motion;  // error of this coarse mesh
 }
 
 // A purely tangential velocity belongs to a steady shape.
@@ -137,7 +150,7 @@ TEST(InterfaceMotion, TheMeshOfASteadyShapeStaysWhereItIs) {
   drop.flow.gradient = shear;
   drop.parameters.volume.constraint = "none";
   drop.parameters.particles.front().material.law = membrane::SurfaceTension{1e-9};
-  EXPECT_LT(drop.velocity("normal", x).norm(), 0.04 * (x * shear.transpose()).norm());  // residual of the second term of (4.14)
+  EXPECT_LT(drop.velocity("normal", x).norm(), 5e-3 * (x * shear.transpose()).norm());  // discretisation error of this coarse mesh, 4e-3
 }
 
 TEST(InterfaceMotion, TheJacobianKnowsOfTheMotionOfTheWhole) {
