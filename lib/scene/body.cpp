@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 
 #include "base/formatted.hpp"
 #include "membrane/patch_forces.hpp"
@@ -61,7 +62,14 @@ FlowPlane flow_plane(const stokes::FlowOptions& flow) {
   // component along n and does not change along n.
   const Eigen::SelfAdjointEigenSolver<Mat3> varies(l.transpose() * l + l * l.transpose());
   const Vec3 values = varies.eigenvalues();
-  if (values[0] < 1e-12 * values[2]) return plane_normal_to(varies.eigenvectors().col(0));
+  if (values[0] < 1e-12 * values[2]) {
+    FlowPlane plane = plane_normal_to(varies.eigenvectors().col(0));
+    const Eigen::JacobiSVD<Mat3> parts(l, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Vec3 along = parts.matrixU().col(0), across = parts.matrixV().col(0);
+    if (parts.singularValues()[1] < 1e-12 * parts.singularValues()[0] && std::abs(along.dot(across)) < 1e-12)
+      plane.of_shear.emplace() << along.transpose(), along.cross(across).transpose(), across.transpose();
+    return plane;
+  }
   const Vec3 vorticity(l(2, 1) - l(1, 2), l(0, 2) - l(2, 0), l(1, 0) - l(0, 1));
   FlowPlane plane = vorticity.norm() > 1e-10 * l.norm() ? plane_normal_to(vorticity) : FlowPlane();
   plane.holds_flow = false;

@@ -159,8 +159,9 @@ void DomainRow::add_columns(const Scene& scene, Columns& to) const {
           "the rate of strain of the flow is zero at this time"});
   to.add(normal_stress_differences, "1 2",
          {"normal_stress_difference_", "force/length^2",
-          "normal stress difference # of the particle stress: 1 is component 11 minus 33, 2 is component 33 minus 22. If the flow is not along "
-          "x1 in the plane x1 x3, these are components in the axes of the plane of the flow"});
+          "normal stress difference # of the particle stress: 1 is component 11 minus 33, 2 is component 33 minus 22, where 1 is the "
+          "direction of a simple shear flow, 3 that of its velocity gradient and 2 the normal of both; in other flows in a plane, 1 and 3 are the "
+          "axes of that plane"});
 }
 
 }  // namespace tanktread

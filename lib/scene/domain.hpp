@@ -50,11 +50,12 @@ struct DomainRow {
   double volume_fraction = 0, relative_viscosity = 1;
   Mat3 stress = Mat3::Zero();  ///< contribution of the particles to the mean stress (6.9)
   Eigen::Vector2d normal_stress_differences = Eigen::Vector2d::Zero();  ///< normal stress differences S_aa - S_bb and S_bb - S_cc of the stress S =
-                                                                        ///< `stress`. Axes a and b are in the plane of the flow, c is its normal
+                                                                        ///< `stress`. Axes a and b are in the plane of the flow, c is its normal;
+                                                                        ///< in simple shear, a is the direction of the flow, b that of its gradient
   Vec3 pressure_gradient = Vec3::Zero();
 
   /// Computes all data except `cell`, by (6.9) and (6.10), from the total volume, the total stresslet and the total force of the particles on the
-  /// fluid. `of`: periodic cell. `plane`: axes of the plane of the flow, as rows. `gradient`: velocity gradient of the flow at this time. The
+  /// fluid. `of`: periodic cell. `plane`: the axes a, c and b as rows. `gradient`: velocity gradient of the flow at this time. The
   /// relative viscosity is NaN if the rate of strain is zero at this time.
   void set_stress(double viscosity, const Mat3& gradient, const stokes::PeriodicCell& of, const Mat3& plane, double volume, const Mat3& stresslet,
                   const Vec3& force);

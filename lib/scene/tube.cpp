@@ -67,7 +67,10 @@ void check_fits(const Scene& scene, const Body& body) {
 TubeRow with_channel(const coupling::Tube& tube, double amplitude, TubeRow now) {
   now.flow_rate = tube.flow_rate(now.pressure_drop, amplitude);
   const auto* channel = dynamic_cast<const coupling::ChannelFlow*>(&tube.flow());
-  if (channel) now.channel_pressure_drop = channel->pressure_drop(), now.channel_extra_pressure_drop = channel->extra_pressure_drop();
+  if (channel) {
+    now.channel_pressure_drop = amplitude * channel->pressure_drop();
+    now.channel_extra_pressure_drop = amplitude * channel->extra_pressure_drop();
+  }
   return now;
 }
 

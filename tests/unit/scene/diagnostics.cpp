@@ -10,6 +10,7 @@
 
 #include "base/errors.hpp"
 #include "scene/body.hpp"
+#include "scene/domain.hpp"
 #include "scene/series/run_totals.hpp"
 #include "scene/series/series.hpp"
 #include "spline/extraction.hpp"
@@ -102,6 +103,24 @@ TEST(FlowPlanes, AreThoseInWhichALinearFlowMovesAndChanges) {
   EXPECT_TRUE(plane.holds_flow);
   EXPECT_NEAR(std::abs(plane.components(turn.col(1))[1]), 1, 1e-12);
   EXPECT_LT((plane.axes * plane.axes.transpose() - Mat3::Identity()).norm(), 1e-14);
+}
+
+// The first normal stress difference is that along the flow minus that along the gradient, whichever axes the deck gives them.
+TEST(FlowPlanes, KnowTheDirectionsOfAShearFlow) {
+  const Mat3 stress = (Mat3() << 3, 0.2, 0.5, 0.2, -1, 0.1, 0.5, 0.1, -2).finished();  // shear along x1 with the gradient along x3
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Mat3 swap = (Mat3() << 0, 0, 1, 0, 1, 0, 1, 0, 0).finished();  // shear along x3 with the gradient along x1
+  for (const Mat3& q : {Mat3(Mat3::Identity()), turn, swap}) {
+    stokes::FlowOptions flow = linear({0, 0, 1, 0, 0, 0, 0, 0, 0});
+    flow.gradient = q * *flow.gradient * q.transpose();
+    const FlowPlane plane = flow_plane(flow);
+    DomainRow row;
+    row.set_stress(1, *flow.gradient, stokes::PeriodicCell(Mat3::Identity(), 3), plane.of_shear.value_or(plane.axes), 0,
+                   q * stress * q.transpose(), Vec3::Zero());
+    EXPECT_NEAR(row.normal_stress_differences[0], 5, 1e-12);
+    EXPECT_NEAR(row.normal_stress_differences[1], -1, 1e-12);
+  }
+  EXPECT_FALSE(flow_plane(linear({1, 0.3, 0, 0.2, -1, 0, 0, 0, 0})).of_shear);
 }
 
 TEST(FlowPlanes, DoNotHoldAFlowThatIsNotPlanar) {
