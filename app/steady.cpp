@@ -87,7 +87,7 @@ class SteadyRun {
   /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not reach
   /// the full flow.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
-    if (!(of->scene.speed() > 0) || of->scene.flow.history) return failed;
+    if (!(of->scene.alone().front().speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;

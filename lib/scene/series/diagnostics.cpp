@@ -169,8 +169,8 @@ void DeformingRow::add_columns(const Scene& one, Columns& to) const {
                                       "area divided by the unstressed area of the same material"});
   to.add(normal_velocity,
          {"normal_velocity", "1",
-          "largest normal velocity |v.n| on the surface divided by rate x R_C, or in a tube by the mean velocity; in a tube or parabolic "
-          "flow relative to the particle. It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
+          "largest normal velocity |v.n| on the surface relative to the mean velocity of the particle, divided by rate x R_C, or in a tube by the "
+          "mean velocity of the fluid. It is zero if the shape is steady. R_C: radius of the sphere with the particle's volume"});
   to.add(shape_velocity, {"shape_velocity", "1",
                           "root mean square of the part of the normal velocity v.n that changes the shape smoothly (6.8), divided like "
                           "`normal_velocity`. The run is steady when it falls below Time/steady tolerance"});
@@ -351,8 +351,7 @@ void add_treading(const Scene& scene, const Body& body, const surface::Geometry&
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites) {
   double largest = 0;
-  Vec3 frame = Vec3::Zero();
-  if (!body.flow.affine() || scene.tube.present) frame[0] = surface::centroid_velocity(geometry.bezier(), x, slope)[0];
+  const Vec3 frame = surface::centroid_velocity(geometry.bezier(), x, slope);
   const surface::BezierMap& map = geometry.bezier();
   constexpr int most = 3 * (spline::max_degree + 1) * (spline::max_degree + 1);
   double points[most], velocities[most];

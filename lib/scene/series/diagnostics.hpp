@@ -98,7 +98,7 @@ double angle_in(const FlowPlane& plane, const Vec3& y);
 spline::Site site_ahead(const spline::Space& space, const Net& x, const Vec3& from, const FlowPlane& plane);
 
 /// Returns the largest normal velocity |v.n| at the collocation sites `sites`, with v = `slope`, divided by Scene::speed(), or by R_C per unit time
-/// if this speed is 0. It is zero if the shape is steady. In a tube or a flow that is not affine, v is relative to the centroid's velocity along x1.
+/// if this speed is 0. v is relative to the velocity of the centroid. It is zero if the shape is steady.
 double normal_velocity(const Scene& scene, const Body& body, const surface::Geometry& geometry, const Net& x, const Net& slope,
                        std::span<const int> sites);
 
