@@ -286,7 +286,7 @@ class Ladder {
     }
     const auto outcome = coupling::decided([&] {
       answer_all();
-      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_), why, seconds_);
+      const std::string missed_expectations = publish(task_, levels_, answers_, errors(levels_, looser_, answers_), why, seconds_);
       report(code, why, missed_expectations);
       return std::vector<double>{double(code == met && !missed_expectations.empty() ? missed : code)};
     });

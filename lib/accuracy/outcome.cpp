@@ -182,7 +182,7 @@ Answer answer(const Request& request, const std::vector<Outcome>& levels, const 
   return found;
 }
 
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser) {
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser, const std::vector<Answer>& answers) {
   const std::string why = obstacle(levels);
   std::vector<SeriesError> all;
   const output::RunRecord& finest = levels.back().record;
@@ -192,7 +192,9 @@ std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::o
     const std::vector<Curve> pairs = differences(series.name, Of::run, levels);
     const Curve whole = curve(finest, series.name);
     const double scale = scale_of(finest, series.name);
-    const Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
+    Estimate estimate = estimated(norms(pairs), scale, expected_errors(levels, {series.name, Of::run, 0, false}, scale, looser));
+    for (const Answer& one_answer : answers)
+      if (one_answer.request.series == series.name && one_answer.request.of == Of::run) estimate = one_answer.estimate;
     one.untrusted = why.empty() ? estimate.untrusted : why;
     if (one.untrusted.empty()) {
       std::vector<double> at = is_branch(finest) ? std::vector<double>() : finest.values("time");

@@ -70,7 +70,8 @@ struct SeriesError {
 };
 
 /// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: result of
-/// level 2 with a looser time tolerance, if it was computed.
-std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
+/// level 2 with a looser time tolerance, if it was computed. `answers`: estimates of the requests, which are taken for their series.
+std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {},
+                                const std::vector<Answer>& answers = {});
 
 }  // namespace tanktread::accuracy

@@ -57,14 +57,15 @@ void Mode::add_columns(const std::string& number, Columns& to) const {
 }
 
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to) {
-  double leading = -std::numeric_limits<double>::infinity();
+  double leading = std::numeric_limits<double>::quiet_NaN();
   int unstable = 0;
   for (const Mode& mode : modes)
     if (mode.kind == ModeKind::shape || (all_rigid && mode.kind == ModeKind::rotation))
-      leading = std::max(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
+      leading = std::fmax(leading, mode.rate.real()), unstable += mode.rate.real() > 0;
   to.add(leading, {"leading_rate", "1/time",
-                   "largest growth rate of the eigenmodes that change the shape, without translations and rotations; negative if the "
-                   "steady shape is stable"});
+                   "largest growth rate of the eigenmodes that change the shape, without translations and rotations of the whole; negative if "
+                   "the steady shape is stable. Motions of several particles relative to each other count as changes of the shape",
+                   "none of the reported modes changes the shape"});
   to.add(unstable, {"unstable_modes", "1", "number of growing eigenmodes (positive growth rate) among those that change the shape"});
   for (int k = 0; const Mode& mode : modes) mode.add_columns(std::to_string(++k), to);
 }

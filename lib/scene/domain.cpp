@@ -143,8 +143,8 @@ void DomainRow::add_columns(const Scene& scene, Columns& to) const {
   if (!to.when(scene.domain.present)) return;
   to.add(cell.reshaped(), "1_x1 1_x2 1_x3 2_x1 2_x2 2_x3 3_x1 3_x2 3_x3",
          {"cell_", "length",
-          "component # (number of the vector, then direction) of the period vectors of the periodic cell at this time; in directions that are "
-          "not periodic, they are unit vectors"});
+          "component # (number of the vector, then direction) of the period vectors of the periodic cell at this time, the shortest of the "
+          "lattice: as it deforms, they change places; in directions that are not periodic, they are unit vectors"});
   if (!to.when(scene.domain.directions() == 3)) return;
   to.add(volume_fraction, {"volume_fraction", "1", "volume of the particles divided by the volume of the periodic cell"});
   to.add(components(stress), "11 22 33 12 13 23",

@@ -42,12 +42,14 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-/// Throws UserError if the mesh options of the run and the scene differ or, if the mesh adapts, their resting shapes differ. Material properties may
-/// differ.
+/// Throws UserError if the run has several particles, if the mesh options of the run and the scene differ or, if the mesh adapts, their resting
+/// shapes differ. Material properties may differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
-  Scene before(*scene.registry);
+  Scene of_run(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
-  deck.declare(before);
+  deck.declare(of_run);
+  if (of_run.particles.size() > 1) throw UserError(key + "run: " + name + " is the run of several particles; it must be that of one.");
+  const Scene before = of_run.alone().front();
   const auto refuse = [&](const char* what) { throw UserError(key + "run: " + what + " must be the same as in " + name + "."); };
   if (!(before.surface == scene.surface)) refuse("Surface");
   const motion::AdaptationOptions &then = before.adaptation, &now = scene.adaptation;

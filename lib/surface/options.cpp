@@ -130,8 +130,8 @@ void InitialShape::declare(deck::Section& section) {
               "path of a file with the initial surface in Bezier-extraction format (.iga), on the same mesh as the particle and at the "
               "position that it is to have. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("run", run, deck::Choice{},
-              "path of the results of an earlier run on the same mesh; the last shape of that run becomes the initial shape, at the same "
-              "position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that run "
+              "path of the results of an earlier run of one particle on the same mesh; the last shape of that run becomes the initial shape, at "
+              "the same position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that run "
               "was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked up "
               "in the working directory, then in the directory of the deck");
   section.key("mode", mode, deck::at_least(1), "1",
