@@ -131,9 +131,9 @@ void InitialShape::declare(deck::Section& section) {
               "position that it is to have. A relative path is looked up in the working directory, then in the directory of the deck");
   section.key("run", run, deck::Choice{},
               "path of the results of an earlier run of one particle on the same mesh; the last shape of that run becomes the initial shape, at "
-              "the same position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that run "
-              "was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked up "
-              "in the working directory, then in the directory of the deck");
+              "the same position. The path names a results directory, whose newest checkpoint is read, or one of its snapshots; if the mesh of that "
+              "run was refined, the refined mesh is used. Surfactant and other surface fields start as in a new run. A relative path is looked "
+              "up in the working directory, then in the directory of the deck");
   section.key("mode", mode, deck::at_least(1), "1",
               "number, from 1, of an eigenmode that the earlier run (Particle/initial shape/run) computed with its section Spectrum. The mode, "
               "scaled by `mode amplitude`, is added to the shape of that run, to see how a disturbance grows; of a complex mode the real part "
