@@ -104,7 +104,7 @@ def load_form(study, given, axes):
 def buckling(study, given, axes):
     pens = [pen | {"linestyle": dash} for pen in PENS for dash in (":", "-")]
     return lines(study, axes, given, (
-        "smallest_tension", lambda one: waves.Spectrum(one.run.snapshots()[-1]).short), pens=pens)
+        "smallest_tension", lambda one: waves.share_of_waves(waves.spectrum(one.run.snapshots()[-1])[0])), pens=pens)
 
 
 def pre_inflation(study, given, axes):

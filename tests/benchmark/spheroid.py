@@ -11,7 +11,7 @@ import sys
 
 from package import answer, command_line, numpy, plt, scenes_of, style, table, tanktread
 
-SETTINGS, OPTIONS, PAPER, MESHES, PANELS = scenes_of(__file__).values()
+SETTINGS, OPTIONS, PAPER, MESHES, PANELS, SERIES = scenes_of(__file__).values()
 STAR = {"marker": "*", "linestyle": "none", "color": style.INK, "ms": 9, "label": "paper, Table 1", "zorder": 5}
 BELOW = {"loc": "upper center", "ncol": 2, "bbox_to_anchor": (0.5, 0)}  # the legend of a figure
 
@@ -117,11 +117,9 @@ def table_1(study):
 def table_of_options(found):
     print("\nSlopes against the number of control points: mean over the meshes, finest pair; drag_error_of_traction "
           "is without the reciprocal theorem\n")
-    keys = {"normal_l2_error": "normal", "pressure_l2_error": "pressure", "drag_error": "drag",
-            "drag_error_of_traction": "", "solver_iterations": "", "kernel_evaluations": "", "wall_seconds": ""}
     rows = []
     for name, option in OPTIONS.items():
-        for key, of_paper in keys.items() if len(found[name]) > 1 else ():
+        for key, of_paper in SERIES.items() if len(found[name]) > 1 else ():
             values = column(found[name], key)
             slopes = slope(column(found[name], "n_control_points"), values) if "error" in key else ()
             paper = PAPER["slopes"][of_paper][option["mesh"] == "cube"] if of_paper else ""

@@ -20,21 +20,15 @@ import os
 import pathlib
 import types
 
-from package import INPUTS, SIDE, answer, command_line, expect, numpy, table, tanktread
+from package import INPUTS, SIDE, answer, command_line, expect, numpy, scenes_of, table, tanktread
 import scipy.interpolate
 import scipy.ndimage
 
 from tanktread.studies import fit_data, fit_model, outline, silhouette
 
 DECK = INPUTS / "studies/capsule_in_tube.yaml"
-FINE = {"Quadrature/tolerance": 1e-8, "Steady/tolerance": 1e-10}  # shapes that noise is not to hide
-LAWS = {"neo-Hookean": {"Membrane/law": "neo-Hookean"},
-        "Skalak, C = 1": {"Membrane/law": "Skalak", "Membrane/area dilatation": 1.0}}
-SPEEDS = [0.3, 0.5, 0.8, 1.1, 1.5]
-MODULUS, RADIUS, POINTS = 20.0, 0.8, 60
-NODES = 11
-# capillary numbers viscosity x speed / modulus, below which the rear is not hollow
-SPANS = {"neo-Hookean": (0.006, 0.09), "Skalak, C = 1": (0.008, 0.17)}
+LAWS, SPANS, FINE, SPEEDS = scenes_of(__file__).values()
+MODULUS, RADIUS, POINTS, NODES = 20.0, 0.8, 60, 11
 ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
 
 

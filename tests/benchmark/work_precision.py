@@ -136,8 +136,9 @@ def report(scene, points):
               f"{mine / least:.2f} times less, by {best.label} with error {best.error:.2e}")
     for level in scene.levels:
         best = min((one for one in points if one.error <= level), key=operator.attrgetter("seconds"), default=None)
-        print(f"error {level:g}: " + (f"best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
-                                      f"{best.evaluations} velocity evaluations" if best else "none"))
+        words = (f"best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
+                 f"{best.evaluations} velocity evaluations") if best else "none"
+        print(f"error {level:g}: {words}")
 
 
 def main():
@@ -170,7 +171,8 @@ def main():
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
     words = ["--differences", "1"] * (parsed.differences == 1) + ["--only", *parsed.only] * bool(parsed.only)
     against = f", against {scene.error['curve'] if parsed.curves else 'a finer run'}" if "curve" in scene.error else ""
-    footer(figure, f"$ {studies.command_of(__file__, parsed.study, *words)}\nerror: {scene.error.get('text', '')}{against}")
+    footer(figure, f"$ {studies.command_of(__file__, parsed.study, *words)}\n"
+                   f"error: {scene.error.get('text', '')}{against}")
     studies.write_table(parsed.output / f"{scene.name}.csv",
                         [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")
