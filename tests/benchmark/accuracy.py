@@ -72,9 +72,9 @@ def runs(study, scene):
     """Yields mesh, two tolerances, relative error, kernel evaluations and seconds of every run that came to its end.
     The error is the largest one over the run against a finer run, or at the end against the value that the deck
     expects."""
-    def run(tolerances, mesh):
-        pair = dict(zip(("Time/tolerance", "Quadrature/tolerance"), tolerances))
-        return study.run(scene["deck"], scene["base"] | pair | mesh)
+    def run(mesh, time, quadrature):
+        tolerances = {"Time/tolerance": time, "Quadrature/tolerance": quadrature}
+        return study.run(scene["deck"], scene["base"] | tolerances | mesh)
 
     def error_of(one):
         values = one.series[series]
@@ -85,10 +85,10 @@ def runs(study, scene):
 
     series = scene["series"]
     if scene["reference"]:
-        finer = run((5e-6, 1e-6), scene["reference"])
+        finer = run(scene["reference"], 5e-6, 1e-6)
         expect(finer.done, f"the reference did not come to its end: {finer.message}")
     for (name, mesh), tolerances in itertools.product(scene["meshes"].items(), TOLERANCES):
-        one = run(tolerances, mesh)
+        one = run(mesh, *tolerances)
         if one.done:
             yield name, *tolerances, error_of(one), one.kernel_evaluations, one.processor_seconds
 

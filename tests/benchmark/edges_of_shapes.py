@@ -38,8 +38,7 @@ def wrinkling(study, given, axes):
             onsets = []
             for ca, more in varied(given).items():
                 bending, outcome = onset(study, given["deck"], parity | more | {SIDE: n})
-                angle, wave = along_waist(outcome)
-                crests = number_of_crests(angle, wave)
+                angle, wave, crests = waist_mode(outcome)
                 onsets.append(bending)
                 yield name, n, ca, bending, crests
                 if ca == 0.2 and n == 10:
@@ -63,8 +62,9 @@ def onset(study, deck, settings):
     return numbers[k], outcome
 
 
-def along_waist(outcome):
-    """Returns angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis."""
+def waist_mode(outcome):
+    """Returns angle (degrees) and radial part of the first changing mode at the nodes of the plane across the axis, and
+    its number of crests, the degree of the largest Fourier coefficient."""
     shot = outcome.run.snapshots()[-1]
     rates = {k: outcome.series[f"rate_{k}"][-1] for k, kind in outcome.run.summary["modes"].items() if kind == "shape"}
     waist = numpy.flatnonzero(abs(shot.points[:, 2]) < 1e-9)
@@ -72,21 +72,17 @@ def along_waist(outcome):
     angle = numpy.degrees(numpy.arctan2(place[:, 1], place[:, 0]))
     order = numpy.unique(numpy.round(angle, 6), return_index=True)[1]
     mode = shot.fields[f"mode {max(rates, key=rates.get)}"][waist, :2]
-    return angle[order], ((mode * place).sum(axis=1) / numpy.linalg.norm(place, axis=1))[order]
-
-
-def number_of_crests(angle, wave):
-    """Returns the degree of the largest Fourier coefficient."""
-    turns = numpy.radians(angle)
+    wave = ((mode * place).sum(axis=1) / numpy.linalg.norm(place, axis=1))[order]
+    turns = numpy.radians(angle[order])
     weight = (numpy.roll(turns, -1) - numpy.roll(turns, 1)) % (2 * numpy.pi)
-    return int(numpy.argmax([abs((weight * wave * numpy.exp(-1j * m * turns)).sum()) for m in range(30)]))
+    powers = [abs((weight * wave * numpy.exp(-1j * m * turns)).sum()) for m in range(30)]
+    return angle[order], wave, int(numpy.argmax(powers))
 
 
 def folds(outcome):
     """Returns rows of the second parameter, critical Ca and D there, as far as the run came."""
-    series = outcome.series
-    return numpy.array([series[name][series["fold"] > 0]
-                        for name in ("second_parameter", "parameter", "taylor_surface")])
+    names, at = ("second_parameter", "parameter", "taylor_surface"), outcome.series["fold"] > 0
+    return numpy.array([outcome.series[name][at] for name in names])
 
 
 def load_form(study, given, axes):

@@ -10,32 +10,25 @@ def spectrum(snapshot, largest=40):
     """Returns the power of the load by degree (largest + 1,), the sum over orders and components of the squared
     coefficients, and the wavelengths 2 pi R/sqrt(l (l + 1)) of the degrees l from 1 (largest,). R: radius of the
     unstressed sphere."""
-    radius, directions, weights, values = _on_the_sphere(snapshot)
+    radius, (x, y, z), weights, values = _on_the_sphere(snapshot)
     degrees, power = numpy.arange(1, largest + 1), numpy.zeros(largest + 1)
-    for degree, order, harmonic in harmonics(directions, largest):
-        power[degree] += (1 if order == 0 else 2) * (abs((weights * harmonic) @ values) ** 2).sum()
-    return power, 2 * numpy.pi * radius / numpy.sqrt(degrees * (degrees + 1))
-
-
-def share_of_waves(power):
-    """Returns the share of the power in degrees beyond SMOOTH."""
-    return power[SMOOTH + 1:].sum() / power.sum()
-
-
-def harmonics(directions, largest):
-    """Yields (degree, order from 0, values) of the orthonormal spherical harmonics at unit vectors (3, n), by the
-    stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long."""
-    x, y, z = directions
+    # orthonormal harmonics by the stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long
     sectoral = numpy.full(len(z), (4 * numpy.pi) ** -0.5, complex)
     for order in range(largest + 1):
         if order > 0:
             sectoral = sectoral * (x + 1j * y) * -((2 * order + 1) / (2 * order)) ** 0.5
         before, now = 0 * z, sectoral
         for degree in range(order, largest + 1):
-            yield degree, order, now
+            power[degree] += (1 if order == 0 else 2) * (abs((weights * now) @ values) ** 2).sum()
             a = ((4 * (degree + 1) ** 2 - 1) / ((degree + 1) ** 2 - order**2)) ** 0.5
             b = ((degree**2 - order**2) / (4 * degree**2 - 1)) ** 0.5 if degree > order else 0.0
             before, now = now, a * (z * now - b * before)
+    return power, 2 * numpy.pi * radius / numpy.sqrt(degrees * (degrees + 1))
+
+
+def share_of_waves(power):
+    """Returns the share of the power in degrees beyond SMOOTH."""
+    return power[SMOOTH + 1:].sum() / power.sum()
 
 
 def _on_the_sphere(snapshot, gauss=6):
