@@ -13,12 +13,11 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 import textwrap
 
 from package import answer, command_line, footer, plt, scenes_of, studies, style
-import edges_of_meshes
+import edges_of_methods
 import edges_of_shapes
-import edges_of_steps
 
 MAPS = scenes_of(__file__)
-FUNCTIONS = vars(edges_of_steps) | vars(edges_of_meshes) | vars(edges_of_shapes)
+FUNCTIONS = vars(edges_of_methods) | vars(edges_of_shapes)
 
 
 def draw(name, study, output):

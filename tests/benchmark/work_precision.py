@@ -26,13 +26,11 @@ Point = dataclasses.make_dataclass("Point", "picked label error kind seconds ker
 
 
 class Scene:
-    """A study file. `choices`: {choice: {option: settings}}; the first option is the default."""
+    """A study file: its keys are members. `choices`: {choice: {option: settings}}; the first option is the default."""
 
     def __init__(self, path, curves):
-        text = {"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path)
-        self.name, self.title, self.curves = pathlib.Path(path).stem, text["title"], curves
-        self.decks, self.base, self.error, self.choices, self.levels, self.pairs = (
-            text[key] for key in ("deck", "base", "error", "choices", "levels", "pairs"))
+        vars(self).update({"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path))
+        self.name, self.curves = pathlib.Path(path).stem, curves
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
         # the choice that colours stand for: the one with most options, the scheme before others
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
@@ -54,7 +52,7 @@ class Scene:
             curve = table(self.curves / self.error["curve"], ("t", series))
             t, values = curve["t"], curve[series]
         else:
-            reference = study.run(self.decks, self.base | self.error["reference"])
+            reference = study.run(self.deck, self.base | self.error["reference"])
             expect(reference.done, f"the reference run failed: {reference.message}")
             t, values = reference.series["time"], reference.series[series]
         return lambda outcome: interpolation.difference(outcome.series["time"], outcome.series[series], t, values)
@@ -66,8 +64,8 @@ class Scene:
             settings = dict(self.base)
             for choice, option in picked.items():
                 settings |= self.choices[choice][option] or {}
-            ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
-            outcome = study.run(decks, settings, ranks)
+            ranks, deck = int(settings.pop("ranks", 1)), settings.pop("deck", self.deck)
+            outcome = study.run(deck, settings, ranks)
             label = ", ".join(one for choice, one in picked.items() if one != self.default[choice]) or "default"
             if outcome.done:
                 one = Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
@@ -121,9 +119,9 @@ def draw_legend(axis, colors, numbers):
     axis.plot([], [], color=style.INK, label="Pareto front:")
     axis.axis("off")
     axis.legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
-    lines = len(axis.get_legend_handles_labels()[0])
-    axis.text(0, 0.97 - 0.047 * lines, "\n".join(f"{number:2}  {one.label}" for one, number in numbers.items()),
-              transform=axis.transAxes, va="top", fontsize=7.5, linespacing=1.5)
+    words = "\n".join(f"{number:2}  {one.label}" for one, number in numbers.items())
+    axis.text(0, 0.97 - 0.047 * (len(colors) + 2), words, transform=axis.transAxes, va="top", fontsize=7.5,
+              linespacing=1.5)
 
 
 def report(scene, points):
