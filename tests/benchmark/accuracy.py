@@ -12,6 +12,8 @@ from a finer run, relative to the largest value. Kernel evaluations are the same
 are printed as multiples of those that the first deck takes.
 """
 
+import itertools
+
 from package import SHEAR, SIDE, answer, command_line, expect, numpy, scenes_of, studies, table, tanktread
 from tanktread.interpolation import difference
 
@@ -40,16 +42,14 @@ def main():
 
     def lines():
         for name, scene in scenes.items():
-            found = runs(study, scene)
-            rows.extend((name, mesh, *tolerances, error, one.kernel_evaluations, one.processor_seconds)
-                        for mesh, tolerances, one, error in found)
+            found = list(runs(study, scene))
+            expect(found, f"no run of {scene['deck']} came to its end")
+            rows.extend((name, *one) for one in found)
             for demand in DEMANDS:
-                good = [entry for entry in found if entry[3] <= demand]
-                mesh, tolerances, one, error = min(good or found, key=lambda entry: (
-                    entry[2].kernel_evaluations if good else entry[3]))
+                good = [one for one in found if one[3] <= demand]
+                *choice, error, kernels, seconds = min(good or found, key=lambda one: one[4 if good else 3])
                 met = f"{demand:g}" if good else f"{demand:g}: not met, {error:.1e}"
-                yield [scene["title"], met, mesh, *tolerances, float(one.kernel_evaluations),
-                       one.processor_seconds / unit]
+                yield [scene["title"], met, *choice, float(kernels), seconds / unit]
 
     table(["scene", "error", "mesh", "`Time/tolerance`", "`Quadrature/tolerance`", "kernel evaluations",
            "seconds over the first deck's"], lines())
@@ -69,31 +69,28 @@ def scene_of(parsed):
 
 
 def runs(study, scene):
-    """Returns mesh, tolerances, outcome and relative error of every run that came to its end: largest over the run
-    against a finer run, or at the end against the value that the deck expects."""
-    def run(tolerances, mesh):
-        pair = dict(zip(("Time/tolerance", "Quadrature/tolerance"), tolerances))
-        return study.run(scene["deck"], scene["base"] | pair | mesh)
+    """Yields mesh, two tolerances, relative error, kernel evaluations and seconds of every run that came to its end.
+    The error is the largest one over the run against a finer run, or at the end against the value that the deck
+    expects."""
+    def run(mesh, time, quadrature):
+        tolerances = {"Time/tolerance": time, "Quadrature/tolerance": quadrature}
+        return study.run(scene["deck"], scene["base"] | tolerances | mesh)
 
-    series, found, truth = scene["series"], [], None
+    def error_of(one):
+        values = one.series[series]
+        if not scene["reference"]:
+            return abs(values[-1] / one.run.value(f"Expect/{series}/value") - 1)
+        true = finer.series[series]
+        return difference(one.series["time"], values, finer.series["time"], true) / numpy.nanmax(abs(true))
+
+    series = scene["series"]
     if scene["reference"]:
-        finer = run((5e-6, 1e-6), scene["reference"])
+        finer = run(scene["reference"], 5e-6, 1e-6)
         expect(finer.done, f"the reference did not come to its end: {finer.message}")
-        truth = finer.series
-    for name, mesh in scene["meshes"].items():
-        for tolerances in TOLERANCES:
-            one = run(tolerances, mesh)
-            if not one.done:
-                continue
-            values = one.series[series]
-            if truth:
-                error = difference(one.series["time"], values, truth["time"], truth[series]) / numpy.nanmax(
-                    abs(truth[series]))
-            else:
-                error = abs(values[-1] / one.run.value(f"Expect/{series}/value") - 1)
-            found.append((name, tolerances, one, error))
-    expect(found, f"no run of {scene['deck']} came to its end")
-    return found
+    for (name, mesh), tolerances in itertools.product(scene["meshes"].items(), TOLERANCES):
+        one = run(mesh, *tolerances)
+        if one.done:
+            yield name, *tolerances, error_of(one), one.kernel_evaluations, one.processor_seconds
 
 
 if __name__ == "__main__":

@@ -12,20 +12,29 @@ Runs are kept under results/atlas/runs and not made again. What a map shows is h
 
 import textwrap
 
-from package import answer, command_line, footer, scenes_of, studies, style
-import edges_of_meshes
+from package import answer, command_line, footer, plt, scenes_of, studies, style
+import edges_of_methods
 import edges_of_shapes
-import edges_of_steps
 
-MAPS = scenes_of(__file__)  # title, text and data by the name of the map
-FUNCTIONS = vars(edges_of_steps) | vars(edges_of_meshes) | vars(edges_of_shapes)
+MAPS = scenes_of(__file__)
+FUNCTIONS = vars(edges_of_methods) | vars(edges_of_shapes)
 
 
 def draw(name, study, output):
     """Draws a map, with its text and the command that makes it under the chart, and writes its table."""
     given = MAPS[name]
     print(f"{name}: {given['title']}", flush=True)
-    figure, rows = FUNCTIONS[name.replace("-", "_")](study, given)
+    figure, (axes,) = plt.subplots(1, len(given["axes"]), squeeze=False, **given["figure"])
+    rows = list(FUNCTIONS[given.get("function", name.replace("-", "_"))](study, given, axes))
+    for axis, calls in zip(axes, given["axes"]):
+        if "ticks" in given:
+            values = list(given["values"])
+            axis.set(xscale="log", xticks=values, xticklabels=[f"{value:g}" for value in values])
+            axis.set_xticks([], minor=True)
+        for method, arguments in calls.items():
+            getattr(axis, method)(**arguments)
+    if "legend" in given:
+        figure.legend(*axes[1].get_legend_handles_labels(), **given["legend"])
     width = int(figure.get_size_inches()[0] * 15.5)
     words = "\n".join(textwrap.fill(paragraph, width) for paragraph in given["text"].splitlines())
     figure.suptitle(given["title"], x=0.01, ha="left", fontsize=11)

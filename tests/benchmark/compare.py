@@ -28,7 +28,7 @@ import re
 import shutil
 import sys
 
-from package import INPUTS, SIDE, command_line, numpy, scenes_of, table, tanktread, yaml
+from package import INPUTS, command_line, numpy, scenes_of, table, tanktread, yaml
 from power_balance import ENDS
 
 # Settings that shorten the decks which take more than about ten seconds of processor time. All other decks run to their

@@ -48,7 +48,7 @@ def main():
 def draw_sections(outline, tip, along, shots, names, field, words):
     for k, (shot, name, color) in enumerate(zip(shots, names, style.RUNS)):
         look = {"linewidth": 2.2 if k == 0 else 1.2, "linestyle": "-" if k == 0 else (0, (4, 2))}
-        middle = (shot.points.min(0) + shot.points.max(0)) / 2
+        middle = draw.middle(shot.points)
         section = draw.section(shot, middle[1]) - middle[[0, 2]]
         for axis in outline, tip:
             axis.add_collection(LineCollection(section, colors=color, **look))

@@ -12,17 +12,10 @@ import json
 import pathlib
 import subprocess
 
-from package import answer, command_line, expect, footer, numpy, plt, style, table, tanktread
+from package import answer, command_line, expect, footer, numpy, plt, scenes_of, style, table, tanktread
 from tanktread.files import parsed as read
 
-PARTS = {"evaluation s": "whole evaluation", "layer far s": "far sum", "layer near s": "near elements",
-         "layer self s": "own elements", "layer setup s": "nodes and forces", "projection s": "sparse solves",
-         "membrane s": "membrane"}
-CHARTS = [  # title, lines with the far sum as chosen, lines with the dense one
-    ("processor seconds of one velocity evaluation", PARTS, {"evaluation s": "whole, far sum dense"}),
-    ("pairs of points in the far sum", {"far interactions": "far sum as chosen"}, {"far interactions": "dense"}),
-    ("bytes, mesh and fit not counted", {"bytes peak": "highest", "bytes kept": "kept"}, {})]
-KEYS = [*PARTS, "volume s", "setup s", "far interactions", "far error", "bytes kept", "bytes peak"]
+CHARTS, KEYS = scenes_of(__file__).values()
 
 
 def measured():
@@ -62,10 +55,10 @@ def main():
     table(["", *(f"{one['points']:.0f}" for one in trees), "exponent"], (
         [key, *(f"{one[key]:.4g}" for one in trees), exponent(trees, key, arguments.least)] for key in KEYS))
     figure, axes = plt.subplots(1, 3, figsize=(12.6, 4.4))
-    for axis, (title, of_trees, of_dense) in zip(axes, CHARTS):
-        draw(axis, trees, of_trees, arguments.least, style.RUNS + [style.FAINT, style.INK])
-        draw(axis, dense, of_dense if dense else {}, arguments.least, [style.FAINT], "o--")
-        axis.set(title=title, xlabel="control points")
+    for axis, chart in zip(axes, CHARTS):
+        draw(axis, trees, chart["chosen"], arguments.least, style.RUNS + [style.FAINT, style.INK])
+        draw(axis, dense, chart["dense"] if dense else {}, arguments.least, [style.FAINT], "o--")
+        axis.set(title=chart["title"], xlabel="control points")
         axis.legend(loc="upper left")
     axes[0].set_ylim(top=axes[0].get_ylim()[1] * 1000)  # room for the legend
     error = max(one["far error"] for one in trees)

@@ -50,38 +50,22 @@ def line(study, axes, name, deck, jobs, measures, x=None, **pen):
             at = outcome.final[x] if x else at
         rows.append((name, at, *values, outcome.message[:100]))
     for axis, column in zip(axes, zip(*(row[2:-1] for row in rows))):
-        axis.plot([row[1] for row in rows], column, label=name, **pen)
+        axis.plot([row[1] for row in rows], column, **{"label": name} | pen)
     return rows
 
 
-def lines(study, axes, given, settings_at, measures, x=None):
-    """Draws a `line` of each of the `cases` of a map (scenes/atlas.yaml), {name: settings}, over its `values`, with the
-    settings that `settings_at` returns for each. Returns the rows of all lines."""
+def varied(given):
+    """Returns {value: settings} along the axis x of a map (scenes/atlas.yaml)."""
+    return {value: {given["key"]: value} for value in given["values"]} if "key" in given else given["values"]
+
+
+def lines(study, axes, given, measures, x=None, pens=PENS):
+    """Draws a `line` of each of the `cases` of a map, {name: settings}. Returns the rows of all lines."""
     rows = []
-    for (name, settings), pen in zip(given["cases"].items(), PENS):
-        jobs = {value: given["base"] | settings | settings_at(value) for value in given["values"]}
+    for (name, settings), pen in zip(given["cases"].items(), pens):
+        jobs = {value: given["base"] | settings | more for value, more in varied(given).items()}
         rows += line(study, axes, name, given["deck"], jobs, measures, x, **pen)
     return rows
-
-
-def worst(name):
-    """Returns the measure of `line` that is the largest absolute value of a series over the run."""
-    return lambda outcome: numpy.nanmax(abs(outcome.series[name]))
-
-
-def panels(given):
-    """Returns the figure of a map of the atlas, of its `size` (inches), and its `axes` with labels and scales."""
-    figure, (axes,) = plt.subplots(1, len(given["axes"]), figsize=given["size"], squeeze=False)
-    for axis, look in zip(axes, given["axes"]):
-        axis.set(**look)
-    return figure, axes
-
-
-def ticks(axis, values):
-    """Marks these values on a logarithmic axis x, and no others."""
-    axis.set_xscale("log")
-    axis.set_xticks(values, [f"{value:g}" for value in values])
-    axis.set_xticks([], minor=True)
 
 
 def footer(figure, text, **look):

@@ -23,14 +23,14 @@ import subprocess
 import sys
 import tempfile
 
-from package import answer, command_line, table, tanktread, yaml
+from package import SHEAR, answer, command_line, table, tanktread, yaml
 
 
 def summaries(words, ranks, copies):
     """Returns the summaries of some runs that are made at the same time, by a program with its arguments."""
     words = ["mpirun", "--bind-to", "none", "-n", str(ranks), *words, "--quiet", "--output"]
     with tempfile.TemporaryDirectory() as where:
-        places = [pathlib.Path(where) / str(copy) for copy in range(copies)]
+        places = [pathlib.Path(where, str(copy)) for copy in range(copies)]
         runs = [subprocess.Popen([*words, place], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                  env=os.environ | tanktread.ENVIRONMENT) for place in places]
         for place, error in zip(places, [run.communicate()[1] for run in runs]):
@@ -47,7 +47,7 @@ def seconds(summary):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / "inputs/shear_neo_hookean.yaml")
+    parser.add_argument("deck", nargs="?", default=tanktread.SOURCE / SHEAR)
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--repeat", type=int, default=5, help="runs of each kind (default: %(default)s)")
     parser.add_argument("--set", dest="settings", action="append", metavar="KEY=VALUE",
@@ -56,9 +56,9 @@ def main():
                         help="measure what the machine gives (default: do)")
     parser.add_argument("--program", default=tanktread.PROGRAM)
     arguments = parser.parse_args()
-    words, many = [arguments.program, arguments.deck], arguments.ranks
-    for setting in arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]:
-        words += ["--set", setting]
+    settings = arguments.settings or ["Surface/elements per side=24", "Time/final time=0.4"]
+    words = [arguments.program, arguments.deck, *(word for one in settings for word in ("--set", one))]
+    many = arguments.ranks
     kinds = {"one": (1, 1), "many": (many, 1)} | ({"side": (1, many)} if arguments.capacity else {})
     runs = {kind: [] for kind in kinds}
     for _ in range(arguments.repeat):

@@ -9,10 +9,9 @@ study spheroid.yaml of work_precision.py.
 import pathlib
 import sys
 
-from package import SIDE, answer, command_line, numpy, plt, scenes_of, style, table, tanktread
+from package import answer, command_line, numpy, plt, scenes_of, style, table, tanktread
 
-SIZES = [0, 1, 2, 3]  # 56, 218, 866, 3458 control points on the cube; 42, 146, 546, 2114 on the structured mesh
-SETTINGS, OPTIONS, PAPER = scenes_of(__file__).values()
+SETTINGS, OPTIONS, PAPER, MESHES, PANELS, SERIES = scenes_of(__file__).values()
 STAR = {"marker": "*", "linestyle": "none", "color": style.INK, "ms": 9, "label": "paper, Table 1", "zorder": 5}
 BELOW = {"loc": "upper center", "ncol": 2, "bbox_to_anchor": (0.5, 0)}  # the legend of a figure
 
@@ -20,18 +19,15 @@ BELOW = {"loc": "upper center", "ncol": 2, "bbox_to_anchor": (0.5, 0)}  # the le
 def made(study, mesh, settings):
     """Returns the outcome of a run; None if it failed."""
     outcome = study.run(f"inputs/spheroid_{mesh}.yaml", settings)
-    if outcome.done:  # errors beyond what the deck as it stands expects are its end too
-        return outcome
-    print(f"  {outcome.message}", file=sys.stderr)
-    return None
+    if not outcome.done:  # errors beyond what the deck as it stands expects are its end too
+        print(f"  {outcome.message}", file=sys.stderr)
+    return outcome if outcome.done else None
 
 
 def sizes(study, option, largest):
     """Returns the outcomes of an option on its meshes, coarse to fine."""
-    extents = [{SIDE: 3 * 2**size} if option["mesh"] == "cube" else {
-        "Surface/azimuthal elements": 8 * 2**size, "Surface/meridional elements": 4 * 2**size}
-        for size in SIZES[:largest + 1]]
-    return [one for one in (made(study, option["mesh"], option["settings"] | extent) for extent in extents) if one]
+    meshes = MESHES[option["mesh"]][:largest + 1]
+    return [one for one in (made(study, option["mesh"], option["settings"] | mesh) for mesh in meshes) if one]
 
 
 def slope(points, errors):
@@ -59,9 +55,8 @@ def figure_8(found):
     # the rule does not change the surface: one curve a surface
     draw_convergence(axes, found, "normal_l2_error", options=list(OPTIONS)[:4], cut=", rules by tolerance")
     axes.plot(546, PAPER["table"][2][0], **STAR)
-    guide = numpy.array([700, 3000])
-    axes.plot(guide, 6e-4 * (guide / guide[0]) ** -PAPER["slopes"]["normal"][1], color=style.FAINT, linewidth=0.9,
-              label="paper's mean slope, unstructured: 1.62")
+    axes.plot([700, 3000], [6e-4, 6e-4 * (3000 / 700) ** -PAPER["slopes"]["normal"][1]], color=style.FAINT,
+              linewidth=0.9, label="paper's mean slope, unstructured: 1.62")
     axes.set(ylabel="L2 error of the normal", title="Figure 8: the normal")
     figure.legend(*axes.get_legend_handles_labels(), **BELOW)
     return figure
@@ -83,9 +78,7 @@ def figure_9(found):
 
 def figure_10(found):
     """Returns the figure of the error of the pressure; None without runs on the third mesh."""
-    wanted = {"plain_fixed": "(a) plain poles, 8 × 8 Gauss", "cube": "(c) unstructured",
-              "transform_fixed": "(b) Bézier transformation, 8 × 8 Gauss", "c1": "(d) C1 poles, rules by tolerance"}
-    shown = [(found[name][2], title) for name, title in wanted.items() if len(found[name]) > 2]
+    shown = [(found[name][2], title) for name, title in PANELS.items() if len(found[name]) > 2]
     if not shown:
         return None
     figure, grid = plt.subplots(1, len(shown), figsize=(3.1 * len(shown), 4.6), squeeze=False)
@@ -116,20 +109,17 @@ def table_1(study):
         for label, settings in (("8 x 8 Gauss", SETTINGS["fixed"]), ("rules by tolerance", {})):
             outcome = made(study, "polar", SETTINGS["transform"] | settings | {"Surface/pole subdivisions": level})
             if outcome:
-                normal, pressure, drag = (outcome.final[key] for key in ("normal_l2_error", "pressure_l2_error",
-                                                                         "drag_error"))
-                rows.append([level, label, *(f"{value:.3e}" for value in (normal, pressure, 100 * drag, *paper))])
+                *errors, drag = (outcome.final[f"{name}_error"] for name in ("normal_l2", "pressure_l2", "drag"))
+                rows.append([level, label, *(f"{value:.3e}" for value in (*errors, 100 * drag, *paper))])
     table(["n", "rule", "normal", "pressure", "drag, per cent", "paper: normal", "pressure", "drag, per cent"], rows)
 
 
 def table_of_options(found):
     print("\nSlopes against the number of control points: mean over the meshes, finest pair; drag_error_of_traction "
           "is without the reciprocal theorem\n")
-    keys = {"normal_l2_error": "normal", "pressure_l2_error": "pressure", "drag_error": "drag",
-            "drag_error_of_traction": "", "solver_iterations": "", "kernel_evaluations": "", "wall_seconds": ""}
     rows = []
     for name, option in OPTIONS.items():
-        for key, of_paper in keys.items() if len(found[name]) > 1 else ():
+        for key, of_paper in SERIES.items() if len(found[name]) > 1 else ():
             values = column(found[name], key)
             slopes = slope(column(found[name], "n_control_points"), values) if "error" in key else ()
             paper = PAPER["slopes"][of_paper][option["mesh"] == "cube"] if of_paper else ""
@@ -143,7 +133,7 @@ def main():
     parser.add_argument("--results", default="results/spheroid", metavar="DIR", help="of runs (default: %(default)s)")
     parser.add_argument("-o", "--output", default=".", type=pathlib.Path, metavar="DIR",
                         help="of the pictures (default: %(default)s)")
-    parser.add_argument("--largest", type=int, default=3, choices=SIZES[1:],
+    parser.add_argument("--largest", type=int, default=3, choices=(1, 2, 3),
                         help="largest mesh of the four (default: %(default)s)")
     arguments = parser.parse_args()
     study = tanktread.Study(directory=arguments.results)

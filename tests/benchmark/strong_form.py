@@ -6,7 +6,7 @@ form stalls.
     tests/benchmark/strong_form.py results/weak results/strong  # runs of yours
 """
 
-from package import SIDE, answer, command_line, draw, plt, style, tanktread
+from package import SHEAR, SIDE, answer, command_line, draw, plt, style, tanktread
 from matplotlib.collections import LineCollection
 
 
@@ -26,7 +26,7 @@ def main():
 def made(load):
     """Returns the directory of a run; the strong form ends with exit code 3, because it fails, which is shown."""
     settings = {"Membrane/load": load, SIDE: 6, "Time/final time": 2, "Output/interval": 0.05}
-    return tanktread.results_of("inputs/shear_neo_hookean.yaml", f"strong_form/{load}", settings, accepted=(0, 1, 3))
+    return tanktread.results_of(SHEAR, f"strong_form/{load}", settings, accepted=(0, 1, 3))
 
 
 def draw_series(upper, lower, weak, strong):
@@ -51,9 +51,8 @@ def draw_sections(axis, weak, strong):
     for name, shot, color, width in (("weak", weak.snapshot_at(regular.time).scaled(weak), style.RUNS[0], 1.6),
                                      ("strong", regular.scaled(strong), style.RUNS[1], 1.6),
                                      ("strong", last.scaled(strong), style.RUNS[1], 0.7)):
-        pieces = draw.section(shot, (shot.points[:, 1].min() + shot.points[:, 1].max()) / 2)
-        axis.add_collection(LineCollection(pieces, colors=color, linewidths=width,
-                                           label=f"{name} form, t = {shot.time:.4g}"))
+        axis.add_collection(LineCollection(draw.section(shot, draw.middle(shot.points)[1]), colors=color,
+                                           linewidths=width, label=f"{name} form, t = {shot.time:.4g}"))
     axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
     axis.margins(y=0.15)  # room for the legend

@@ -20,21 +20,15 @@ import os
 import pathlib
 import types
 
-from package import INPUTS, SIDE, answer, command_line, expect, numpy, table, tanktread
+from package import INPUTS, SIDE, answer, command_line, expect, numpy, scenes_of, table, tanktread
 import scipy.interpolate
 import scipy.ndimage
 
 from tanktread.studies import fit_data, fit_model, outline, silhouette
 
 DECK = INPUTS / "studies/capsule_in_tube.yaml"
-FINE = {"Quadrature/tolerance": 1e-8, "Steady/tolerance": 1e-10}  # shapes that noise is not to hide
-LAWS = {"neo-Hookean": {"Membrane/law": "neo-Hookean"},
-        "Skalak, C = 1": {"Membrane/law": "Skalak", "Membrane/area dilatation": 1.0}}
-SPEEDS = [0.3, 0.5, 0.8, 1.1, 1.5]
-MODULUS, RADIUS, POINTS = 20.0, 0.8, 60
-NODES = 11
-# capillary numbers viscosity x speed / modulus, below which the rear is not hollow
-SPANS = {"neo-Hookean": (0.006, 0.09), "Skalak, C = 1": (0.008, 0.17)}
+LAWS, SPANS, FINE, SPEEDS = scenes_of(__file__).values()
+MODULUS, RADIUS, POINTS, NODES = 20.0, 0.8, 60, 11
 ANGLES = 2 * numpy.pi * numpy.arange(160) / 160
 
 
@@ -77,10 +71,10 @@ class Emulator:
         return [[self.curve(number)] if self._low < number < self._high else None for number in numbers]
 
 
-def experiments(curves, errors):
-    """Returns experiments of a fit with these points (n, 2), one a speed."""
+def experiments(outlines):
+    """Returns experiments of a fit with these points (n, 2) and their errors, one a speed."""
     found = []
-    for speed, points, error in zip(SPEEDS, curves, errors):
+    for speed, (points, error) in zip(SPEEDS, outlines):
         datum = fit_data.OutlineData.__new__(fit_data.OutlineData)  # whose constructor reads a file
         vars(datum).update(name=f"speed {speed}", at=None, axis=1, scale=1.0, error=error, points=points,
                            count=len(points), places=2, free_scale=False, scale_error=0)
@@ -99,7 +93,7 @@ def exact(study):
         base = LAWS[law] | FINE | {"Membrane/shear modulus": MODULUS}
         curves = [profile(study, base | {"Flow/mean velocity": speed}).even(POINTS) for speed in SPEEDS]
         runs = fit_model.Runs(study, [DECK], law)
-        one = fitted(law, experiments(curves, [0.005 * RADIUS] * len(SPEEDS)), runs, 10 * MODULUS, FINE)
+        one = fitted(law, experiments((curve, 0.005 * RADIUS) for curve in curves), runs, 10 * MODULUS, FINE)
         print(f"{law}, no noise, start {10 * MODULUS:g}: G_s / true - 1 = "
               f"{one.unknowns[0].value(one.x[0]) / MODULUS - 1:.1e}, {runs.count} runs", flush=True)
 
@@ -127,18 +121,18 @@ def print_rows(study, rows, number, seed):
            "law told (AIC + 10)", "runs test refuses the other"], rows(made, numpy.random.default_rng(seed), number))
 
 
-def both(law, data, made):
-    other = next(name for name in LAWS if name != law)
-    return tuple(fitted(name, data, made[name], 1.5 * MODULUS) for name in (law, other))
+def fits_of(law, made, number, measured):
+    """Returns many fits of the true law and of the other; measured(curve): points and their error."""
+    curves = [made[law].curve(speed / MODULUS) for speed in SPEEDS]
+    data = [experiments(map(measured, curves)) for _ in range(number)]
+    return [[fitted(name, one, made[name], 1.5 * MODULUS) for name in {law: None} | LAWS] for one in data]
 
 
 def samples(made, generator, number):
-    for law, noise in itertools.product(LAWS, (0.005, 0.02)):
-        truth, fits = [made[law].curve(speed / MODULUS).even(POINTS) for speed in SPEEDS], []
-        for _ in range(number):
-            noisy = [points + noise * RADIUS * generator.standard_normal(points.shape) for points in truth]
-            fits.append(both(law, experiments(noisy, [noise * RADIUS] * len(SPEEDS)), made))
-        yield told(law, f"{100 * noise:g} %", fits)
+    for law, noise in itertools.product(LAWS, (0.005 * RADIUS, 0.02 * RADIUS)):
+        fits = fits_of(law, made, number, lambda curve: (
+            curve.even(POINTS) + noise * generator.standard_normal((POINTS, 2)), noise))
+        yield told(law, f"{100 * noise / RADIUS:g} %", fits)
 
 
 def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
@@ -157,17 +151,16 @@ def picture(curve, generator, pixels=256, blur=1.5, noise=0.02, finer=6):
 
 
 def pictures(made, generator, number):
+    def measured(curve):
+        image, length, shift = picture(curve, generator)
+        found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
+        points = ((found - (image.shape[0] - 1) / 2) * [1, -1] + shift) * length
+        off.extend(curve.distances(points) / length)
+        return points, error * length
+
     for law in LAWS:
-        truth, fits, off = [made[law].curve(speed / MODULUS) for speed in SPEEDS], [], []
-        for _ in range(number):
-            points, errors = [], []
-            for curve in truth:
-                image, length, shift = picture(curve, generator)
-                found, error = outline.edge(image, outline.body(image, "a picture"), POINTS)
-                points.append(((found - (image.shape[0] - 1) / 2) * [1, -1] + shift) * length)
-                off.extend(curve.distances(points[-1]) / length)
-                errors.append(error * length)
-            fits.append(both(law, experiments(points, errors), made))
+        off = []
+        fits = fits_of(law, made, number, measured)
         yield told(law, f"pictures; edge {numpy.mean(off):+.3f} ± {numpy.std(off):.3f} pixel", fits)
 
 

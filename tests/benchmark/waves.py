@@ -1,4 +1,4 @@
-"""Waves on a capsule: a field of a snapshot in spherical harmonics of the place on the unstressed sphere."""
+"""Waves on a capsule: the load of a snapshot in spherical harmonics of the place on the unstressed sphere."""
 
 from package import numpy
 from tanktread.lagrange import by_degree, grid_table
@@ -6,49 +6,36 @@ from tanktread.lagrange import by_degree, grid_table
 SMOOTH = 8  # the flow and its answer live in degrees up to this one
 
 
-class Spectrum:
-    """Power of a field by degree: `power[l]`, the sum over orders and components of the squared coefficients. The
-    unstressed surface is a sphere of radius `radius`, on which degree l has the wavelength 2 pi radius/sqrt(l (l +
-    1))."""
-
-    def __init__(self, snapshot, field="load", largest=40):
-        self.radius, directions, weights, values = _on_the_sphere(snapshot, field)
-        self.degrees, self.power = numpy.arange(largest + 1), numpy.zeros(largest + 1)
-        for degree, order, harmonic in harmonics(directions, largest):
-            coefficients = (weights * harmonic) @ values
-            self.power[degree] += (1 if order == 0 else 2) * (abs(coefficients) ** 2).sum()
-
-    def wavelength(self, degree):
-        return 2 * numpy.pi * self.radius / numpy.sqrt(degree * (degree + 1))
-
-    @property
-    def short(self):
-        """Share of the power in degrees beyond SMOOTH."""
-        return self.power[SMOOTH + 1:].sum() / self.power.sum()
-
-
-def harmonics(directions, largest):
-    """Yields (degree, order from 0, values) of the orthonormal spherical harmonics at unit vectors (3, n), by the
-    stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long."""
-    x, y, z = directions
+def spectrum(snapshot, largest=40):
+    """Returns the power of the load by degree (largest + 1,), the sum over orders and components of the squared
+    coefficients, and the wavelengths 2 pi R/sqrt(l (l + 1)) of the degrees l from 1 (largest,). R: radius of the
+    unstressed sphere."""
+    radius, (x, y, z), weights, values = _on_the_sphere(snapshot)
+    degrees, power = numpy.arange(1, largest + 1), numpy.zeros(largest + 1)
+    # orthonormal harmonics by the stable recursion in the degree; scipy.special.sph_harm takes a hundred times as long
     sectoral = numpy.full(len(z), (4 * numpy.pi) ** -0.5, complex)
     for order in range(largest + 1):
         if order > 0:
             sectoral = sectoral * (x + 1j * y) * -((2 * order + 1) / (2 * order)) ** 0.5
         before, now = 0 * z, sectoral
         for degree in range(order, largest + 1):
-            yield degree, order, now
+            power[degree] += (1 if order == 0 else 2) * (abs((weights * now) @ values) ** 2).sum()
             a = ((4 * (degree + 1) ** 2 - 1) / ((degree + 1) ** 2 - order**2)) ** 0.5
             b = ((degree**2 - order**2) / (4 * degree**2 - 1)) ** 0.5 if degree > order else 0.0
             before, now = now, a * (z * now - b * before)
+    return power, 2 * numpy.pi * radius / numpy.sqrt(degrees * (degrees + 1))
 
 
-def _on_the_sphere(snapshot, field, gauss=6):
+def share_of_waves(power):
+    """Returns the share of the power in degrees beyond SMOOTH."""
+    return power[SMOOTH + 1:].sum() / power.sum()
+
+
+def _on_the_sphere(snapshot, gauss=6):
     """Returns the mean radius of the unstressed surface, and at Gauss points of its cells directions (3, n), weights of
-    the unit sphere (n,) and values of the field (n, k)."""
+    the unit sphere (n,) and values of the load (n, 3)."""
     nodes = snapshot.points - snapshot.fields["displacement"]
     nodes = nodes - nodes.mean(0)
-    values = numpy.asarray(snapshot.fields[field]).reshape(len(nodes), -1)
     points, weights = numpy.polynomial.legendre.leggauss(gauss)
     found = []
     for p, _, cells in by_degree(snapshot.cells):
@@ -56,7 +43,7 @@ def _on_the_sphere(snapshot, field, gauss=6):
         place, along, across = (one @ nodes[cells] for one in (table, by_s, by_t))
         solid = abs((place * numpy.cross(along, across)).sum(-1)) / numpy.linalg.norm(place, axis=-1) ** 3
         areas = solid * numpy.outer(weights, weights).ravel() / 4
-        found.append((place.reshape(-1, 3), areas.ravel(), (table @ values[cells]).reshape(-1, values.shape[1])))
+        found.append((place.reshape(-1, 3), areas.ravel(), (table @ snapshot.fields["load"][cells]).reshape(-1, 3)))
     places, areas, values = map(numpy.concatenate, zip(*found))
     radii = numpy.linalg.norm(places, axis=1)
     return radii.mean(), (places / radii[:, None]).T, areas, values

@@ -13,7 +13,7 @@ whose runs are numbered and told beside it by what differs from the default, the
 
 import dataclasses
 import itertools
-import math
+import operator
 import pathlib
 
 from package import answer, command_line, expect, footer, interpolation, numpy, plt, studies, style
@@ -26,13 +26,11 @@ Point = dataclasses.make_dataclass("Point", "picked label error kind seconds ker
 
 
 class Scene:
-    """A study file. `choices`: {choice: {option: settings}}; the first option is the default."""
+    """A study file: its keys are members. `choices`: {choice: {option: settings}}; the first option is the default."""
 
     def __init__(self, path, curves):
-        text = {"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path)
-        self.name, self.title, self.curves = pathlib.Path(path).stem, text["title"], curves
-        self.decks, self.base, self.error, self.choices, self.levels, self.pairs = (
-            text[key] for key in ("deck", "base", "error", "choices", "levels", "pairs"))
+        vars(self).update({"base": {}, "levels": [1e-3, 1e-4, 1e-5], "pairs": None} | read(path))
+        self.name, self.curves = pathlib.Path(path).stem, curves
         self.default = {choice: next(iter(options)) for choice, options in self.choices.items()}
         # the choice that colours stand for: the one with most options, the scheme before others
         self.shape = max(self.choices, key=lambda choice: len(self.choices[choice]) * (1 if choice == "time" else 0.5))
@@ -41,11 +39,9 @@ class Scene:
         """Yields the default, then every pick that differs from it in one choice, then in two."""
         choices = [choice for choice in self.choices if not only or choice in only]
         for group in itertools.chain(*(itertools.combinations(choices, k) for k in range(differences + 1))):
-            if len(group) == 2 and self.pairs is not None and set(group) not in map(set, self.pairs):
-                continue
-            others = [[option for option in self.choices[choice] if option != self.default[choice]] for choice in group]
-            for options in itertools.product(*others):
-                yield self.default | dict(zip(group, options))
+            if len(group) < 2 or self.pairs is None or set(group) in map(set, self.pairs):
+                for options in itertools.product(*(list(self.choices[choice])[1:] for choice in group)):
+                    yield self.default | dict(zip(group, options))
 
     def errors(self, study):
         """Returns the function outcome -> error. A curve of the literature is taken if its folder is given."""
@@ -56,7 +52,7 @@ class Scene:
             curve = table(self.curves / self.error["curve"], ("t", series))
             t, values = curve["t"], curve[series]
         else:
-            reference = study.run(self.decks, self.base | self.error["reference"])
+            reference = study.run(self.deck, self.base | self.error["reference"])
             expect(reference.done, f"the reference run failed: {reference.message}")
             t, values = reference.series["time"], reference.series[series]
         return lambda outcome: interpolation.difference(outcome.series["time"], outcome.series[series], t, values)
@@ -68,19 +64,19 @@ class Scene:
             settings = dict(self.base)
             for choice, option in picked.items():
                 settings |= self.choices[choice][option] or {}
-            ranks, decks = int(settings.pop("ranks", 1)), settings.pop("deck", self.decks)
-            outcome = study.run(decks, settings, ranks)
+            ranks, deck = int(settings.pop("ranks", 1)), settings.pop("deck", self.deck)
+            outcome = study.run(deck, settings, ranks)
             label = ", ".join(one for choice, one in picked.items() if one != self.default[choice]) or "default"
-            if not outcome.done:
+            if outcome.done:
+                one = Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
+                            outcome.kernel_evaluations, outcome.counts.get("evaluations", 1))
+                points.append(one)
+                rows.append((*picked.values(), one.error, one.seconds, one.kernels, one.evaluations, ""))
+                print(f"{label:44} error {one.error:.2e}  {one.seconds:7.2f} s  {one.kernels:.3g} kernel, "
+                      f"{one.evaluations} velocity evaluations", flush=True)
+            else:
                 print(f"{label}: {outcome.status}: {outcome.message}", flush=True)
                 rows.append((*picked.values(), "", outcome.processor_seconds, "", "", outcome.message))
-                continue
-            one = Point(picked, label, error_of(outcome), kind(picked[self.shape]), outcome.processor_seconds,
-                        outcome.kernel_evaluations, outcome.counts.get("evaluations", 1))
-            points.append(one)
-            rows.append((*picked.values(), one.error, one.seconds, one.kernels, one.evaluations, ""))
-            print(f"{label:44} error {one.error:.2e}  {one.seconds:7.2f} s  {one.kernels:.3g} kernel, "
-                  f"{one.evaluations} velocity evaluations", flush=True)
         return points, rows
 
 
@@ -92,31 +88,27 @@ def kind(option):
 
 def front(points, cost):
     """Returns the points that no other beats in both, by rising cost."""
-    kept = []
-    for point in sorted(points, key=lambda one: (getattr(one, cost), one.error)):
-        if point.error < (kept[-1].error if kept else math.inf):
-            kept.append(point)
-    return kept
+    ordered = sorted(points, key=lambda one: (getattr(one, cost), one.error))
+    return [one for k, one in enumerate(ordered) if all(one.error < other.error for other in ordered[:k])]
 
 
 def draw(axis, points, cost, colors, families, numbers):
     """Draws every run, lines through the runs of a family, and the front: filled, with its numbers."""
-    def path(line):
-        return [getattr(one, cost) for one in line], [one.error for one in line]
+    def plot(line, *words, **look):
+        axis.loglog([getattr(one, cost) for one in line], [one.error for one in line], *words, **look)
 
     kept = front(points, cost)
     for family in families:
-        axis.loglog(*path(sorted(family, key=lambda one: getattr(one, cost))), color=colors[family[0].kind],
-                    linewidth=0.7, alpha=0.55, zorder=1)
-    axis.loglog(*path(kept), color=style.INK, linewidth=1.4, zorder=2)
+        plot(sorted(family, key=operator.attrgetter(cost)), color=colors[family[0].kind], linewidth=0.7, alpha=0.55,
+             zorder=1)
+    plot(kept, color=style.INK, linewidth=1.4, zorder=2)
     for one in points:
         color, chosen = colors[one.kind], one in kept
-        axis.plot(*path([one]), "o", color=color, ms=5.5 if chosen else 3.5, mfc=color if chosen else "white", mew=0.9,
-                  zorder=3)
+        plot([one], "o", color=color, ms=5.5 if chosen else 3.5, mfc=color if chosen else "white", mew=0.9, zorder=3)
         if chosen:
             axis.annotate(numbers[one], (getattr(one, cost), one.error), (-4, -4), textcoords="offset points",
                           fontsize=7.5, ha="right", va="top")
-    axis.plot(*path(points[:1]), "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
+    plot(points[:1], "o", ms=11, mfc="none", mec=style.INK, mew=1.3)
     axis.set_xlabel(COSTS[cost])
 
 
@@ -127,24 +119,24 @@ def draw_legend(axis, colors, numbers):
     axis.plot([], [], color=style.INK, label="Pareto front:")
     axis.axis("off")
     axis.legend(loc="upper left", bbox_to_anchor=(-0.1, 1), fontsize=8)
-    lines = len(axis.get_legend_handles_labels()[0])
-    axis.text(0, 0.97 - 0.047 * lines, "\n".join(f"{number:2}  {one.label}" for one, number in numbers.items()),
-              transform=axis.transAxes, va="top", fontsize=7.5, linespacing=1.5)
+    words = "\n".join(f"{number:2}  {one.label}" for one, number in numbers.items())
+    axis.text(0, 0.97 - 0.047 * (len(colors) + 2), words, transform=axis.transAxes, va="top", fontsize=7.5,
+              linespacing=1.5)
 
 
 def report(scene, points):
     """Prints the default against the front, and the quickest run for each level of error."""
     default = points[0]
     for cost, unit in COSTS.items():
-        best = min((one for one in points if one.error <= default.error), key=lambda one: getattr(one, cost))
+        best = min((one for one in points if one.error <= default.error), key=operator.attrgetter(cost))
         mine, least = getattr(default, cost), getattr(best, cost)
         print(f"the default has error {default.error:.2e} for {mine:.4g} {unit}; the least for that is {least:.4g}, "
               f"{mine / least:.2f} times less, by {best.label} with error {best.error:.2e}")
     for level in scene.levels:
-        best = min((one for one in points if one.error <= level), key=lambda one: one.seconds, default=None)
-        print(f"error {level:g}: " + ("none" if best is None else (
-            f"best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
-            f"{best.evaluations} velocity evaluations")))
+        best = min((one for one in points if one.error <= level), key=operator.attrgetter("seconds"), default=None)
+        words = (f"best {best.label}: {best.seconds:.3g} s, {best.kernels:.3g} kernel evaluations, "
+                 f"{best.evaluations} velocity evaluations") if best else "none"
+        print(f"error {level:g}: {words}")
 
 
 def main():
@@ -152,7 +144,7 @@ def main():
     parser.add_argument("study", help="the study: a file of tests/benchmark")
     parser.add_argument("--differences", type=int, default=2, choices=(1, 2),
                         help="choices that may differ from the default at a time (default: 2)")
-    parser.add_argument("--only", nargs="+", metavar="CHOICE", help="vary these choices only")
+    parser.add_argument("--only", nargs="+", default=[], metavar="CHOICE", help="vary these choices only")
     parser.add_argument("--curves", type=pathlib.Path, metavar="DIR",
                         help="folder of reference curves (default: none, a run of the study's `reference` instead)")
     studies.arguments(parser, "results/work_precision")
@@ -175,10 +167,10 @@ def main():
         draw(axis, points, cost, colors, families, numbers)
     draw_legend(axes[2], colors, numbers)
     figure.suptitle(scene.title, x=0.01, ha="left", fontsize=11)
-    words = [parsed.study, *["--differences", "1"] * (parsed.differences == 1),
-             *(["--only", *parsed.only] if parsed.only else [])]
+    words = ["--differences", "1"] * (parsed.differences == 1) + ["--only", *parsed.only] * bool(parsed.only)
     against = f", against {scene.error['curve'] if parsed.curves else 'a finer run'}" if "curve" in scene.error else ""
-    footer(figure, f"$ {studies.command_of(__file__, *words)}\nerror: {scene.error.get('text', '')}{against}")
+    footer(figure, f"$ {studies.command_of(__file__, parsed.study, *words)}\n"
+                   f"error: {scene.error.get('text', '')}{against}")
     studies.write_table(parsed.output / f"{scene.name}.csv",
                         [*scene.choices, "error", "seconds", "kernel_evaluations", "evaluations", "message"], rows)
     style.save(figure, parsed.output / f"{scene.name}.png")

@@ -16,49 +16,43 @@ import waves
 QUIET = 1e-3  # share of the load's power in waves below which there are none
 
 
-def measured(study, n, modulus, parsed):
-    """Returns the outcome of a run, its mean spectrum over the last two time units, and mean and range of D there."""
-    one = study.run(SHEAR, {SIDE: n, "Membrane/capillary number": parsed.ca, "Time/final time": parsed.time,
-                            "Membrane/bending modulus": modulus / parsed.ca, "Output/interval": 0.5,
-                            "Time/tolerance": 3e-4, "Particle/orientation": "[20.0, 35.0, 50.0]"})
-    if not one.done:
-        return one, None, None, None
-    found = [waves.Spectrum(shot) for shot in one.run.snapshots() if shot.time >= parsed.time - 2]
-    found[0].power = sum(each.power / each.power.sum() for each in found) / len(found)
-    late = one.series["time"] >= parsed.time - 2
-    d = one.series["taylor_inertia"][late]
-    return one, found[0], interpolation.mean(one.series["time"][late], d), numpy.ptp(d)
-
-
 def draw_row(study, axes, modulus, parsed):
-    """Draws spectra, D over time and wavelengths of one modulus, and returns rows of the table."""
+    """Draws spectra, D over time and wavelengths of one modulus, and returns rows of the table. Spectra, and mean and
+    range of D, are of the last two time units."""
     left, middle, right = axes
     rows, lengths = [], []
     sizes = (4 * numpy.pi / (6 * numpy.square(parsed.meshes))) ** 0.5  # mean sizes of elements on the unit sphere
     for n, size, color in zip(parsed.meshes, sizes, style.RUNS):
-        one, spectrum, mean, reach = measured(study, n, modulus, parsed)
-        if spectrum is None:
+        one = study.run(SHEAR, {SIDE: n, "Membrane/capillary number": parsed.ca, "Time/final time": parsed.time,
+                                "Membrane/bending modulus": modulus / parsed.ca, "Output/interval": 0.5,
+                                "Time/tolerance": 3e-4, "Particle/orientation": "[20.0, 35.0, 50.0]"})
+        if not one.done:
             print(f"n = {n}: {one.message}")
             continue
+        powers, wavelengths = zip(*(waves.spectrum(shot) for shot in one.run.snapshots()
+                                    if shot.time >= parsed.time - 2))
+        power = sum(each / each.sum() for each in powers) / len(powers)
         # the wave: largest power beyond the smooth degrees; in odd degrees only, since the capsule is point symmetric
-        wave = waves.SMOOTH + 1 + int(spectrum.power[waves.SMOOTH + 1:].argmax())
-        waved, length = spectrum.short > QUIET, spectrum.wavelength(wave)
-        rows.append((modulus, n, size, wave if waved else "", length if waved else "", spectrum.short, mean, reach,
-                     one.seconds))
+        wave = waves.SMOOTH + 1 + int(power[waves.SMOOTH + 1:].argmax())
+        short, length = waves.share_of_waves(power), wavelengths[0][wave - 1]
+        time, d = one.series["time"], one.series["taylor_inertia"]
+        waved, late = short > QUIET, time >= parsed.time - 2
+        mean, reach = interpolation.mean(time[late], d[late]), numpy.ptp(d[late])
+        rows.append((modulus, n, size, *((wave, length) if waved else ("", "")), short, mean, reach, one.seconds))
         words = f"wave of degree {wave}, {length:.3f} R = {length / size:.2f} elements" if waved else "no waves"
-        print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {spectrum.short:.1e}; "
+        print(f"E_b = {modulus:g} R^2 G_s, n = {n}: {words}; share beyond degree {waves.SMOOTH} {short:.1e}; "
               f"D = {mean:.5f}, range {reach:.1e}; {one.seconds:.0f} s", flush=True)
-        left.semilogy(spectrum.degrees[1::2], spectrum.power[1::2], "-", color=color, label=f"n = {n}")
-        middle.plot(one.series["time"], one.series["taylor_inertia"], color=color)
+        left.semilogy(range(1, len(power), 2), power[1::2], "-", color=color, label=f"n = {n}")
+        middle.plot(time, d, color=color)
         if waved:
             lengths.append((1 / size, length))
-            left.plot(wave, spectrum.power[wave], "o", color=color, ms=5)
+            left.plot(wave, power[wave], "o", color=color, ms=5)
     expect(rows, f"no run with the modulus {modulus:g} came to its end")
     left.set(title="no bending" if modulus == 0 else f"E_b = {modulus:g} R² G_s", xlabel="degree",
              ylabel="power of the load", ylim=(1e-9, 2))
     middle.set(xlabel="time", ylabel="Taylor parameter D", ylim=(0.9 * rows[-1][6], 1.1 * rows[-1][6]))
     right.plot(*numpy.reshape(lengths, (-1, 2)).T, "o-", color=style.RUNS[0], label="waves" if lengths else "no waves")
-    right.plot(1 / sizes, 2.25 * sizes, color=style.FAINT, linestyle=(0, (4, 3)), label="2.25 elements")
+    right.plot(1 / sizes, 2.25 * sizes, label="2.25 elements", **style.GUIDE)
     right.set(xlabel="elements a radius", ylabel="wavelength over R", ylim=(0, 0.9))
     for axis in left, right:
         axis.legend(loc="best")
