@@ -17,8 +17,7 @@ def interpolated(t, values, at, order=6):
 
 
 def averages_between(t, values, ends):
-    """Returns the averages of values(t) from each of the times `ends` (m,) to the next one, by the trapezoidal rule:
-    shape (m - 1,)."""
+    """Returns the averages (m - 1,) of values(t) between successive times `ends` (m,), by the trapezoidal rule."""
     integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(t) * (values[1:] + values[:-1]) / 2)])
     return numpy.diff(numpy.interp(ends, t, integral)) / numpy.diff(ends)
 
@@ -36,7 +35,5 @@ def difference(t, values, curve_t, curve_values):
     for pair in numpy.array([t, values], float), numpy.array([curve_t, curve_values], float):
         series.append(pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)])
     (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda pair: -pair.shape[1])
-    if not len(coarse_t):
-        return 0.0
-    common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
+    common = (coarse_t >= fine_t[:1]) & (coarse_t <= fine_t[-1:])
     return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

@@ -72,9 +72,8 @@ class Run:
 
         def order(name):
             """Returns the section of a particle and its number there: `cell 3` is the third of `cell`."""
-            found = [(k, int(name[len(kind):] or 0)) for k, kind in enumerate(kinds)
-                     if name == kind or (name.startswith(kind + " ") and name[len(kind):].strip().isdigit())]
-            return min(found, default=(len(kinds), 0))
+            found = ((k, re.fullmatch(rf"{re.escape(kind)}( \d+)?", name)) for k, kind in enumerate(kinds))
+            return min(((k, int(match[1] or 0)) for k, match in found if match), default=(len(kinds), 0))
 
         return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
 
@@ -208,16 +207,13 @@ class Run:
 
     def value(self, path, default=None):
         """Returns the value of one key of the deck: `value("Membrane/capillary number")`."""
-        node = self.deck
+        found = self.deck
         for part in path.split("/"):
-            if not isinstance(node, dict) or part not in node:
-                return default
-            node = node[part]
-        return node
+            found = found.get(part, default) if isinstance(found, dict) else default
+        return found
 
     def cell(self, time):
-        """Returns the vectors of a lattice's periodic cell over R_C at a time, as rows (3, 3); None without a
-        lattice."""
+        """Returns the vectors of a lattice's periodic cell over R_C at a time as rows (3, 3); None if there is none."""
         if "cell_1_x1" not in self.series:
             return None
         row = numpy.abs(self.series["time"] - time).argmin()
@@ -230,8 +226,7 @@ class Run:
         return self.series["time"][known], self.series[name][known]
 
     def band(self, name):
-        """Returns the lower and upper limits (rows,) of a series, value minus and plus estimated error; None if the run
-        has no estimated error of it."""
+        """Returns the limits (rows,) of a series: value minus and plus estimated error; None if there is no error."""
         error = self.errors.get(name, numpy.nan)
         return (self.series[name] - error, self.series[name] + error) if numpy.isfinite(error).any() else None
 
@@ -240,8 +235,8 @@ class Run:
         series = self.directory / "run.hdf.series"
         if not series.exists():
             return []
-        files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"]
-        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
+        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles)
+                for entry in Named(parsed(series, json.loads, dict), f"{series} holds no")["files"]]
 
     def snapshot_at(self, time):
         """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""

@@ -87,26 +87,21 @@ def keys_of(given, name):
     return given or {}
 
 
-def yaml_of(path, known):
-    """Returns the content of a YAML file with these sections only."""
-    text = content_of(path)
-    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(sorted(known))}")
-    unknown = sorted(set(text) - set(known))
-    expect(not unknown, f"{path}: {unknown[0] if unknown else ''} is not known; there are: {', '.join(sorted(known))}")
-    return text
-
-
-def decks_of(text, path):
-    """Returns the paths of the decks that a file names, looked for next to it, in the present directory and with the
-    program."""
+def study_of(path, sections, others):
+    """Returns the content of a study file, which has only these keys and `deck`. Sections that are absent are {}. The
+    decks are paths, looked for next to the file, in the present directory and with the program."""
+    text, known = content_of(path), sorted({"deck"} | sections | others)
+    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(known)}")
+    for key in text:
+        expect(key in known, f"{path}: {key} is not known; there are: {', '.join(known)}")
     expect(text.get("deck"), f"{path} names no deck")
-    found = []
+    decks = []
     for name in text["deck"] if isinstance(text["deck"], list) else [text["deck"]]:
         expect(isinstance(name, str), f"{path}: a deck is the name of a file, but {name} is none")
-        places = [pathlib.Path(path).parent / name, *(folder / name for folder in shared())]
-        found.append(next((place.resolve() for place in places if place.is_file()), None))
-        expect(found[-1], f"{path}: there is no deck {name}, beside it or where the script is started")
-    return found
+        places = [folder / name for folder in (pathlib.Path(path).parent, *shared())]
+        decks.append(next((place.resolve() for place in places if place.is_file()), None))
+        expect(decks[-1], f"{path}: there is no deck {name}, beside it or where the script is started")
+    return text | {name: keys_of(text.get(name), f"{path}: {name}") for name in sections} | {"deck": decks}
 
 
 def values_of(key, given):

@@ -133,12 +133,6 @@ class Fit:
                 return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, found))])
         raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
 
-    def effort(self):
-        """Returns in words how many runs the fit takes."""
-        moved = sum(one.owner in (None, experiment.name) for one in self.unknowns for experiment in self.experiments)
-        n = len(self.experiments)
-        return f"{self.law}: {n} runs to start with, then some {moved + n} a step, for 3 to 10 steps as a rule"
-
     def solve(self, start=None):
         x = self.begin() if start is None else start
         places = len(x) - len(self.unknowns)

@@ -8,6 +8,7 @@ import scipy.optimize
 import scipy.special
 import scipy.stats
 
+from ..figures import style
 from .fit_data import OutlineData
 from .fit_model import SERIES, Fit, determined
 
@@ -127,10 +128,7 @@ def told(fits, rows):
 
 
 def draw(fits, axes=None):
-    """Returns a figure of outlines, curves and values with the fit, residuals, and the ellipses of pairs of
-    unknowns."""
-    from ..figures import style
-
+    """Returns a figure of the data with the fit, the residuals, and the ellipses of pairs of unknowns."""
     best = fits[0]
     numbers, places = best.split(best.x)
     (predictions,) = best.predictions(numbers)

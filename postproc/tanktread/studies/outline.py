@@ -10,11 +10,11 @@ mean of the rays around it, so the errors of points are independent. Blur of var
 curvature to the inner side of the bend; points are moved back.
 """
 
-import pathlib
-
 import numpy
 import scipy.ndimage
+from matplotlib.image import imread
 
+from ..figures import style
 from ..interpolation import mean
 from ..mistakes import Mistake, command_line, expect, log
 
@@ -24,8 +24,6 @@ FINE = 0.25  # pixels between samples of a ray
 
 def grey(path):
     """Returns the picture's brightness (rows, columns), rows from above."""
-    from matplotlib.image import imread
-
     try:
         picture = imread(path).astype(float)
     except Exception as error:  # the reader has many kinds
@@ -133,13 +131,10 @@ def main():
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
     numpy.savetxt(arguments.output, table, "%.4f,%.4f,%.3g", header="x1,x3,error", comments="")
-    log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
+    log.info(f"{arguments.output}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
-        from ..figures import style
-
         figure, (axis,) = style.panels(None, 1, 1, 6, 6 * picture.shape[0] / picture.shape[1])
         axis.imshow(picture, cmap="gray")
         axis.plot(*points.T, ".", color=style.RUNS[1], ms=2)
         axis.axis("off")
         style.save(figure, arguments.overlay)
-    return 0
