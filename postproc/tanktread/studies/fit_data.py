@@ -19,14 +19,12 @@ class Unknown:
     def __init__(self, key, given, owner=None):
         given = given if isinstance(given, dict) else {"start": given}
         self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
-        expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
         self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
         self.logarithmic = given.get("spacing") != "linear"
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
-        self.known, *bounds = (number(given[word], f"{self.name}: {word}") if word in given else None
-                               for word in ("known", "from", "to"))
+        self.known, *bounds = (optional(number, given, word, self.name) for word in ("known", "from", "to"))
         expect(not self.logarithmic or all(bound is None or bound > 0 for bound in bounds),
                f"{self.name}: `from` and `to` must be above 0, or it has `spacing: linear`")
         start = self.number(self.start_value)
@@ -34,7 +32,8 @@ class Unknown:
                                         for bound, far in zip(bounds, (-FAR, FAR)))
         expect(low <= start <= high and low < high,
                f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
-        self.error = positive(given["error"], f"{self.name}: error") if "error" in given else None
+        self.error = optional(positive, given, "error", self.name)
+        expect((self.known is None) == (self.error is None), f"{self.name}: `known` and `error` go together")
 
     def number(self, value):
         return numpy.log(value) if self.logarithmic else value / self.unit
@@ -114,8 +113,7 @@ class OutlineData(Datum):
 
 
 class SeriesData(Datum):
-    """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its
-    origin is free."""
+    """Values of a series, or of its ratio to another one, at times. The start of a curve of free origin is unknown."""
 
     length = property(lambda self: self.count)  # of its residuals
     discretisation = None  # error of the runs, if their deck requests an accuracy
@@ -137,8 +135,7 @@ class SeriesData(Datum):
         self.count = len(self.values)
 
     def start(self, prediction):
-        """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
-        or is nearest to it."""
+        """Returns the last time at which the run passes the first value of the curve, or where it is nearest."""
         if not self.places:
             return numpy.array([])
         times, values = prediction
@@ -186,5 +183,5 @@ class Experiment:
         for one in given["data"]:
             one = keys_of(one, f"{name}: a datum")
             expect("outline" in one or "series" in one, f"{name}: a datum is an outline or a series")
-            label = one.get("outline") or one["series"] if len(given["data"]) > 1 else "data"
+            label = one.get("outline", one.get("series")) if len(given["data"]) > 1 else "data"
             self.data.append((OutlineData if "outline" in one else SeriesData)(one, f"{name}: {label}", folder))

@@ -132,7 +132,7 @@ class Diagram:
         holds = functools.partial(self.holds, name, row)
         if last:
             found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
-            if how == "edge" or found == {"fails from here": low, "holds to here": high}[how]:
+            if how == "edge":
                 return found, how
             low, high = (low, found) if how == "fails from here" else (found, high)
         return common.edge(holds, low, high, factor)
@@ -148,17 +148,16 @@ class Diagram:
             last = low if how == "edge" else last
             above = [value for (*curve, value), run in self.made.items()
                      if curve == [name, at] and value > low and run[0] == self.kind.above]
-            borders = {"fails from here": (at, numpy.nan, low, self.from_here),
-                       "holds to here": (at, low, numpy.nan, self.to_here)}
-            self.borders[name].append(borders.get(how, (at, low, min(above, default=numpy.nan), how)))
+            end = {"fails from here": (numpy.nan, low, self.from_here), "holds to here": (low, numpy.nan, self.to_here)}
+            self.borders[name].append((at, *end.get(how, (low, min(above, default=numpy.nan), how))))
 
     def write(self, directory):
-        borders = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
-        common.write_table(directory / "borders.csv", borders,
-                           [(name, *row) for name, rows in self.borders.items() for row in rows])
-        runs = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
-                "directory"]
-        common.write_table(directory / "runs.csv", runs, [(*key, *run) for key, run in self.made.items()])
+        borders = [(name, *row) for name, rows in self.borders.items() for row in rows]
+        common.write_table(directory / "borders.csv", [
+            "curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"], borders)
+        common.write_table(directory / "runs.csv", [
+            "curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds", "directory"],
+            [(*key, *run) for key, run in self.made.items()])
 
     found = property(lambda self: any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows),
                      doc="Whether there is anything to draw.")

@@ -204,8 +204,7 @@ def plot(directory, column, key, axes=None):
     for k, label in enumerate(dict.fromkeys(lines)):
         x, y, color = columns[key][lines == label], columns[column][lines == label], style.RUNS[k % len(style.RUNS)]
         if y.ndim > 1:
-            for i, (along, values) in enumerate(zip(x, y)):
-                axis.plot(along, values, color=color, label=label if i == 0 else None)
+            axis.plot(x.T, y.T, color=color)[0].set_label(label)
             continue
         order = numpy.argsort(x)
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
