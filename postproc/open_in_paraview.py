@@ -17,8 +17,6 @@ try:
 except ImportError:
     sys.exit("this script is started by pvpython or pvbatch (Debian package python3-paraview), not by python3")
 
-SUBDIVISION = 3  # of every curved element when it is drawn; ParaView's own default shows it nearly flat
-
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -47,7 +45,20 @@ def main():
     times = list(times) if hasattr(times, "__len__") else [times]
     time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
     scene.AnimationTime = view.ViewTime = time
-    show(source, view, arguments.field)
+    display = simple.Show(source, view)
+    display.SetRepresentationType("Surface")
+    display.NonlinearSubdivisionLevel = 3  # of every curved element; ParaView's own default shows it nearly flat
+    display.SelectNormalArray = "Normals"
+    source.UpdatePipeline(view.ViewTime)
+    field, fields = arguments.field, source.PointData.keys()
+    if field not in fields:
+        sys.exit(f"there is no field {field}; there are: {', '.join(sorted(fields))}")
+    scalar = source.PointData[field].GetNumberOfComponents() == 1
+    simple.ColorBy(display, ("POINTS", field) if scalar else ("POINTS", field, "Magnitude"))
+    display.RescaleTransferFunctionToDataRange(True)
+    display.SetScalarBarVisibility(view, True)
+    bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
+    bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
     # x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above
     view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
     simple.ResetCamera(view)
@@ -57,22 +68,6 @@ def main():
         simple.SaveState(arguments.state)
     if arguments.output:
         simple.SaveScreenshot(arguments.output, view)
-
-
-def show(source, view, field):
-    display = simple.Show(source, view)
-    display.SetRepresentationType("Surface")
-    display.NonlinearSubdivisionLevel = SUBDIVISION
-    display.SelectNormalArray = "Normals"
-    source.UpdatePipeline(view.ViewTime)
-    components = source.PointData[field].GetNumberOfComponents() if field in source.PointData.keys() else 0
-    if components == 0:
-        sys.exit(f"there is no field {field}; there are: {', '.join(sorted(source.PointData.keys()))}")
-    simple.ColorBy(display, ("POINTS", field, "Magnitude") if components > 1 else ("POINTS", field))
-    display.RescaleTransferFunctionToDataRange(True)
-    display.SetScalarBarVisibility(view, True)
-    bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
-    bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
 
 
 main()

@@ -13,12 +13,11 @@ from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
-OF_PARTICLE = re.compile(r"(area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|"
-                         r"intrinsic_viscosity|length_x\d|local_area_change|n_control_points|normal_velocity|phase|"
-                         r"shape_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|"
-                         r"((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|gap|"
-                         r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|"
-                         r"(fluid|membrane)_dissipation|power_residual)")
+OF_PARTICLE = re.compile(
+    r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
+    r"gap|local_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
+    r"taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
+    r"surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|power_residual")
 
 
 class Run:
@@ -102,9 +101,8 @@ class Run:
             found.attrs = {"units": dict(self.units), "descriptions": dict(self.descriptions)}
             return found
         own, _ = self._split()
-        parts = [pandas.DataFrame({"time": self.series["time"], "particle": particle} |
-                                  {name: values[particle] for name, values in own.items() if particle in values})
-                 for particle in self.particles]
+        parts = [pandas.DataFrame({"time": self.series["time"], "particle": one} | {
+            name: values[one] for name, values in own.items() if one in values}) for one in self.particles]
         return pandas.concat(parts, ignore_index=True)
 
     def dataset(self):
@@ -196,10 +194,9 @@ class Run:
         else:
             speeds = [numpy.linalg.norm(self.value(f"Particle/{key}", 0)) for key in ("velocity", "angular velocity")]
             rate, stress, velocity = float(max(speeds[0] / radius, speeds[1]) or 1), "(μ · speed / R$_C$)", "speed"
-        scales = {"length": (radius, " / R$_C$"), "curvature": (1 / radius, " · R$_C$"),
-                  "velocity": (rate * radius, " / " + velocity), "stress": (viscosity * rate, " / " + stress),
-                  "tension": (1.0, " / " + symbol)}
-        return scales.get(dimension, (1.0, ""))
+        return {"length": (radius, " / R$_C$"), "velocity": (rate * radius, f" / {velocity}"),
+                "stress": (viscosity * rate, f" / {stress}"), "curvature": (1 / radius, " · R$_C$"),
+                "tension": (1.0, f" / {symbol}")}.get(dimension, (1.0, ""))
 
     def label(self, field, pattern="{}"):
         """Returns the label of an axis of a field without units; `pattern` such as `|{}|`."""

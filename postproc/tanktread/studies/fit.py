@@ -52,8 +52,6 @@ def load(path, study):
     study.limit = optional(number, text, "limit", path)
     expect(text["experiments"], f"{path} has no experiments")
     laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
-    lists = [text, *text["experiments"].values(), *laws.values()]
-    expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
     experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]
     for key, values in text["next"].items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
@@ -63,6 +61,7 @@ def load(path, study):
         unknowns = text["unknown"] | keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
         unknowns = [Unknown(key, given) for key, given in unknowns.items()]
         fits.append(Fit(law, settings, unknowns, experiments, Runs(study, text["deck"], law)))
+        expect(fits[-1].unknowns, f"{path}: nothing is unknown")
     return fits, text
 
 
@@ -85,10 +84,10 @@ def run(path, directory=None, jobs=None, laws=None):
     progress("")
     log.info(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
-    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
-                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
-                                                            for name, (value, error) in fit.values.items()}}
-              for fit in fits}
+    record = {fit.law: {
+        "chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
+        "unknown": {name: dict(zip(("value", "error"), map(float, found))) for name, found in fit.values.items()}}
+        for fit in fits}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits

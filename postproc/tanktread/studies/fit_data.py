@@ -19,6 +19,7 @@ class Unknown:
     def __init__(self, key, given, owner=None):
         given = given if isinstance(given, dict) else {"start": given}
         self.key, self.owner, self.name = key, owner, key if owner is None else f"{owner}: {key}"
+        expect(("known" in given) == ("error" in given), f"{self.name}: `known` and `error` go together")
         self.start_value = number(given.get("start", given.get("known")), f"{self.name}: start")
         self.logarithmic = given.get("spacing") != "linear"
         expect(not self.logarithmic or self.start_value > 0,
@@ -33,7 +34,6 @@ class Unknown:
         expect(low <= start <= high and low < high,
                f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
         self.error = optional(positive, given, "error", self.name)
-        expect((self.known is None) == (self.error is None), f"{self.name}: `known` and `error` go together")
 
     def number(self, value):
         return numpy.log(value) if self.logarithmic else value / self.unit

@@ -93,8 +93,7 @@ class Fit:
         """Returns the weighted residuals of all data and of values known beforehand."""
         if predictions is None:
             return numpy.full(self.length, FAILED)
-        each = [datum.residuals(prediction, x[own])
-                for datum, prediction, own in zip(self.data, predictions, self.positions)]
+        each = [datum.residuals(found, x[own]) for datum, found, own in zip(self.data, predictions, self.positions)]
         known = [(one.value(number) - one.known) / one.error for one, number in zip(self.unknowns, x)
                  if one.known is not None]
         return numpy.concatenate([*each, known])

@@ -22,7 +22,7 @@ def further(fits, settings):
         candidate.settings, candidate.unknowns, candidate.data = first.settings | {key: value}, [], []
         (truth,) = best.runs.all([(first, best.settings_of(candidate, best.x))])
         if truth is None:
-            rows.append((f"{key} {value}", None, None))
+            rows.append((f"{key} {value}", {}, {}))
             continue
         for datum, prediction in zip(first.data, truth):
             one = copy.copy(datum)
@@ -105,18 +105,16 @@ def told(fits, rows):
             lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
     if len(fits) > 1:
         gaps = numpy.array([fit.aic for fit in fits]) - fits[0].aic
-        lines.append("laws, best first: " + ", ".join(
-            f"{fit.law} (AIC + {gap:.1f}, weight {weight:.2g})"
-            for fit, gap, weight in zip(fits, gaps, scipy.special.softmax(-gaps / 2))))
+        weights = scipy.special.softmax(-gaps / 2)
+        lines.append("laws, best first: " + ", ".join(f"{fit.law} (AIC + {gap:.1f}, weight {weight:.2g})"
+                                                      for fit, gap, weight in zip(fits, gaps, weights)))
         told_apart = (f"tell {fits[0].law} from the others" if gaps[1] > 10 else
                       "do not tell these laws apart (a difference in AIC below 10)")
         lines.append(f"the data {told_apart}{', but none of them describes the data' if fits[0].missed else ''}")
     for name, errors, rises in rows:
-        said = ["its run fails"] if errors is None else [
-            *(f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
-              for key, error in errors.items()),
-            *(f"chi square of {law} + {rise:.3g}" for law, rise in rises.items())]
-        lines.append(f"a further experiment, {name}: {', '.join(said)}")
+        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
+                for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        lines.append(f"a further experiment, {name}: {', '.join(said) or 'its run fails'}")
     return "\n".join(lines)
 
 

@@ -79,18 +79,17 @@ def edge(picture, mask, points):
         found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
     for _ in range(3):
         values = profiles()
-        typical = values.mean(0)
-        slope = numpy.gradient(typical, off)
-        found = found - (values - typical) @ slope / (slope @ slope)
+        slope = numpy.gradient(values.mean(0), off)
+        found = found - (values - values.mean(0)) @ slope / (slope @ slope)
     variance = -mean(off, off**2 * slope) * (off[-1] - off[0])
     found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
-    places, error = averaged(angle, found, points, each, row, column)
+    radius, error = averaged(found, each)
+    places = numpy.column_stack([column + radius * numpy.cos(angle[::each]), row + radius * numpy.sin(angle[::each])])
     return unbent(places, variance), error
 
 
 def unbent(points, variance):
-    """Returns the points (n, 2) of a blurred outline, in the order of their angle, moved to where they are without blur
-    of this variance."""
+    """Returns the points (n, 2) of an outline, in the order of their angle, moved back by what a blur moved them."""
     before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
     chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
     # of the circle through three points
@@ -99,17 +98,15 @@ def unbent(points, variance):
     return points + (variance / 2 * curvature)[:, None] * outwards
 
 
-def averaged(angle, radius, points, each, row, column):
-    """Returns the value in the middle of a parabola (of three rays a straight line) through the rays around every
-    point, and its standard error from the scatter of the rays."""
-    order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
+def averaged(radius, each):
+    """Returns the values in the middle of a parabola (of three rays a straight line) through the `each` rays around
+    every point, and their standard error from the scatter of the rays."""
+    rays = numpy.roll(radius, each // 2).reshape(-1, each)
     basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)
-    middle = radius[order] @ weights[0]
-    rest = radius[order] - radius[order] @ weights.T @ basis.T
-    error = numpy.sqrt((rest**2).sum() / (points * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
-    at = angle[order[:, each // 2]]
-    return numpy.column_stack([column + middle * numpy.cos(at), row + middle * numpy.sin(at)]), float(error)
+    rest = rays - rays @ weights.T @ basis.T
+    error = numpy.sqrt((rest**2).sum() / (len(rays) * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
+    return rays @ weights[0], float(error)
 
 
 def main():

@@ -70,8 +70,7 @@ MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns o
 
 
 class Diagram:
-    """A study file and the borders that are found, {curve: rows of the value across, the two values that a border lies
-    between, and how it ended}."""
+    """A study file and its `borders`, {curve: rows of the value across, two values about the border, how it ended}."""
 
     def __init__(self, path, runs):
         text = study_of(path, {"set", "along", "across", "curves", "literature"}, {"motion", "begin"})

@@ -79,14 +79,13 @@ def columns_of(text, path):
         take = str(given.get("take", "last"))
         expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
         expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
-        at = number(given["at"], f"{path}: {name}, at") if "at" in given else None
-        found[name] = given.get("series", name), take, at
+        found[name] = given.get("series", name), take, optional(number, given, "at", f"{path}: {name}")
     return found
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end. A run with
-    requested accuracy has a column `<column> error` in addition to each column of one value."""
+    """Returns the columns of a run, NaN of one that did not come to its end, and of a run with requested accuracy
+    `<column> error` for each column of one value."""
     if not outcome.done:
         return {name: [] if take == "all" else numpy.nan for name, (_, take, _) in columns.items()}
     row, time = {}, outcome.series["time"]
