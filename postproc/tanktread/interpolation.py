@@ -31,9 +31,8 @@ def difference(t, values, curve_t, curve_values):
     """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to
     the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
     a mesh has changed, are left out. The result is 0 if no times are left."""
-    series = []
-    for pair in numpy.array([t, values], float), numpy.array([curve_t, curve_values], float):
-        series.append(pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)])
-    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda pair: -pair.shape[1])
+    pairs = numpy.array([t, values], float), numpy.array([curve_t, curve_values], float)
+    pairs = [pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)] for pair in pairs]
+    (fine_t, fine), (coarse_t, coarse) = sorted(pairs, key=lambda pair: -pair.shape[1])
     common = (coarse_t >= fine_t[:1]) & (coarse_t <= fine_t[-1:])
     return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

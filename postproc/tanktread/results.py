@@ -67,14 +67,9 @@ class Run:
         """The names of the particles in the order of the deck; ["particle"] of a deck with the section Particle."""
         if not self.several:
             return ["particle"]
-        kinds = list(self.deck.get("Particles", {}))
-
-        def order(name):
-            """Returns the section of a particle and its number there: `cell 3` is the third of `cell`."""
-            found = ((k, re.fullmatch(rf"{re.escape(kind)}( \d+)?", name)) for k, kind in enumerate(kinds))
-            return min(((k, int(match[1] or 0)) for k, match in found if match), default=(len(kinds), 0))
-
-        return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
+        names = sorted({name.split("/")[0] for name in self.series if "/" in name}, key=lambda name: (len(name), name))
+        return [name for kind in self.deck.get("Particles", {}) for name in names  # `cell 3` is the third of `cell`
+                if re.fullmatch(rf"{re.escape(str(kind))}( \d+)?", name)]
 
     def of(self, particle, name):
         """Returns a series (rows,) of one particle by its name in `particles`."""
@@ -128,10 +123,10 @@ class Run:
 
     def unit(self, dimension):
         """Returns ", µm/s" for length/time, or without the section Units ", length/time"; "" of a number."""
-        units = self.deck.get("Units") or {}
-        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
         if dimension in ("", "1", "of the key"):
             return ""
+        units = (self.deck.get("Units") or {}).items()
+        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units}
         dimension = dimension.replace("viscosity x length", "force x time/length")
         dimension = re.sub("stress|pressure", "force/length^2", dimension).replace(" x ", " ")
         words = re.sub("length|time|force", lambda word: named.get(word[0], word[0]), dimension)
@@ -151,8 +146,7 @@ class Run:
             duct = arrays_of(self.directory / "duct.h5")
             return float(duct["mean_velocity"] / duct["radius"]), "mean velocity / tube radius"
         if kind == "linear":
-            gradient = numpy.reshape(self.value("Flow/gradient"), (3, 3)).astype(float)
-            return float(numpy.linalg.norm(gradient, 2)), "rate"
+            return float(numpy.linalg.norm(numpy.array(self.value("Flow/gradient"), float).reshape(3, 3), 2)), "rate"
         if kind == "parabolic":
             width = float(self.value("Flow/half width"))
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"

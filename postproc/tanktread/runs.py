@@ -141,8 +141,7 @@ class Outcome:
 
 class Study:
     """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
-    `limit`: processor seconds that one run may take (None: any). `jobs`: runs at a time. `fresh`: makes every run anew.
-    """
+    `limit`: processor seconds of a run at most (None: any). `jobs`: runs at a time. `fresh`: makes every run anew."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)

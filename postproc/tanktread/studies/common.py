@@ -12,8 +12,7 @@ from ..runs import PROGRAM, Study, quoted, shared, text_of
 
 def edge(holds, low, high, factor=1.05):
     """Returns the largest value at which `holds` is true, by bisection of the logarithm to a factor, and how the search
-    ended: `edge`, `holds to here` (high) or `fails from here` (low). `holds` is assumed true below the edge and false
-    above."""
+    ended: `edge`, `holds to here` (high) or `fails from here` (low). It is assumed true below the edge, false above."""
     if not holds(low):
         return low, "fails from here"
     if holds(high):

@@ -84,13 +84,12 @@ class OutlineData(Datum):
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
                "from the first (`open: true` takes it as it is)")
-        self.free_scale, self.scale_error = given.get("scale error") == "free", given.get("scale error", 0)
-        if self.scale_error and not self.free_scale:
-            self.scale_error = positive(self.scale_error, f"{name}: scale error")
-        self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
-        self.count = len(self.points)
+        self.scale_error = error = given.get("scale error") or 0
+        if error:
+            self.scale_error = numpy.inf if error == "free" else positive(error, f"{name}: scale error")
+        self.count, self.places = len(self.points), 2 + bool(error)  # places: of the numbers that say where it lies
 
-    length = property(lambda self: self.count + (self.places > 2 and not self.free_scale),
+    length = property(lambda self: self.count + (0 < self.scale_error < numpy.inf),
                       doc="The number of residuals: one per point, and one of a scale with an error.")
 
     def start(self, prediction):

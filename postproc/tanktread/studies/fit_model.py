@@ -112,11 +112,10 @@ class Fit:
         return numpy.reshape(rows, (len(sides), n, self.length)).transpose(0, 2, 1), by_position[:, n:]
 
     def begin(self):
-        """Returns values at which all runs come to their end. If they do not at the user's start, multiplies one
-        unknown after the other by 3, 1/3, 10 or 1/10."""
+        """Returns x at which all runs end: the user's start, or with one unknown multiplied by 3, 1/3, 10 or 1/10."""
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
-        tries = [start] + [start + shift * unit * numpy.array([one.logarithmic for one in self.unknowns])
-                           for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
+        units = numpy.diag([float(one.logarithmic) for one in self.unknowns])
+        tries = [start, *(start + shift * unit for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in units)]
         low, high = numpy.transpose([one.bounds for one in self.unknowns])
         for x in (one for one in tries if ((low <= one) & (one <= high)).all()):
             (found,) = self.predictions(x)
@@ -192,8 +191,7 @@ class Fit:
         return self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1)
 
     def runs_test(self):
-        """Returns z of the runs test (Wald and Wolfowitz) of the signs along all outlines and curves: by how many
-        standard deviations the number of runs of one sign differs from chance."""
+        """Returns z of the Wald-Wolfowitz runs test of the signs of residuals along all outlines and curves."""
         runs = mean = variance = 0
         for datum, own in zip(self.data, self.rows):
             signs = self.residual[own][:datum.count] > 0

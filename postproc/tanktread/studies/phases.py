@@ -39,8 +39,7 @@ Kind = collections.namedtuple("Kind", "below above tell measures")
 
 
 def in_shear(series, begin):
-    """Returns `tumbles`, `both`, `treads` or None; half turns of the shape against the phase, and of the membrane on
-    it, after the share `begin` of the time."""
+    """Returns `tumbles`, `both`, `treads` or None, and half turns of the shape and the membrane on it after `begin`."""
     begins = series["time"][0] + begin * numpy.ptp(series["time"])
     defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
     time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
@@ -130,10 +129,8 @@ class Diagram:
         low, high, factor = self.range
         holds = functools.partial(self.holds, name, row)
         if last:
-            found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
-            if how == "edge":
-                return found, how
-            low, high = (low, found) if how == "fails from here" else (found, high)
+            near, far = max(low, last / NEAR), min(high, last * NEAR)
+            low, high = (low, near) if not holds(near) else (far, high) if holds(far) else (near, far)
         return common.edge(holds, low, high, factor)
 
     def find(self):

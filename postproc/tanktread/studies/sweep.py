@@ -27,7 +27,7 @@ import time
 import h5py
 import numpy
 
-from ..files import opened
+from ..files import Named, opened
 from ..interpolation import mean
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
@@ -183,7 +183,7 @@ def table(directory):
         found |= {name: file[f"columns/{name}"] for name in file.attrs["columns"]}
         labels = {name: name + data.attrs.get("unit", "") for name, data in found.items()}
         values = {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}
-        return values, keys, labels
+        return Named(values, f"{directory}/table.h5 has no column"), keys, labels
 
 
 def plot(directory, column, key, axes=None):
@@ -191,8 +191,6 @@ def plot(directory, column, key, axes=None):
     from ..figures import style
 
     columns, keys, labels = table(directory)
-    for name in column, key:
-        expect(name in columns, f"the table has no {name}; there are: {', '.join(columns)}")
     expect(columns[column].ndim == columns[key].ndim,
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
