@@ -4,8 +4,8 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """Returns values(t) at the times `at` within t, by polynomials through `order` points. Rows at the time of the row
-    before, where a mesh has changed, are left out."""
+    """Returns values(t) at the times `at`, by polynomials through `order` points. Rows of a repeated time, where a mesh
+    has changed, are left out."""
     result, kept = [], numpy.diff(t, prepend=-numpy.inf) > 0
     t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     for time in at:
@@ -28,9 +28,8 @@ def mean(t, values):
 
 
 def difference(t, values, curve_t, curve_values):
-    """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to
-    the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
-    a mesh has changed, are left out. The result is 0 if no times are left."""
+    """Returns the largest |values - curve| over the times that both cover, or 0. The one with more times is evaluated at
+    the times of the other. Rows with NaN and rows of a repeated time, where a mesh has changed, are left out."""
     pairs = numpy.array([t, values], float), numpy.array([curve_t, curve_values], float)
     pairs = [pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)] for pair in pairs]
     (fine_t, fine), (coarse_t, coarse) = sorted(pairs, key=lambda pair: -pair.shape[1])

@@ -110,8 +110,7 @@ class Run:
         about = {name: {"units": self.units[name], "long_name": self.descriptions[name]} for name in self.series}
         for name, values in own.items():
             rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.particles])
-            first = f"{next(iter(values))}/{name}" if self.several else name
-            variables[name] = ("particle", "time"), rows, about[first]
+            variables[name] = ("particle", "time"), rows, about[f"{min(values)}/{name}" if self.several else name]
         for name, values in scene.items():
             variables[f"scene_{name}" if name in own else name] = ("time",), values, about[name]
         coordinates = {"time": ("time", time, about["time"]), "particle": self.particles}
@@ -224,10 +223,8 @@ class Run:
     def snapshots(self):
         """Returns the saved steps in order of time. Each is read when it is used."""
         series = self.directory / "run.hdf.series"
-        if not series.exists():
-            return []
-        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles)
-                for entry in Named(parsed(series, json.loads, dict), f"{series} holds no")["files"]]
+        files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"] if series.exists() else []
+        return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
 
     def snapshot_at(self, time):
         """Returns the saved step nearest to a time (None: the last one). Raises Mistake if there is none."""

@@ -1,7 +1,6 @@
 """Saved steps of a run: exact surfaces and the fields on them."""
 
 import functools
-import itertools
 import pathlib
 
 import numpy
@@ -49,9 +48,7 @@ class Snapshot:
     @property
     def frame(self):
         """Points (m, 3) whose extent is that of a picture: `points`, or in a lattice the eight corners of the cell."""
-        if self.cell is None:
-            return self.points
-        return numpy.array(list(itertools.product((-0.5, 0.5), repeat=3))) @ self.cell
+        return self.points if self.cell is None else (numpy.indices((2, 2, 2)).reshape(3, -1).T - 0.5) @ self.cell
 
     def cells_of(self, particle):
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""

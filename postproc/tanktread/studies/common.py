@@ -1,5 +1,4 @@
-"""What the studies share: options, tables, bisection, and the reading of study files: YAML sections, numbers, ranges,
-decks. What is wrong in a file is a Mistake: one sentence."""
+"""What the studies share: options, tables, bisection, and reading of study files. What is wrong in one is a Mistake."""
 
 import pathlib
 

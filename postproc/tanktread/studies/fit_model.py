@@ -63,8 +63,7 @@ class Runs:
 
 
 class Fit:
-    """One law: what is unknown, its best values and their errors. The numbers x that are varied are those of the
-    unknowns, then the positions of outlines and starts of curves."""
+    """One law and its unknowns. The numbers x that are varied: unknowns, positions of outlines, starts of curves."""
 
     def __init__(self, law, settings, unknowns, experiments, runs):
         self.law, self.settings, self.experiments, self.runs = law, settings, experiments, runs
@@ -183,12 +182,8 @@ class Fit:
                        doc="By what factor residuals are larger than their errors.")
     missed = property(lambda self: self.stated and self.probability < MISSED,
                       doc="Whether the errors of the data do not explain the residuals.")
-
-    @property
-    def aic(self):
-        if self.stated:
-            return self.square + 2 * len(self.x)
-        return self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1)
+    aic = property(lambda self: self.square + 2 * len(self.x) if self.stated else
+                   self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1))
 
     def runs_test(self):
         """Returns z of the Wald-Wolfowitz runs test of the signs of residuals along all outlines and curves."""

@@ -64,12 +64,6 @@ def _alone(fit, candidate):
     return one
 
 
-def rounded(value, error):
-    """Returns a value with one digit more than its error determines."""
-    digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
-    return f"{value:.{digits}g}"
-
-
 def told(fits, rows):
     """Returns the report as text."""
     lines = []
@@ -88,9 +82,10 @@ def told(fits, rows):
                          "mesh, a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
-            if numpy.isfinite(error):
+            if numpy.isfinite(error):  # the value has one digit more than its error determines
+                digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value else 6
                 also = f"; by the residuals ± {fit.scatter * error:.2g}" if fit.missed else ""
-                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
+                lines.append(f"  {name} = {value:.{digits}g} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")

@@ -37,8 +37,7 @@ def frame(picture):
 
 
 def body(picture, path):
-    """Returns a mask of the largest thing that differs from the frame, holes filled. The brightness that sets it off is
-    the one that best splits the picture in two classes (Otsu)."""
+    """Returns a mask of the largest thing that differs from the frame by Otsu's threshold, holes filled."""
     smooth = scipy.ndimage.gaussian_filter(picture, 2)
     numbers, edges = numpy.histogram(smooth, 256)
     middles = (edges[1:] + edges[:-1]) / 2
@@ -99,8 +98,7 @@ def unbent(points, variance):
 
 
 def averaged(radius, each):
-    """Returns the values in the middle of a parabola (of three rays a straight line) through the `each` rays around
-    every point, and their standard error from the scatter of the rays."""
+    """Returns the middle values of parabolas (of three rays: lines) through `each` rays per point, and their error."""
     rays = numpy.roll(radius, each // 2).reshape(-1, each)
     basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)

@@ -40,10 +40,9 @@ Kind = collections.namedtuple("Kind", "below above tell measures")
 
 def in_shear(series, begin):
     """Returns `tumbles`, `both`, `treads` or None, and half turns of the shape and the membrane on it after `begin`."""
-    begins = series["time"][0] + begin * numpy.ptp(series["time"])
     defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
     time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
-    late = time >= begins
+    late = time >= series["time"][0] + begin * numpy.ptp(series["time"])
     if not late.any():
         return None, numpy.nan, numpy.nan
     turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
@@ -107,8 +106,7 @@ class Diagram:
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def holds(self, name, row, value):
-        """Returns whether the motion is the one below the border. Keeps in `made` the motion, or why there is none, its
-        two measures, processor seconds and directory."""
+        """Returns whether the motion is the one below the border. Keeps in `made` what is known about the run."""
         key = name, row[self.across], value
         if key not in self.made:
             outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})

@@ -144,10 +144,9 @@ class Sweep:
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for row, outcome, *values in zip(self.rows, self.outcomes, *columns.values()):
-                out.writerow([*(row.get(key, "") for key in self.keys), *values, outcome.status,
-                              f"{outcome.processor_seconds:.3g}", outcome.directory.name,
-                              "" if outcome.done else outcome.message])
+            for row, one, *values in zip(self.rows, self.outcomes, *columns.values()):
+                out.writerow([*(row.get(key, "") for key in self.keys), *values, one.status,
+                              f"{one.processor_seconds:.3g}", one.directory.name, "" if one.done else one.message])
         curves = {name: [values[name] for values in found] for name in whole}
         if whole:
             curves["time"] = [outcome.series["time"] if outcome.done else [] for outcome in self.outcomes]
@@ -217,9 +216,8 @@ def plot(directory, column, key, axes=None):
 
 
 def run(path, directory=None, jobs=None, fresh=False):
-    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`. `directory`: of
-    table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the number of cores).
-    `fresh`: makes every run anew."""
+    """Makes the runs of a study file, writes its table, and returns the Sweep. `directory`: of table.csv, table.h5 and
+    runs/ (default: results/<study>). `jobs`: runs at a time (default: one per core). `fresh`: makes all runs anew."""
     directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
