@@ -28,7 +28,7 @@ def mean(t, values):
 
 
 def difference(t, values, curve_t, curve_values):
-    """Returns the largest |values - curve| over the times that both cover, or 0. The one with more times is evaluated at
+    """Returns the largest |values - curve| over the times that both cover, or 0. The one of more times is evaluated at
     the times of the other. Rows with NaN and rows of a repeated time, where a mesh has changed, are left out."""
     pairs = numpy.array([t, values], float), numpy.array([curve_t, curve_values], float)
     pairs = [pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)] for pair in pairs]

@@ -1,11 +1,12 @@
 """What the studies share: options, tables, bisection, and reading of study files. What is wrong in one is a Mistake."""
 
+import contextlib
 import pathlib
 
 import numpy
 
 from ..files import parsed as content_of
-from ..mistakes import expect, log
+from ..mistakes import Mistake, expect, log
 from ..runs import PROGRAM, Study, quoted, shared, text_of
 
 
@@ -53,12 +54,10 @@ def command_of(script, *words):
 
 def number(given, name):
     """Returns a number of a YAML file, in which 1e-2 is a string."""
-    try:
-        found = float(given)
-    except (TypeError, ValueError):
-        found = numpy.nan
-    expect(not numpy.isnan(found), f"{name}: {given} is not a number")
-    return found
+    with contextlib.suppress(TypeError, ValueError):
+        if not numpy.isnan(float(given)):
+            return float(given)
+    raise Mistake(f"{name}: {given} is not a number")
 
 
 def positive(given, name):

@@ -8,8 +8,7 @@ from ..mistakes import expect
 from . import silhouette
 from .common import keys_of, number, optional, positive
 
-# from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
-FAR = numpy.log(1000)
+FAR = numpy.log(1000)  # of an unknown's bounds from its start, if none are set; of a linear one in parts of its start
 GAP = 0.1  # of an outline's length, from its last point to the first, at which it does not close
 
 

@@ -98,11 +98,10 @@ class Diagram:
 
     def settings(self, name, keys):
         """Returns the settings of a curve, one dict for each of its values across."""
-        values = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
-        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
-        for key, given in lists.items():
-            expect(len(given) == len(values),
-                   f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
+        at = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
+        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: at}
+        for key, one in lists.items():
+            expect(len(one) == len(at), f"{name}: {key} has {len(one)} values where {self.across} has {len(at)}")
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def holds(self, name, row, value):

@@ -84,15 +84,15 @@ def columns_of(text, path):
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, NaN of one that did not come to its end, and of a run with requested accuracy
-    `<column> error` for each column of one value."""
+    """Returns the columns of a run, and `time` of whole series; none of a run that did not come to its end. A run with
+    requested accuracy has a column `<column> error` in addition to each column of one value."""
     if not outcome.done:
-        return {name: [] if take == "all" else numpy.nan for name, (_, take, _) in columns.items()}
+        return {}
     row, time = {}, outcome.series["time"]
     for name, (series, take, at) in columns.items():
         values, errors = outcome.series[series], outcome.run.errors.get(series)
         if take == "all":
-            row[name] = values
+            row |= {name: values, "time": time}
             continue
         kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # it is NaN where undefined
         take_error = TAKES["last" if take == "last" else "largest"]
@@ -139,7 +139,7 @@ class Sweep:
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
-                  if any(word in values for values in found)]
+                  if word == name or any(word in values for values in found)]
         columns = {name: [values.get(name, numpy.nan) for values in found] for name in single}
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
@@ -147,12 +147,9 @@ class Sweep:
             for row, one, *values in zip(self.rows, self.outcomes, *columns.values()):
                 out.writerow([*(row.get(key, "") for key in self.keys), *values, one.status,
                               f"{one.processor_seconds:.3g}", one.directory.name, "" if one.done else one.message])
-        curves = {name: [values[name] for values in found] for name in whole}
-        if whole:
-            curves["time"] = [outcome.series["time"] if outcome.done else [] for outcome in self.outcomes]
-        for name, rows in curves.items():
-            padded = itertools.zip_longest(*rows, fillvalue=numpy.nan)
-            columns[name] = numpy.reshape(list(padded), (-1, len(rows))).T
+        for name in [*whole, "time"] if whole else []:
+            padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
+            columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
         with h5py.File(directory / "table.h5", "w") as file:
             file["status"] = [outcome.status for outcome in self.outcomes]
             file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
