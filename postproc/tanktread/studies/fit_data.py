@@ -32,7 +32,7 @@ class Unknown:
                                         for bound, far in zip(bounds, (-FAR, FAR)))
         expect(low <= start <= high and low < high,
                f"{self.name} starts from {self.start_value:g}, which is not between `from` and `to`")
-        self.error = optional(positive, given, "error", self.name)
+        self.error = positive(given["error"], f"{self.name}: error") if "error" in given else None
 
     def number(self, value):
         return numpy.log(value) if self.logarithmic else value / self.unit
