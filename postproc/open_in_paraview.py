@@ -17,62 +17,52 @@ try:
 except ImportError:
     sys.exit("this script is started by pvpython or pvbatch (Debian package python3-paraview), not by python3")
 
-SUBDIVISION = 3  # of every curved element when it is drawn; ParaView's own default shows it nearly flat
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("results", help="directory of a run's results")
+parser.add_argument("--field", default="traction", help="what colours the surface (default: %(default)s)")
+parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
+parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
+parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")
+parser.add_argument("--offscreen", action="store_true",
+                    help="this ParaView draws without a display (Debian's does not)")
+arguments = parser.parse_args()
+if not (arguments.offscreen or os.environ.get("DISPLAY")):
+    sys.exit(f"there is no display, without which Debian's ParaView crashes: xvfb-run -a pvpython "
+             f"{' '.join(sys.argv)} (package xvfb)")
 
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("results", help="directory of a run's results")
-    parser.add_argument("--field", default="traction", help="what colours the surface (default: %(default)s)")
-    parser.add_argument("--time", type=float, help="simulated time to show (default: the last)")
-    parser.add_argument("--state", metavar="FILE", help="save a state file for the ParaView program")
-    parser.add_argument("-o", "--output", metavar="FILE", help="save a picture")
-    parser.add_argument("--offscreen", action="store_true",
-                        help="this ParaView draws without a display (Debian's does not)")
-    arguments = parser.parse_args()
-    if not (arguments.offscreen or os.environ.get("DISPLAY")):
-        sys.exit(f"there is no display, without which Debian's ParaView crashes: xvfb-run -a pvpython "
-                 f"{' '.join(sys.argv)} (package xvfb)")
-
-    series = pathlib.Path(arguments.results).resolve() / "run.hdf.series"
-    if not series.exists():
-        sys.exit(f"{series} does not exist: give the directory of a run's results")
-    source = simple.OpenDataFile(str(series))
-    simple.RenameSource("tanktread", source)
-    view = simple.GetActiveViewOrCreate("RenderView")
-    view.ViewSize, view.Background, view.UseColorPaletteForBackground = [1200, 900], [1, 1, 1], 0
-    scene = simple.GetAnimationScene()
-    scene.UpdateAnimationUsingDataTimeSteps()
-    times = scene.TimeKeeper.TimestepValues or [0.0]  # one saved step is a number, not a list
-    times = list(times) if hasattr(times, "__len__") else [times]
-    time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
-    scene.AnimationTime = view.ViewTime = time
-    show(source, view, arguments.field)
-    # x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above
-    view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
-    simple.ResetCamera(view)
-    view.CameraParallelProjection = 1
-    view.CameraParallelScale *= 0.75
-    if arguments.state:
-        simple.SaveState(arguments.state)
-    if arguments.output:
-        simple.SaveScreenshot(arguments.output, view)
-
-
-def show(source, view, field):
-    display = simple.Show(source, view)
-    display.SetRepresentationType("Surface")
-    display.NonlinearSubdivisionLevel = SUBDIVISION
-    display.SelectNormalArray = "Normals"
-    source.UpdatePipeline(view.ViewTime)
-    components = source.PointData[field].GetNumberOfComponents() if field in source.PointData.keys() else 0
-    if components == 0:
-        sys.exit(f"there is no field {field}; there are: {', '.join(sorted(source.PointData.keys()))}")
-    simple.ColorBy(display, ("POINTS", field, "Magnitude") if components > 1 else ("POINTS", field))
-    display.RescaleTransferFunctionToDataRange(True)
-    display.SetScalarBarVisibility(view, True)
-    bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
-    bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
-
-
-main()
+series = pathlib.Path(arguments.results).resolve() / "run.hdf.series"
+if not series.exists():
+    sys.exit(f"{series} does not exist: give the directory of a run's results")
+source = simple.OpenDataFile(str(series))
+simple.RenameSource("tanktread", source)
+view = simple.GetActiveViewOrCreate("RenderView")
+view.ViewSize, view.Background, view.UseColorPaletteForBackground = [1200, 900], [1, 1, 1], 0
+scene = simple.GetAnimationScene()
+scene.UpdateAnimationUsingDataTimeSteps()
+times = scene.TimeKeeper.TimestepValues or [0.0]  # one saved step is a number, not a list
+times = list(times) if hasattr(times, "__len__") else [times]
+time = times[-1] if arguments.time is None else min(times, key=lambda one: abs(one - arguments.time))
+scene.AnimationTime = view.ViewTime = time
+display = simple.Show(source, view)
+display.SetRepresentationType("Surface")
+display.NonlinearSubdivisionLevel = 3  # of every curved element; ParaView's own default shows it nearly flat
+display.SelectNormalArray = "Normals"
+source.UpdatePipeline(view.ViewTime)
+field, fields = arguments.field, source.PointData.keys()
+if field not in fields:
+    sys.exit(f"there is no field {field}; there are: {', '.join(sorted(fields))}")
+scalar = source.PointData[field].GetNumberOfComponents() == 1
+simple.ColorBy(display, ("POINTS", field) if scalar else ("POINTS", field, "Magnitude"))
+display.RescaleTransferFunctionToDataRange(True)
+display.SetScalarBarVisibility(view, True)
+bar = simple.GetScalarBar(simple.GetColorTransferFunction(field), view)
+bar.TitleColor = bar.LabelColor = [0.13, 0.15, 0.18]
+# x1 to the right, x3 up, the eye on the side of negative x2 and somewhat above
+view.CameraFocalPoint, view.CameraPosition, view.CameraViewUp = [0, 0, 0], [0.45, -0.8, 0.4], [0, 0, 1]
+simple.ResetCamera(view)
+view.CameraParallelProjection = 1
+view.CameraParallelScale *= 0.75
+if arguments.state:
+    simple.SaveState(arguments.state)
+if arguments.output:
+    simple.SaveScreenshot(arguments.output, view)

@@ -2,6 +2,7 @@
 
 import contextlib
 import difflib
+import functools
 import pathlib
 import warnings
 
@@ -11,10 +12,8 @@ import yaml
 
 from .mistakes import Mistake, expect
 
-
-def yaml_text(text):
-    """Returns the content of a YAML text, by the fast loader if PyYAML has it."""
-    return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+# Returns the content of a YAML text. PyYAML has the fast loader if it was built with libyaml.
+yaml_text = functools.partial(yaml.load, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
 def parsed(path, parse=yaml_text, kind=object):
@@ -73,12 +72,10 @@ def table(path, names=(), columns=2, delimiter=","):
     """Returns a CSV file's columns of these names as a structured array, or without names its rows of numbers (n, k).
     Without names, a first row of words is left out, and k is `columns` or more. Anything else is a Mistake."""
     expect(pathlib.Path(path).is_file(), f"there is no file {path}")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            found = numpy.genfromtxt(path, delimiter=delimiter, names=True if names else None)
-    except (OSError, ValueError, IndexError):
-        found = numpy.zeros(0)
+    found = numpy.zeros(0)
+    with warnings.catch_warnings(), contextlib.suppress(OSError, ValueError, IndexError):
+        warnings.simplefilter("ignore")
+        found = numpy.genfromtxt(path, delimiter=delimiter, names=True if names else None)
     if names:
         expect(found.size > 1 and set(names) <= set(found.dtype.names or ()),
                f"{path} is no table with the columns {', '.join(names)}, separated by commas")

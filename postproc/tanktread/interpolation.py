@@ -4,8 +4,8 @@ import numpy
 
 
 def interpolated(t, values, at, order=6):
-    """Returns values(t) at the times `at` within t, by polynomials through `order` points. Rows at the time of the row
-    before, where a mesh has changed, are left out."""
+    """Returns values(t) at the times `at`, by polynomials through `order` points. Rows of a repeated time, where a mesh
+    has changed, are left out."""
     result, kept = [], numpy.diff(t, prepend=-numpy.inf) > 0
     t, values = numpy.asarray(t)[kept], numpy.asarray(values)[kept]
     for time in at:
@@ -17,8 +17,7 @@ def interpolated(t, values, at, order=6):
 
 
 def averages_between(t, values, ends):
-    """Returns the averages of values(t) from each of the times `ends` (m,) to the next one, by the trapezoidal rule:
-    shape (m - 1,)."""
+    """Returns the averages (m - 1,) of values(t) between successive times `ends` (m,), by the trapezoidal rule."""
     integral = numpy.concatenate([[0], numpy.cumsum(numpy.diff(t) * (values[1:] + values[:-1]) / 2)])
     return numpy.diff(numpy.interp(ends, t, integral)) / numpy.diff(ends)
 
@@ -29,14 +28,10 @@ def mean(t, values):
 
 
 def difference(t, values, curve_t, curve_values):
-    """Returns the largest |values - curve| over the times that both cover. The one with more times is interpolated to
-    the times of the other. Rows with NaN, where a series is undefined, and those at the time of the row before, where
-    a mesh has changed, are left out. The result is 0 if no times are left."""
-    series = []
-    for pair in numpy.array([t, values], float), numpy.array([curve_t, curve_values], float):
-        series.append(pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)])
-    (fine_t, fine), (coarse_t, coarse) = sorted(series, key=lambda pair: -pair.shape[1])
-    if not len(coarse_t):
-        return 0.0
-    common = (coarse_t >= fine_t[0]) & (coarse_t <= fine_t[-1])
+    """Returns the largest |values - curve| over the times that both cover, or 0. The one of more times is evaluated at
+    the times of the other. Rows with NaN and rows of a repeated time, where a mesh has changed, are left out."""
+    pairs = numpy.array([t, values], float), numpy.array([curve_t, curve_values], float)
+    pairs = [pair[:, ~numpy.isnan(pair[1]) & (numpy.diff(pair[0], prepend=-numpy.inf) > 0)] for pair in pairs]
+    (fine_t, fine), (coarse_t, coarse) = sorted(pairs, key=lambda pair: -pair.shape[1])
+    common = (coarse_t >= fine_t[:1]) & (coarse_t <= fine_t[-1:])
     return float(numpy.max(numpy.abs(coarse[common] - interpolated(fine_t, fine, coarse_t[common])), initial=0.0))

@@ -1,5 +1,4 @@
-"""Lagrange polynomials of the cells in snapshots. Node (i, j) of a cell of degree p lies at the parameters (i/p,
-j/p)."""
+"""Lagrange polynomials of the cells in snapshots. Node (i, j) of a cell of degree p is at the parameters (i/p, j/p)."""
 
 import numpy
 
@@ -27,13 +26,12 @@ def table(p, s, t, ds=0, dt=0):
 
 def grid_table(p, along, ds=0, dt=0):
     """Returns the polynomials on the grid of parameters along x along, t first: shape (len(along)^2, (p + 1)^2)."""
-    t, s = (one.ravel() for one in numpy.meshgrid(along, along, indexing="ij"))
-    return table(p, s, t, ds, dt)
+    return table(p, numpy.tile(along, len(along)), numpy.repeat(along, len(along)), ds, dt)
 
 
 def by_degree(cells):
     """Yields (degree, indices of the cells of this degree, their node numbers (cells, (degree + 1)^2))."""
     sizes = numpy.array([len(cell) for cell in cells])
-    for n in sorted(set(sizes.tolist())):
+    for n in numpy.unique(sizes):
         which = numpy.flatnonzero(sizes == n)
         yield round(n**0.5) - 1, which, numpy.array([cells[k] for k in which])

@@ -43,19 +43,14 @@ def command_line(doc):
     return argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
-class _Lines(logging.Handler):
-    """Prints what is logged on the present standard output."""
-
-    def emit(self, record):
-        print(record.getMessage(), flush=True)
-
-
 def answer(main):
     """Runs the main function of a command and ends the process: exit code 2 with one sentence if the input is wrong."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # a reader such as head may stop early
     log.setLevel(logging.INFO)
-    log.handlers[:] = [_Lines()]
+    handler = logging.Handler()
+    handler.emit = lambda record: print(record.getMessage(), flush=True)
+    log.handlers[:] = [handler]
     try:
         sys.exit(main())
     except Mistake as mistake:

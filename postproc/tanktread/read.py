@@ -14,9 +14,8 @@ def main():
     if arguments.series:
         for values in zip(*(result.series[name] for name in arguments.series)):
             log.info(" ".join(f"{value:.16g}" for value in values))
-        return 0
+        return
     log.info(f"{result.name}: {len(result.series['time'])} rows, {len(result.snapshots())} snapshots")
     for name, values in sorted(result.series.items()):
         last = values[-1] if len(values) else float("nan")
         log.info(f"  {name:24} {last:14.7g}  {result.units[name]:14}  {result.descriptions[name]}")
-    return 0

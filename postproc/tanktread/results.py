@@ -13,12 +13,11 @@ from .snapshots import DIMENSIONS, Snapshot
 
 RATES = {"simple shear": "shear rate", "four-roll": "rate", "planar hyperbolic": "rate", "uniaxial extension": "rate"}
 # Series of one particle; the others belong to the scene. A deck with several particles states it by /series/<particle>.
-OF_PARTICLE = re.compile(r"(area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|"
-                         r"intrinsic_viscosity|length_x\d|local_area_change|n_control_points|normal_velocity|phase|"
-                         r"shape_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|taylor_\w+|"
-                         r"((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|gap|"
-                         r"\w*concentration|surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|"
-                         r"(fluid|membrane)_dissipation|power_residual)")
+OF_PARTICLE = re.compile(
+    r"area|axis_\d(_x\d)?|cent(er|roid)_x\d|compressed_area|energy|inclination|intrinsic_viscosity|length_x\d|phase|"
+    r"gap|local_area_change|n_control_points|(normal|shape)_velocity|smallest_tension|stresslet_\d\d|tank_treading_\w+|"
+    r"taylor_\w+|((angular|migration)_)?velocity(_x\d)?|volume(_error)?|refit_error|quaternion_\d|\w*concentration|"
+    r"surfactant_mass|torque_x\d|drag(_x\d)?|(flow|force)_power|(fluid|membrane)_dissipation|power_residual")
 
 
 class Run:
@@ -68,15 +67,9 @@ class Run:
         """The names of the particles in the order of the deck; ["particle"] of a deck with the section Particle."""
         if not self.several:
             return ["particle"]
-        kinds = list(self.deck.get("Particles", {}))
-
-        def order(name):
-            """Returns the section of a particle and its number there: `cell 3` is the third of `cell`."""
-            found = [(k, int(name[len(kind):] or 0)) for k, kind in enumerate(kinds)
-                     if name == kind or (name.startswith(kind + " ") and name[len(kind):].strip().isdigit())]
-            return min(found, default=(len(kinds), 0))
-
-        return sorted({name.split("/")[0] for name in self.series if "/" in name}, key=order)
+        names = sorted({name.split("/")[0] for name in self.series if "/" in name}, key=lambda name: (len(name), name))
+        return [name for kind in self.deck.get("Particles", {}) for name in names  # `cell 3` is the third of `cell`
+                if re.fullmatch(rf"{re.escape(str(kind))}( \d+)?", name)]
 
     def of(self, particle, name):
         """Returns a series (rows,) of one particle by its name in `particles`."""
@@ -103,9 +96,8 @@ class Run:
             found.attrs = {"units": dict(self.units), "descriptions": dict(self.descriptions)}
             return found
         own, _ = self._split()
-        parts = [pandas.DataFrame({"time": self.series["time"], "particle": particle} |
-                                  {name: values[particle] for name, values in own.items() if particle in values})
-                 for particle in self.particles]
+        parts = [pandas.DataFrame({"time": self.series["time"], "particle": one} | {
+            name: values[one] for name, values in own.items() if one in values}) for one in self.particles]
         return pandas.concat(parts, ignore_index=True)
 
     def dataset(self):
@@ -118,8 +110,7 @@ class Run:
         about = {name: {"units": self.units[name], "long_name": self.descriptions[name]} for name in self.series}
         for name, values in own.items():
             rows = numpy.array([values.get(one, numpy.full(len(time), numpy.nan)) for one in self.particles])
-            first = f"{next(iter(values))}/{name}" if self.several else name
-            variables[name] = ("particle", "time"), rows, about[first]
+            variables[name] = ("particle", "time"), rows, about[f"{min(values)}/{name}" if self.several else name]
         for name, values in scene.items():
             variables[f"scene_{name}" if name in own else name] = ("time",), values, about[name]
         coordinates = {"time": ("time", time, about["time"]), "particle": self.particles}
@@ -131,10 +122,10 @@ class Run:
 
     def unit(self, dimension):
         """Returns ", µm/s" for length/time, or without the section Units ", length/time"; "" of a number."""
-        units = self.deck.get("Units") or {}
-        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units.items()}
         if dimension in ("", "1", "of the key"):
             return ""
+        units = (self.deck.get("Units") or {}).items()
+        named = {key: value.removeprefix("1 ").replace("um", "µm") for key, value in units}
         dimension = dimension.replace("viscosity x length", "force x time/length")
         dimension = re.sub("stress|pressure", "force/length^2", dimension).replace(" x ", " ")
         words = re.sub("length|time|force", lambda word: named.get(word[0], word[0]), dimension)
@@ -154,8 +145,7 @@ class Run:
             duct = arrays_of(self.directory / "duct.h5")
             return float(duct["mean_velocity"] / duct["radius"]), "mean velocity / tube radius"
         if kind == "linear":
-            gradient = numpy.reshape(self.value("Flow/gradient"), (3, 3)).astype(float)
-            return float(numpy.linalg.norm(gradient, 2)), "rate"
+            return float(numpy.linalg.norm(numpy.array(self.value("Flow/gradient"), float).reshape(3, 3), 2)), "rate"
         if kind == "parabolic":
             width = float(self.value("Flow/half width"))
             return float(self.value("Flow/maximum velocity", 1)) / width, "maximum velocity / half width"
@@ -197,10 +187,9 @@ class Run:
         else:
             speeds = [numpy.linalg.norm(self.value(f"Particle/{key}", 0)) for key in ("velocity", "angular velocity")]
             rate, stress, velocity = float(max(speeds[0] / radius, speeds[1]) or 1), "(μ · speed / R$_C$)", "speed"
-        scales = {"length": (radius, " / R$_C$"), "curvature": (1 / radius, " · R$_C$"),
-                  "velocity": (rate * radius, " / " + velocity), "stress": (viscosity * rate, " / " + stress),
-                  "tension": (1.0, " / " + symbol)}
-        return scales.get(dimension, (1.0, ""))
+        return {"length": (radius, " / R$_C$"), "velocity": (rate * radius, f" / {velocity}"),
+                "stress": (viscosity * rate, f" / {stress}"), "curvature": (1 / radius, " · R$_C$"),
+                "tension": (1.0, f" / {symbol}")}.get(dimension, (1.0, ""))
 
     def label(self, field, pattern="{}"):
         """Returns the label of an axis of a field without units; `pattern` such as `|{}|`."""
@@ -208,16 +197,13 @@ class Run:
 
     def value(self, path, default=None):
         """Returns the value of one key of the deck: `value("Membrane/capillary number")`."""
-        node = self.deck
+        found = self.deck
         for part in path.split("/"):
-            if not isinstance(node, dict) or part not in node:
-                return default
-            node = node[part]
-        return node
+            found = found.get(part, default) if isinstance(found, dict) else default
+        return found
 
     def cell(self, time):
-        """Returns the vectors of a lattice's periodic cell over R_C at a time, as rows (3, 3); None without a
-        lattice."""
+        """Returns the vectors of a lattice's periodic cell over R_C at a time as rows (3, 3); None if there is none."""
         if "cell_1_x1" not in self.series:
             return None
         row = numpy.abs(self.series["time"] - time).argmin()
@@ -230,17 +216,14 @@ class Run:
         return self.series["time"][known], self.series[name][known]
 
     def band(self, name):
-        """Returns the lower and upper limits (rows,) of a series, value minus and plus estimated error; None if the run
-        has no estimated error of it."""
+        """Returns the limits (rows,) of a series: value minus and plus estimated error; None if there is no error."""
         error = self.errors.get(name, numpy.nan)
         return (self.series[name] - error, self.series[name] + error) if numpy.isfinite(error).any() else None
 
     def snapshots(self):
         """Returns the saved steps in order of time. Each is read when it is used."""
         series = self.directory / "run.hdf.series"
-        if not series.exists():
-            return []
-        files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"]
+        files = Named(parsed(series, json.loads, dict), f"{series} holds no")["files"] if series.exists() else []
         return [Snapshot(self.directory / entry["name"], entry["time"], self.particles) for entry in files]
 
     def snapshot_at(self, time):

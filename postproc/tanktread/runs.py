@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+from shlex import quote as quoted
 
 from .files import Named, parsed
 from .mistakes import Mistake, expect
@@ -36,21 +37,15 @@ PROGRAM = _program()
 
 
 def shared():
-    """Returns folders below which the decks and studies in `inputs` are looked for."""
+    """Returns the folders below which decks and studies are looked for: present, of the source, of the installation."""
     return pathlib.Path(), SOURCE, PROGRAM.resolve().parent.parent / "share/tanktread"
 
 
 def deck_at(name):
-    """Returns the absolute path of a deck, looked for from the present directory, then from the source directory or the
-    installation. Raises Mistake if there is none."""
+    """Returns the absolute path of a deck, looked for in the `shared` folders. Raises Mistake if there is none."""
     found = next((place / name for place in shared() if (place / name).is_file()), None)
     expect(found, f"{name}: there is no such deck")
     return found.resolve()
-
-
-def quoted(word):
-    """Returns a word as a shell needs it."""
-    return f"'{word}'" if " " in word else word
 
 
 def text_of(value):
@@ -139,16 +134,14 @@ class Outcome:
     @property
     def end(self):
         """The simulated time that the run came to."""
-        try:
+        with contextlib.suppress(Mistake, IndexError):
             return float(self.series["time"][-1])
-        except (Mistake, IndexError):
-            return 0.0
+        return 0.0
 
 
 class Study:
     """Runs of decks with keys changed, made once, kept in `directory` and found again by their decks and settings.
-    `limit`: processor seconds that one run may take (None: any). `jobs`: runs at a time. `fresh`: makes every run anew.
-    """
+    `limit`: processor seconds of a run at most (None: any). `jobs`: runs at a time. `fresh`: makes every run anew."""
 
     def __init__(self, program=None, directory="results/study", limit=None, jobs=1, fresh=False):
         self.program, self.directory = pathlib.Path(program or PROGRAM), pathlib.Path(directory)

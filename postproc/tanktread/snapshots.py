@@ -1,7 +1,6 @@
 """Saved steps of a run: exact surfaces and the fields on them."""
 
 import functools
-import itertools
 import pathlib
 
 import numpy
@@ -49,17 +48,15 @@ class Snapshot:
     @property
     def frame(self):
         """Points (m, 3) whose extent is that of a picture: `points`, or in a lattice the eight corners of the cell."""
-        if self.cell is None:
-            return self.points
-        return numpy.array(list(itertools.product((-0.5, 0.5), repeat=3))) @ self.cell
+        return self.points if self.cell is None else (numpy.indices((2, 2, 2)).reshape(3, -1).T - 0.5) @ self.cell
 
     def cells_of(self, particle):
         """Returns the indices of the cells of one particle, by its name in `run.particles`."""
         if "particle" not in self.fields:
             return numpy.arange(len(self.cells))
         expect(particle in self.particles, f"there is no particle {particle}; there are: {', '.join(self.particles)}")
-        number = self.particles.index(particle) + 1  # from 1 in the order of the deck
-        return numpy.flatnonzero([self.fields["particle"][cell[0]] == number for cell in self.cells])
+        numbers = numpy.array([self.fields["particle"][cell[0]] for cell in self.cells])  # from 1 in the deck's order
+        return numpy.flatnonzero(numbers == self.particles.index(particle) + 1)
 
     def scaled(self, run):
         """Returns a copy without units: lengths over R_C, fields divided as `run.label` says."""
@@ -76,8 +73,7 @@ class Snapshot:
         values, s, t = numpy.asarray(values), numpy.asarray(s, float), numpy.asarray(t, float)
         result = numpy.empty((len(cells),) + values.shape[1:])
         for p, which, nodes in lagrange.by_degree([self.cells[cell] for cell in cells]):
-            table = lagrange.table(p, s[which], t[which], ds, dt)
-            result[which] = numpy.einsum("mn,mn...->m...", table, values[nodes])
+            result[which] = numpy.einsum("mn,mn...->m...", lagrange.table(p, s[which], t[which], ds, dt), values[nodes])
         return result
 
     def sampled(self, values, k=8, cells=None):
@@ -99,8 +95,7 @@ class Snapshot:
         """Returns the enclosed volume in length^3, by k^2 facets per cell."""
         grid = self.sampled(self.points, k)
         a, b, c, d = grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
-        triangles = (a, b, c), (a, c, d)
-        return abs(sum(numpy.einsum("...i,...i", x, numpy.cross(y, z)).sum() for x, y, z in triangles)) / 6
+        return abs(sum(numpy.einsum("...i,...i", x, numpy.cross(y, z)).sum() for x, y, z in ((a, b, c), (a, c, d)))) / 6
 
     def area(self, gauss=8):
         """Returns the area in length^2, by gauss^2 points per cell."""
@@ -115,17 +110,16 @@ class Snapshot:
         """Returns the curved cells with all fields: a meshio.Mesh, or with kind="vtk" a vtkUnstructuredGrid. Both have
         cells of the type VTK_LAGRANGE_QUADRILATERAL of the element's degree. Needs meshio or VTK."""
         expect(kind in ("meshio", "vtk"), f"a mesh is of the kind meshio or vtk, not {kind}")
-        cells = [nodes for _, _, nodes in lagrange.by_degree(self.cells)]
         if kind == "meshio":
             meshio = optional("meshio", "snapshot.mesh()")
-            blocks = [("VTK_LAGRANGE_QUADRILATERAL", nodes) for nodes in cells]
+            blocks = [("VTK_LAGRANGE_QUADRILATERAL", nodes) for _, _, nodes in lagrange.by_degree(self.cells)]
             return meshio.Mesh(self.points, blocks, point_data=dict(self.fields))
         model, core, convert = (optional(f"vtkmodules.{name}", "snapshot.mesh('vtk')", "vtk9")
                                 for name in ("vtkCommonDataModel", "vtkCommonCore", "util.numpy_support"))
         points, grid = core.vtkPoints(), model.vtkUnstructuredGrid()
         points.SetData(convert.numpy_to_vtk(self.points, deep=True))
         grid.SetPoints(points)
-        for cell in itertools.chain.from_iterable(cells):
+        for cell in sorted(self.cells, key=len):
             grid.InsertNextCell(getattr(model, "VTK_LAGRANGE_QUADRILATERAL", 70), len(cell), cell.tolist())
         for name, values in self.fields.items():
             array = convert.numpy_to_vtk(numpy.ascontiguousarray(values), deep=True)

@@ -1,19 +1,18 @@
-"""What the studies share: options, tables, bisection, and the reading of study files: YAML sections, numbers, ranges,
-decks. What is wrong in a file is a Mistake: one sentence."""
+"""What the studies share: options, tables, bisection, and reading of study files. What is wrong in one is a Mistake."""
 
+import contextlib
 import pathlib
 
 import numpy
 
 from ..files import parsed as content_of
-from ..mistakes import expect, log
+from ..mistakes import Mistake, expect, log
 from ..runs import PROGRAM, Study, quoted, shared, text_of
 
 
 def edge(holds, low, high, factor=1.05):
     """Returns the largest value at which `holds` is true, by bisection of the logarithm to a factor, and how the search
-    ended: `edge`, `holds to here` (high) or `fails from here` (low). `holds` is assumed true below the edge and false
-    above."""
+    ended: `edge`, `holds to here` (high) or `fails from here` (low). It is assumed true below the edge, false above."""
     if not holds(low):
         return low, "fails from here"
     if holds(high):
@@ -55,12 +54,10 @@ def command_of(script, *words):
 
 def number(given, name):
     """Returns a number of a YAML file, in which 1e-2 is a string."""
-    try:
-        found = float(given)
-    except (TypeError, ValueError):
-        found = numpy.nan
-    expect(not numpy.isnan(found), f"{name}: {given} is not a number")
-    return found
+    with contextlib.suppress(TypeError, ValueError):
+        if not numpy.isnan(float(given)):
+            return float(given)
+    raise Mistake(f"{name}: {given} is not a number")
 
 
 def positive(given, name):
@@ -87,26 +84,21 @@ def keys_of(given, name):
     return given or {}
 
 
-def yaml_of(path, known):
-    """Returns the content of a YAML file with these sections only."""
-    text = content_of(path)
-    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(sorted(known))}")
-    unknown = sorted(set(text) - set(known))
-    expect(not unknown, f"{path}: {unknown[0] if unknown else ''} is not known; there are: {', '.join(sorted(known))}")
-    return text
-
-
-def decks_of(text, path):
-    """Returns the paths of the decks that a file names, looked for next to it, in the present directory and with the
-    program."""
+def study_of(path, sections, others):
+    """Returns the content of a study file, which has only these keys and `deck`. Sections that are absent are {}. The
+    decks are paths, looked for next to the file, in the present directory and with the program."""
+    text, known = content_of(path), sorted({"deck"} | sections | others)
+    expect(isinstance(text, dict), f"{path} must be a list of keys: {', '.join(known)}")
+    for key in text:
+        expect(key in known, f"{path}: {key} is not known; there are: {', '.join(known)}")
     expect(text.get("deck"), f"{path} names no deck")
-    found = []
+    decks = []
     for name in text["deck"] if isinstance(text["deck"], list) else [text["deck"]]:
         expect(isinstance(name, str), f"{path}: a deck is the name of a file, but {name} is none")
-        places = [pathlib.Path(path).parent / name, *(folder / name for folder in shared())]
-        found.append(next((place.resolve() for place in places if place.is_file()), None))
-        expect(found[-1], f"{path}: there is no deck {name}, beside it or where the script is started")
-    return found
+        places = [folder / name for folder in (pathlib.Path(path).parent, *shared())]
+        decks.append(next((place.resolve() for place in places if place.is_file()), None))
+        expect(decks[-1], f"{path}: there is no deck {name}, beside it or where the script is started")
+    return text | {name: keys_of(text.get(name), f"{path}: {name}") for name in sections} | {"deck": decks}
 
 
 def values_of(key, given):

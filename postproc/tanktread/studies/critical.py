@@ -11,8 +11,6 @@ from the deviations of the centroid from the parabola through its positions. A r
 twice the time, and once more; a run that still does neither ends the search with a message.
 """
 
-import pathlib
-
 import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
@@ -36,8 +34,7 @@ def stays(time, way, radius, speed):
     wanders = numpy.std(places - numpy.polyval(numpy.polyfit(at - at[-1], places, 2), at - at[-1]))
     first, second = 2 * numpy.diff(places[[0, SAMPLES // 2, -1]]) / last
     by_chance = 6**0.5 * wanders * 2 / last  # of the end less the middle twice and the beginning
-    slow, steady = abs(first + second) / 2 < SLOW * speed, second - first < NOISE * SLOW * speed + by_chance
-    return True if slow and steady else None
+    return (abs(first + second) / 2 < SLOW * speed and second - first < NOISE * SLOW * speed + by_chance) or None
 
 
 def stays_at(parsed, study, value):
@@ -62,7 +59,7 @@ def stays_at(parsed, study, value):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("deck", type=pathlib.Path, help="the deck of a particle in a channel")
+    parser.add_argument("deck", help="the deck of a particle in a channel")
     parser.add_argument("--key", default="Flow/mean velocity", help="the key (default: %(default)s)")
     parser.add_argument("--between", nargs=2, type=float, required=True, metavar=("LOW", "HIGH"),
                         help="values of the key, at the first of which it stays")
@@ -81,4 +78,3 @@ def main():
     expect(how == "edge",
            f"{'it passes' if how == 'fails from here' else 'it stays'} at {found:g} already: --between other values")
     log.info(f"critical {parsed.key}: {found:.5g} to {found * (1 + parsed.within):.5g}")
-    return 0

@@ -38,37 +38,30 @@ import pathlib
 
 import yaml
 
+from ..figures import style
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study
-from .common import decks_of, keys_of, number, optional, yaml_of
+from .common import keys_of, number, optional, study_of
 from .fit_data import Experiment, Unknown
 from .fit_model import Fit, Runs
 from .fit_report import draw, further, told
 
-KEYS = {"deck", "set", "unknown", "laws", "experiments", "next", "limit"}
-
-
 def load(path, study):
     """Returns the fits of all laws, not yet solved, and the content of the file."""
-    text = yaml_of(path, KEYS)
-    folder = pathlib.Path(path).parent
-    decks = decks_of(text, path)
+    text = study_of(path, {"set", "unknown", "laws", "experiments", "next"}, {"limit"})
     study.limit = optional(number, text, "limit", path)
-    expect(keys_of(text.get("experiments"), f"{path}: experiments"), f"{path} has no experiments")
-    laws = {law: keys_of(settings, f"{path}: the law {law}")
-            for law, settings in keys_of(text.get("laws"), f"{path}: laws").items()}
-    lists = [text, *text["experiments"].values(), *laws.values()]
-    expect(any(isinstance(one, dict) and one.get("unknown") for one in lists), f"{path}: nothing is unknown")
-    unknowns = {key: Unknown(key, given) for key, given in keys_of(text.get("unknown"), f"{path}: unknown").items()}
-    experiments = [Experiment(name, given, folder) for name, given in text["experiments"].items()]
-    for key, values in keys_of(text.get("next"), f"{path}: next").items():
+    expect(text["experiments"], f"{path} has no experiments")
+    laws = {law: keys_of(settings, f"{path}: the law {law}") for law, settings in text["laws"].items()}
+    experiments = [Experiment(name, given, pathlib.Path(path).parent) for name, given in text["experiments"].items()]
+    for key, values in text["next"].items():
         expect(isinstance(values, list) and values, f"{path}: next, {key} must be a list of values, but is {values}")
-    fixed, fits = keys_of(text.get("set"), f"{path}: set"), []
+    fits = []
     for law, settings in (laws or {"the deck's law": {}}).items():
-        settings = fixed | settings
-        more = keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
-        own = unknowns | {key: Unknown(key, given) for key, given in more.items()}
-        fits.append(Fit(law, settings, own.values(), experiments, Runs(study, decks, law)))
+        settings = text["set"] | settings
+        unknowns = text["unknown"] | keys_of(settings.pop("unknown", None), f"{path}: {law}, unknown")
+        unknowns = [Unknown(key, given) for key, given in unknowns.items()]
+        fits.append(Fit(law, settings, unknowns, experiments, Runs(study, text["deck"], law)))
+        expect(fits[-1].unknowns, f"{path}: nothing is unknown")
     return fits, text
 
 
@@ -76,25 +69,25 @@ def run(path, directory=None, jobs=None, laws=None):
     """Fits the laws of an experiment file, writes fit.txt, fit.yaml and fit.png, and returns the Fits, the best first.
     `directory`: of these and runs/ (default: results/<experiment>). `jobs`: runs at a time (default: the number of
     cores). `laws`: names of the laws that are fitted (default: all)."""
-    from ..figures import style
-
-    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     fits, text = load(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count()))
     known = [fit.law for fit in fits]
     expect(set(laws or known) <= set(known), f"there is no such law; there are: {', '.join(known)}")
     fits = [fit for fit in fits if fit.law in (laws or known)]
     for fit in fits:
-        progress(fit.effort())
+        n = len(fit.experiments)
+        moved = sum(one.owner in (None, experiment.name) for one in fit.unknowns for experiment in fit.experiments)
+        progress(f"{fit.law}: {n} runs to start with, then some {moved + n} a step, for 3 to 10 steps as a rule")
         fit.solve()
     fits.sort(key=lambda fit: fit.aic)
-    said = told(fits, further(fits, text.get("next") or {}))
+    said = told(fits, further(fits, text["next"]))
     progress("")
     log.info(said)
     (directory / "fit.txt").write_text(said + "\n", encoding="utf-8")
-    record = {fit.law: {"chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic),
-                        "runs": fit.runs.count, "unknown": {name: {"value": value, "error": float(error)}
-                                                            for name, (value, error) in fit.values.items()}}
-              for fit in fits}
+    record = {fit.law: {
+        "chi square": fit.square, "degrees of freedom": int(fit.freedom), "AIC": float(fit.aic), "runs": fit.runs.count,
+        "unknown": {name: dict(zip(("value", "error"), map(float, found))) for name, found in fit.values.items()}}
+        for fit in fits}
     (directory / "fit.yaml").write_text(yaml.safe_dump(record, sort_keys=False), encoding="utf-8")
     style.save(style.draw(draw, fits), directory / "fit.png")
     return fits
@@ -103,10 +96,8 @@ def run(path, directory=None, jobs=None, laws=None):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("experiment", help="the experiment, a YAML file")
-    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
-                        help="where results go (default: results/<experiment>)")
+    parser.add_argument("--output", metavar="DIR", help="where results go (default: results/<experiment>)")
     parser.add_argument("--jobs", type=int, help="runs at a time (default: the number of cores)")
     parser.add_argument("--law", nargs="+", metavar="NAME", help="fit these laws only")
     arguments = parser.parse_args()
     run(arguments.experiment, arguments.output, arguments.jobs, arguments.law)
-    return 0

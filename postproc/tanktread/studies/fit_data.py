@@ -8,8 +8,7 @@ from ..mistakes import expect
 from . import silhouette
 from .common import keys_of, number, optional, positive
 
-# from its start, where the user sets no bounds to an unknown; of a linear one in parts of its start
-FAR = numpy.log(1000)
+FAR = numpy.log(1000)  # of an unknown's bounds from its start, if none are set; of a linear one in parts of its start
 GAP = 0.1  # of an outline's length, from its last point to the first, at which it does not close
 
 
@@ -25,8 +24,7 @@ class Unknown:
         expect(not self.logarithmic or self.start_value > 0,
                f"{self.name} starts from a positive number, or has `spacing: linear`")
         self.unit = 1.0 if self.logarithmic else abs(self.start_value) or 1.0
-        self.known, *bounds = (number(given[word], f"{self.name}: {word}") if word in given else None
-                               for word in ("known", "from", "to"))
+        self.known, *bounds = (optional(number, given, word, self.name) for word in ("known", "from", "to"))
         expect(not self.logarithmic or all(bound is None or bound > 0 for bound in bounds),
                f"{self.name}: `from` and `to` must be above 0, or it has `spacing: linear`")
         start = self.number(self.start_value)
@@ -85,13 +83,12 @@ class OutlineData(Datum):
         expect(given.get("open") or steps[0] <= max(GAP * steps.sum(), 3 * numpy.median(steps)),
                f"{name}: the outline does not close: its last point is {steps[0] / steps.sum():.0%} of its length "
                "from the first (`open: true` takes it as it is)")
-        self.free_scale, self.scale_error = given.get("scale error") == "free", given.get("scale error", 0)
-        if self.scale_error and not self.free_scale:
-            self.scale_error = positive(self.scale_error, f"{name}: scale error")
-        self.places = 2 + bool(self.scale_error)  # of the numbers that say where it lies
-        self.count = len(self.points)
+        self.scale_error = error = given.get("scale error") or 0
+        if error:
+            self.scale_error = numpy.inf if error == "free" else positive(error, f"{name}: scale error")
+        self.count, self.places = len(self.points), 2 + bool(error)  # places: of the numbers that say where it lies
 
-    length = property(lambda self: self.count + (self.places > 2 and not self.free_scale),
+    length = property(lambda self: self.count + (0 < self.scale_error < numpy.inf),
                       doc="The number of residuals: one per point, and one of a scale with an error.")
 
     def start(self, prediction):
@@ -114,8 +111,7 @@ class OutlineData(Datum):
 
 
 class SeriesData(Datum):
-    """Values of a series, or of its ratio to another one, at times. Unknown with it: when a curve begins, where its
-    origin is free."""
+    """Values of a series, or of its ratio to another one, at times. The start of a curve of free origin is unknown."""
 
     length = property(lambda self: self.count)  # of its residuals
     discretisation = None  # error of the runs, if their deck requests an accuracy
@@ -137,8 +133,7 @@ class SeriesData(Datum):
         self.count = len(self.values)
 
     def start(self, prediction):
-        """Returns the time of the run at which the curve begins: the last one at which the run passes the first value,
-        or is nearest to it."""
+        """Returns the last time at which the run passes the first value of the curve, or where it is nearest."""
         if not self.places:
             return numpy.array([])
         times, values = prediction
@@ -186,5 +181,5 @@ class Experiment:
         for one in given["data"]:
             one = keys_of(one, f"{name}: a datum")
             expect("outline" in one or "series" in one, f"{name}: a datum is an outline or a series")
-            label = one.get("outline") or one["series"] if len(given["data"]) > 1 else "data"
+            label = one.get("outline", one.get("series")) if len(given["data"]) > 1 else "data"
             self.data.append((OutlineData if "outline" in one else SeriesData)(one, f"{name}: {label}", folder))

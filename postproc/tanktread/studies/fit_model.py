@@ -48,8 +48,7 @@ class Runs:
         if new:
             progress(f"{self.law}: {self.count + len(new)} runs made or found")
         for (text, (experiment, _)), outcome in zip(new.items(), outcomes):
-            if outcome.refused:
-                raise Mistake(f"the deck is refused: {outcome.message}")
+            expect(not outcome.refused, f"the deck is refused: {outcome.message}")
             self._run, self._found[text] = outcome.run if outcome.done else self._run, None
             try:
                 expect(outcome.done, outcome.message)
@@ -64,83 +63,67 @@ class Runs:
 
 
 class Fit:
-    """One law: what is unknown, its best values and their errors. The numbers that are varied are those of the
-    unknowns, then of the outlines' places."""
+    """One law and its unknowns. The numbers x that are varied: unknowns, positions of outlines, starts of curves."""
 
     def __init__(self, law, settings, unknowns, experiments, runs):
         self.law, self.settings, self.experiments, self.runs = law, settings, experiments, runs
         self.unknowns = [*unknowns, *(one for experiment in experiments for one in experiment.unknowns)]
         self.data = [datum for experiment in experiments for datum in experiment.data]
         self.rows = parts(datum.length for datum in self.data)  # of the residuals
-        self.positions = parts(datum.places for datum in self.data)
+        self.positions = parts([len(self.unknowns), *(datum.places for datum in self.data)])[1:]  # of data in x
         self.count = sum(datum.count for datum in self.data)
         self.stated = all(datum.error is not None for datum in self.data)
 
     length = property(lambda self: sum(datum.length for datum in self.data)
                       + sum(one.known is not None for one in self.unknowns), doc="The number of residuals.")
 
-    def settings_of(self, experiment, numbers):
-        """Returns the settings of the run of an experiment at these values of the fitted numbers."""
-        values = {one.key: one.value(x) for one, x in zip(self.unknowns, numbers)
-                  if one.owner in (None, experiment.name)}
-        return self.settings | experiment.settings | values
+    def settings_of(self, experiment, x):
+        """Returns the settings of the run of an experiment at x, which may be without positions."""
+        return self.settings | experiment.settings | {
+            one.key: one.value(number) for one, number in zip(self.unknowns, x) if one.owner in (None, experiment.name)}
 
     def predictions(self, *points):
-        """Returns the predictions of all data at each of these values of the numbers, None where a run failed."""
-        made = self.runs.all([(one, self.settings_of(one, numbers)) for numbers in points for one in self.experiments])
+        """Returns the predictions of all data at each of these x, None where a run failed."""
+        made = self.runs.all([(one, self.settings_of(one, x)) for x in points for one in self.experiments])
         groups = [made[part] for part in parts([len(self.experiments)] * len(points))]
         return [None if None in group else list(itertools.chain.from_iterable(group)) for group in groups]
 
-    def residuals(self, predictions, numbers, places):
+    def residuals(self, predictions, x):
         """Returns the weighted residuals of all data and of values known beforehand."""
         if predictions is None:
             return numpy.full(self.length, FAILED)
-        each = [datum.residuals(prediction, places[own])
-                for datum, prediction, own in zip(self.data, predictions, self.positions)]
-        known = [(one.value(x) - one.known) / one.error for one, x in zip(self.unknowns, numbers)
+        each = [datum.residuals(found, x[own]) for datum, found, own in zip(self.data, predictions, self.positions)]
+        known = [(one.value(number) - one.known) / one.error for one, number in zip(self.unknowns, x)
                  if one.known is not None]
         return numpy.concatenate([*each, known])
 
-    def split(self, x):
-        return x[:len(self.unknowns)], x[len(self.unknowns):]
-
     def jacobian(self, x, step, sides=(1,)):
         """Returns finite differences by the unknowns, a matrix (residuals, unknowns) per side, and by the positions."""
-        numbers, places = self.split(x)
-        shifts = [side * step * unit for side in sides for unit in numpy.eye(len(numbers))]
-        first, *found = self.predictions(numbers, *(numbers + shift for shift in shifts))
-        base = self.residuals(first, numbers, places)
+        n = len(self.unknowns)
+        shifts = [side * step * unit for side in sides for unit in numpy.eye(len(x))[:n]]
+        first, *found = self.predictions(x, *(x + shift for shift in shifts))
+        base, by_position = self.residuals(first, x), numpy.zeros((self.length, len(x)))
         rows = [numpy.full(self.length, numpy.nan) if one is None else
-                (self.residuals(one, numbers + shift, places) - base) / shift.sum()
-                for one, shift in zip(found, shifts)]
-        of_places = numpy.zeros((self.length, len(places)))  # each position changes its own outline only
+                (self.residuals(one, x + shift) - base) / shift.sum() for one, shift in zip(found, shifts)]
         for datum, prediction, own, there in zip(self.data, first, self.positions, self.rows):
-            for column, unit in zip(range(own.start, own.stop), numpy.eye(datum.places)):
-                moved = datum.residuals(prediction, places[own] + TINY * unit)
-                of_places[there, column] = (moved - base[there]) / TINY
-        return numpy.reshape(rows, (len(sides), len(numbers), self.length)).transpose(0, 2, 1), of_places
+            moved = [datum.residuals(prediction, x[own] + TINY * unit) for unit in numpy.eye(datum.places)]
+            by_position[there, own] = (numpy.reshape(moved, (-1, datum.length)) - base[there]).T / TINY
+        return numpy.reshape(rows, (len(sides), n, self.length)).transpose(0, 2, 1), by_position[:, n:]
 
     def begin(self):
-        """Returns values at which all runs come to their end. If they do not at the user's start, multiplies one
-        unknown after the other by 3, 1/3, 10 or 1/10."""
+        """Returns x at which all runs end: the user's start, or with one unknown multiplied by 3, 1/3, 10 or 1/10."""
         start = numpy.array([one.number(one.start_value) for one in self.unknowns])
-        tries = [start] + [start + shift * unit * numpy.array([one.logarithmic for one in self.unknowns])
-                           for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in numpy.eye(len(start))]
+        units = numpy.diag([float(one.logarithmic) for one in self.unknowns])
+        tries = [start, *(start + shift * unit for shift in numpy.log([3, 1 / 3, 10, 1 / 10]) for unit in units)]
         low, high = numpy.transpose([one.bounds for one in self.unknowns])
-        for numbers in (one for one in tries if ((low <= one) & (one <= high)).all()):
-            (found,) = self.predictions(numbers)
+        for x in (one for one in tries if ((low <= one) & (one <= high)).all()):
+            (found,) = self.predictions(x)
             if found is not None:
-                return numpy.concatenate([numbers, *(datum.start(one) for datum, one in zip(self.data, found))])
+                return numpy.concatenate([x, *(datum.start(one) for datum, one in zip(self.data, found))])
         raise Mistake(f"{self.law}: all runs fail at the start and around it; the first one: {self.runs.messages[0]}")
 
-    def effort(self):
-        """Returns in words how many runs the fit takes."""
-        moved = sum(one.owner in (None, experiment.name) for one in self.unknowns for experiment in self.experiments)
-        n = len(self.experiments)
-        return f"{self.law}: {n} runs to start with, then some {moved + n} a step, for 3 to 10 steps as a rule"
-
-    def solve(self, start=None):
-        x = self.begin() if start is None else start
+    def solve(self):
+        x = self.begin()
         places = len(x) - len(self.unknowns)
         free = len(x) - (self.length - self.count)  # less what is known beforehand
         expect(free < self.count,
@@ -148,13 +131,12 @@ class Fit:
         bounds = numpy.array([one.bounds for one in self.unknowns] + [(-numpy.inf, numpy.inf)] * places).T
 
         def function(x):
-            numbers, places = self.split(x)
-            return self.residuals(*self.predictions(numbers), numbers, places)
+            return self.residuals(*self.predictions(x), x)
 
         def derivative(x):
-            (columns,), of_places = self.jacobian(x, STEP)
+            (columns,), by_position = self.jacobian(x, STEP)
             columns = numpy.nan_to_num(columns)
-            full = numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), of_places])
+            full = numpy.column_stack([columns * (numpy.linalg.norm(columns, axis=0) > FAINT), by_position])
             residual = function(x)
             step = numpy.linalg.lstsq(full, -residual, rcond=None)[0]
             if numpy.square(full @ step).sum() < SETTLED * (residual @ residual) / max(1, len(residual) - len(x)):
@@ -172,8 +154,7 @@ class Fit:
         return self
 
     def errors(self):
-        """Computes the covariance of the unknowns, with positions eliminated, and `told`: which unknowns the data
-        determine at all."""
+        """Computes the covariance of the unknowns, positions eliminated; `told`: which of them the data determine."""
         (up, down), self.moved = self.jacobian(self.x, TELLS, (1, -1))
         up, down = (numpy.where(numpy.isfinite(one), one, other) for one, other in ((up, down), (down, up)))
         self.derivative, disagreement = (up + down) / 2, numpy.linalg.norm(up - down, axis=0) / 2
@@ -197,18 +178,15 @@ class Fit:
         return {one.name: (one.value(x), one.error_of(one.value(x), determined(error)))
                 for one, x, error in zip(self.unknowns, self.x, self.number_errors)}
 
+    scatter = property(lambda self: numpy.sqrt(self.square / self.freedom),
+                       doc="By what factor residuals are larger than their errors.")
     missed = property(lambda self: self.stated and self.probability < MISSED,
                       doc="Whether the errors of the data do not explain the residuals.")
-
-    @property
-    def aic(self):
-        if self.stated:
-            return self.square + 2 * len(self.x)
-        return self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1)
+    aic = property(lambda self: self.square + 2 * len(self.x) if self.stated else
+                   self.count * numpy.log(self.square / self.count) + 2 * (len(self.x) + 1))
 
     def runs_test(self):
-        """Returns z of the runs test (Wald and Wolfowitz) of the signs along all outlines and curves: by how many
-        standard deviations the number of runs of one sign differs from chance."""
+        """Returns z of the Wald-Wolfowitz runs test of the signs of residuals along all outlines and curves."""
         runs = mean = variance = 0
         for datum, own in zip(self.data, self.rows):
             signs = self.residual[own][:datum.count] > 0

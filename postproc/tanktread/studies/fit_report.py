@@ -8,71 +8,60 @@ import scipy.optimize
 import scipy.special
 import scipy.stats
 
+from ..figures import style
 from .fit_data import OutlineData
 from .fit_model import SERIES, Fit, determined
 
 
 def further(fits, settings):
-    """Returns for each further experiment (settings, {unknown: standard error with it}, {other law: expected rise of
-    chi square}). Each has data like the first experiment's, at the prediction of the best law."""
+    """Returns for each further experiment (name, {unknown: standard error with it}, {other law: expected rise of chi
+    square}). Each has data like the first experiment's, at the prediction of the best law."""
     best, first, rows = fits[0], fits[0].experiments[0], []
     for key, value in ((key, value) for key, values in settings.items() for value in values):
         candidate = copy.copy(first)
-        candidate.settings, candidate.data = first.settings | {key: value}, []
+        candidate.settings, candidate.unknowns, candidate.data = first.settings | {key: value}, [], []
         (truth,) = best.runs.all([(first, best.settings_of(candidate, best.x))])
         if truth is None:
-            rows.append(({key: value}, None, None))
+            rows.append((f"{key} {value}", {}, {}))
             continue
         for datum, prediction in zip(first.data, truth):
             one = copy.copy(datum)
-            one.error = datum.error if datum.error is not None else _scatter(best)
+            one.error = datum.error if datum.error is not None else best.scatter
             if isinstance(datum, OutlineData):
                 one.points, one.scale, one.error = prediction.even(datum.count), 1.0, one.error * datum.scale
             else:
                 one.values = datum.predicted(prediction, datum.start(prediction))
             candidate.data.append(one)
-        alone = _alone(best, candidate)
+        alone, *others = (_alone(fit, candidate) for fit in fits)
         alone.errors()
         both = numpy.zeros((len(best.unknowns),) * 2)
-        both[numpy.ix_(best.told, best.told)] += best.information() / (1 if best.stated else _scatter(best) ** 2)
+        both[numpy.ix_(best.told, best.told)] += best.information() / (1 if best.stated else best.scatter ** 2)
         index = numpy.array(alone.index)[alone.told]
         both[numpy.ix_(index, index)] += alone.information()
         errors = determined(numpy.sqrt(numpy.diag(numpy.linalg.pinv(both))))
-        others = [_alone(other, candidate) for other in fits[1:]]
-        rows.append(({key: value}, {unknown.name: unknown.error_of(unknown.value(x), error)
-                                    for unknown, x, error in zip(best.unknowns, best.x, errors)},
+        rows.append((f"{key} {value}", {unknown.name: unknown.error_of(unknown.value(x), error)
+                                        for unknown, x, error in zip(best.unknowns, best.x, errors)},
                      {fit.law: one.square if one else numpy.inf for fit, one in zip(fits[1:], others)}))
     return rows
 
 
-def _scatter(fit):
-    """Returns by what factor residuals are larger than their errors."""
-    return numpy.sqrt(fit.square / fit.freedom)
-
-
 def _alone(fit, candidate):
     """Returns a fit of the candidate only, at the values of `fit`; None if its run failed."""
-    one = Fit(fit.law, fit.settings, [], [candidate], fit.runs)
-    one.index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
-    one.unknowns = [copy.copy(fit.unknowns[k]) for k in one.index]
-    for unknown in one.unknowns:
+    index = [k for k, unknown in enumerate(fit.unknowns) if unknown.owner in (None, candidate.name)]
+    unknowns = [copy.copy(fit.unknowns[k]) for k in index]
+    for unknown in unknowns:
         unknown.known = None  # what is known beforehand counts once
-    numbers = fit.x[one.index]
+    one, numbers = Fit(fit.law, fit.settings, unknowns, [candidate], fit.runs), fit.x[index]
     (found,) = one.predictions(numbers)
     if found is None:
         return None
     places = numpy.concatenate([datum.start(prediction) for datum, prediction in zip(candidate.data, found)])
     if len(places):
-        places = scipy.optimize.least_squares(lambda p: one.residuals(found, numbers, p), places).x
-    one.x, one.residual = numpy.append(numbers, places), one.residuals(found, numbers, places)
-    one.square = float(one.residual @ one.residual)
+        places = scipy.optimize.least_squares(lambda p: one.residuals(found, numpy.append(numbers, p)), places).x
+    one.x, one.index = numpy.append(numbers, places), index
+    residual = one.residuals(found, one.x)
+    one.square = float(residual @ residual)
     return one
-
-
-def rounded(value, error):
-    """Returns a value with one digit more than its error determines."""
-    digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value and error else 6
-    return f"{value:.{digits}g}"
 
 
 def told(fits, rows):
@@ -89,58 +78,51 @@ def told(fits, rows):
             lines.append("  of it: " + ", ".join(f"{datum.name} {(fit.residual[own] ** 2).sum():.3g} of {datum.length}"
                                                  for datum, own in zip(fit.data, fit.rows)))
         if fit.missed:
-            lines.append(f"  the residuals are {_scatter(fit):.3g} times what the errors of the data say: a finer "
+            lines.append(f"  the residuals are {fit.scatter:.3g} times what the errors of the data say: a finer "
                          "mesh, a free scale or another law first")
         for unknown, (name, (value, error)) in zip(fit.unknowns, fit.values.items()):
             unit = fit.runs.unit(unknown.key).replace(",", "", 1)
-            if numpy.isfinite(error):
-                also = f"; by the residuals ± {_scatter(fit) * error:.2g}" if fit.missed else ""
-                lines.append(f"  {name} = {rounded(value, error)} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
+            if numpy.isfinite(error):  # the value has one digit more than its error determines
+                digits = int(numpy.clip(numpy.ceil(numpy.log10(abs(value) / error)) + 2, 2, 10)) if value else 6
+                also = f"; by the residuals ± {fit.scatter * error:.2g}" if fit.missed else ""
+                lines.append(f"  {name} = {value:.{digits}g} ± {error:.2g}{unit} ({error / abs(value):.2%}{also})")
             else:
                 lines.append(f"  {name}: not determined by these data (they are as well met by values far from "
                              f"{value:.3g}{unit})")
         size = numpy.sqrt(numpy.diag(fit.covariance))
+        correlation = fit.covariance / numpy.outer(size, size)
         shown = enumerate(itertools.compress(fit.unknowns, fit.told))
         for (i, one), (j, other) in itertools.combinations(shown, 2):
-            correlation = fit.covariance[i, j] / (size[i] * size[j])
-            lines.append(f"  correlation of {one.name} and {other.name}: {correlation:.3f}")
+            lines.append(f"  correlation of {one.name} and {other.name}: {correlation[i, j]:.3f}")
         if any(datum.count >= SERIES for datum in fit.data):
             z = fit.runs_test()
             meaning = "change as by chance" if z > -2 else "stay the same too long: the model is not the data’s"
             lines.append(f"  signs of the residuals along the data: {meaning} ({z:.1f} standard deviations)")
     if len(fits) > 1:
         gaps = numpy.array([fit.aic for fit in fits]) - fits[0].aic
-        lines.append("laws, best first: " + ", ".join(
-            f"{fit.law} (AIC + {gap:.1f}, weight {weight:.2g})"
-            for fit, gap, weight in zip(fits, gaps, scipy.special.softmax(-gaps / 2))))
+        weights = scipy.special.softmax(-gaps / 2)
+        lines.append("laws, best first: " + ", ".join(f"{fit.law} (AIC + {gap:.1f}, weight {weight:.2g})"
+                                                      for fit, gap, weight in zip(fits, gaps, weights)))
         told_apart = (f"tell {fits[0].law} from the others" if gaps[1] > 10 else
                       "do not tell these laws apart (a difference in AIC below 10)")
         lines.append(f"the data {told_apart}{', but none of them describes the data' if fits[0].missed else ''}")
-    for settings, errors, rises in rows:
-        said = ["its run fails"] if errors is None else [
-            *(f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
-              for key, error in errors.items()),
-            *(f"chi square of {law} + {rise:.3g}" for law, rise in rises.items())]
-        name = ", ".join(f"{key} {value}" for key, value in settings.items())
-        lines.append(f"a further experiment, {name}: {', '.join(said)}")
+    for name, errors, rises in rows:
+        said = [f"± {error:.2g} of {key}" if numpy.isfinite(error) else f"{key} not determined"
+                for key, error in errors.items()] + [f"chi square of {law} + {rise:.3g}" for law, rise in rises.items()]
+        lines.append(f"a further experiment, {name}: {', '.join(said) or 'its run fails'}")
     return "\n".join(lines)
 
 
 def draw(fits, axes=None):
-    """Returns a figure of outlines, curves and values with the fit, residuals, and the ellipses of pairs of
-    unknowns."""
-    from ..figures import style
-
+    """Returns a figure of the data with the fit, the residuals, and the ellipses of pairs of unknowns."""
     best = fits[0]
-    numbers, places = best.split(best.x)
-    (predictions,) = best.predictions(numbers)
+    (predictions,) = best.predictions(best.x)
     known = list(itertools.compress(zip(best.unknowns, best.x), best.told))
     pairs = list(itertools.combinations(range(len(known)), 2))[:3]
     figure, axes = style.panels(axes, 1, 2 + len(pairs), 4.6 * (2 + len(pairs)), 4.4)
     data, residual = axes[:2]
-    for datum, prediction, own, rows, color in zip(best.data, predictions, best.positions, best.rows,
-                                                   itertools.cycle(style.RUNS)):
-        place = places[own]
+    for (datum, prediction, own, rows), color in style.coloured(zip(best.data, predictions, best.positions, best.rows)):
+        place = best.x[own]
         if isinstance(datum, OutlineData):
             data.plot(*numpy.vstack([prediction.even(400), prediction.even(1)]).T, color=color, linewidth=1)
             data.plot(*datum.placed(place).T, ".", color=color, ms=2.5, label=datum.name)
@@ -163,9 +145,8 @@ def draw(fits, axes=None):
         data.set_xlabel("time" + best.runs.unit("Time/final time"))
     elif series:
         data.tick_params(axis="x", rotation=60, labelsize=7)
-    if series:
-        data.set_ylabel(" or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series)))
-    data.set_title(f"data and {best.law}")
+    ylabel = " or ".join(dict.fromkeys(" / ".join(datum.series) for datum in series))
+    data.set(ylabel=ylabel, title=f"data and {best.law}")
     residual.set(title="residuals over their errors", xlabel="number of the datum")
     residual.axhline(0, color=style.FAINT, linewidth=0.8)
     residual.xaxis.get_major_locator().set_params(integer=True)

@@ -10,11 +10,11 @@ mean of the rays around it, so the errors of points are independent. Blur of var
 curvature to the inner side of the bend; points are moved back.
 """
 
-import pathlib
-
 import numpy
 import scipy.ndimage
+from matplotlib.image import imread
 
+from ..figures import style
 from ..interpolation import mean
 from ..mistakes import Mistake, command_line, expect, log
 
@@ -24,8 +24,6 @@ FINE = 0.25  # pixels between samples of a ray
 
 def grey(path):
     """Returns the picture's brightness (rows, columns), rows from above."""
-    from matplotlib.image import imread
-
     try:
         picture = imread(path).astype(float)
     except Exception as error:  # the reader has many kinds
@@ -39,8 +37,7 @@ def frame(picture):
 
 
 def body(picture, path):
-    """Returns a mask of the largest thing that differs from the frame, holes filled. The brightness that sets it off is
-    the one that best splits the picture in two classes (Otsu)."""
+    """Returns a mask of the largest thing that differs from the frame by Otsu's threshold, holes filled."""
     smooth = scipy.ndimage.gaussian_filter(picture, 2)
     numbers, edges = numpy.histogram(smooth, 256)
     middles = (edges[1:] + edges[:-1]) / 2
@@ -81,18 +78,17 @@ def edge(picture, mask, points):
         found = numpy.sqrt((found - reach) ** 2 + 4 * reach * rings)
     for _ in range(3):
         values = profiles()
-        typical = values.mean(0)
-        slope = numpy.gradient(typical, off)
-        found = found - (values - typical) @ slope / (slope @ slope)
+        slope = numpy.gradient(values.mean(0), off)
+        found = found - (values - values.mean(0)) @ slope / (slope @ slope)
     variance = -mean(off, off**2 * slope) * (off[-1] - off[0])
     found -= (variance / (2 * found)).mean()  # what the area of the rings, that of a disc, made of the bend
-    places, error = averaged(angle, found, points, each, row, column)
+    radius, error = averaged(found, each)
+    places = numpy.column_stack([column + radius * numpy.cos(angle[::each]), row + radius * numpy.sin(angle[::each])])
     return unbent(places, variance), error
 
 
 def unbent(points, variance):
-    """Returns the points (n, 2) of a blurred outline, in the order of their angle, moved to where they are without blur
-    of this variance."""
+    """Returns the points (n, 2) of an outline, in the order of their angle, moved back by what a blur moved them."""
     before, after = points - numpy.roll(points, 1, axis=0), numpy.roll(points, -1, axis=0) - points
     chord, lengths = before + after, [numpy.linalg.norm(one, axis=1) for one in (before, after, before + after)]
     # of the circle through three points
@@ -101,17 +97,14 @@ def unbent(points, variance):
     return points + (variance / 2 * curvature)[:, None] * outwards
 
 
-def averaged(angle, radius, points, each, row, column):
-    """Returns the value in the middle of a parabola (of three rays a straight line) through the rays around every
-    point, and its standard error from the scatter of the rays."""
-    order = (numpy.arange(points)[:, None] * each + numpy.arange(each) - each // 2) % len(angle)
+def averaged(radius, each):
+    """Returns the middle values of parabolas (of three rays: lines) through `each` rays per point, and their error."""
+    rays = numpy.roll(radius, each // 2).reshape(-1, each)
     basis = numpy.vander(numpy.linspace(-1, 1, each), 3 if each > 4 else 2, increasing=True)
     weights = numpy.linalg.pinv(basis)
-    middle = radius[order] @ weights[0]
-    rest = radius[order] - radius[order] @ weights.T @ basis.T
-    error = numpy.sqrt((rest**2).sum() / (points * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
-    at = angle[order[:, each // 2]]
-    return numpy.column_stack([column + middle * numpy.cos(at), row + middle * numpy.sin(at)]), float(error)
+    rest = rays - rays @ weights.T @ basis.T
+    error = numpy.sqrt((rest**2).sum() / (len(rays) * (each - basis.shape[1]))) * numpy.linalg.norm(weights[0])
+    return rays @ weights[0], float(error)
 
 
 def main():
@@ -133,13 +126,10 @@ def main():
     expect(numpy.isfinite(points).all(), f"{arguments.picture}: no edge was found on some rays")
     table = numpy.column_stack([points * [1, -1], numpy.full(len(points), error)])
     numpy.savetxt(arguments.output, table, "%.4f,%.4f,%.3g", header="x1,x3,error", comments="")
-    log.info(f"{pathlib.Path(arguments.output)}: {len(points)} points, each with an error of {error:.3f} pixels")
+    log.info(f"{arguments.output}: {len(points)} points, each with an error of {error:.3f} pixels")
     if arguments.overlay:
-        from ..figures import style
-
         figure, (axis,) = style.panels(None, 1, 1, 6, 6 * picture.shape[0] / picture.shape[1])
         axis.imshow(picture, cmap="gray")
         axis.plot(*points.T, ".", color=style.RUNS[1], ms=2)
         axis.axis("off")
         style.save(figure, arguments.overlay)
-    return 0

@@ -21,16 +21,14 @@ parachute. The particle starts as the deck states; where both motions are stable
 
 import collections
 import functools
-import pathlib
 
 import numpy
 
 from ..mistakes import Mistake, command_line, expect, log
 from . import common
-from .common import decks_of, keys_of, number, values_of, yaml_of
+from .common import keys_of, number, study_of, values_of
 
 NEAR = 1.5  # factor about the last border between which the next one is looked for first
-KEYS = {"deck", "motion", "set", "along", "across", "curves", "begin", "literature"}
 SWING = 0.5  # half turns that a tumbling shape makes at least; one whose membrane treads swings by less
 HALF = 180  # degrees: a shape, or its membrane, looks as before
 ASKEW, STRAIGHT = 0.1, 0.005  # of a cell that has left the axis or turned away from it; what its mesh may leave
@@ -41,12 +39,10 @@ Kind = collections.namedtuple("Kind", "below above tell measures")
 
 
 def in_shear(series, begin):
-    """Returns `tumbles`, `both`, `treads` or None; half turns of the shape against the phase, and of the membrane on
-    it, after the share `begin` of the time."""
-    begins = series["time"][0] + begin * numpy.ptp(series["time"])
+    """Returns `tumbles`, `both`, `treads` or None, and half turns of the shape and the membrane on it after `begin`."""
     defined = ~numpy.isnan(series["inclination"])  # a shape with two equal semi-axes has no inclination
     time, phase, inclination = (series[name][defined] for name in ("time", "phase", "inclination"))
-    late = time >= begins
+    late = time >= series["time"][0] + begin * numpy.ptp(series["time"])
     if not late.any():
         return None, numpy.nan, numpy.nan
     turned = -numpy.unwrap(inclination, period=HALF)  # in the sense of the phase
@@ -56,8 +52,7 @@ def in_shear(series, begin):
 
 
 def in_capillary(series, begin):
-    """Returns `slips` or `parachute`, and by how much the cell is askew in the first and in the last third of the time
-    after `begin`."""
+    """Returns `slips` or `parachute`, and how askew the cell is in the first and last third of time after `begin`."""
     time = series["time"]
     away = numpy.hypot(series["centroid_x2"], series["centroid_x3"]) / numpy.cbrt(3 * series["volume"] / (4 * numpy.pi))
     inclination = numpy.radians(numpy.nan_to_num(series["inclination"]))  # if it is NaN, D is 0
@@ -73,19 +68,17 @@ MOTIONS = {"shear": Kind(("tumbles", "both"), "treads", in_shear, ("half turns o
 
 
 class Diagram:
-    """A study file and the borders that are found, {curve: rows of the value across, the two values that a border lies
-    between, and how it ended}."""
+    """A study file and its `borders`, {curve: rows of the value across, two values about the border, how it ended}."""
 
     def __init__(self, path, runs):
-        text = yaml_of(path, KEYS)
-        self.runs, self.decks, self.fixed = runs, decks_of(text, path), keys_of(text.get("set"), f"{path}: set")
+        text = study_of(path, {"set", "along", "across", "curves", "literature"}, {"motion", "begin"})
+        self.runs, self.decks, self.fixed = runs, text["deck"], text["set"]
         kind = str(text.get("motion", "shear"))
         expect(kind in MOTIONS, f"{path}: the motion is {' or '.join(MOTIONS)}, not {kind}")
         self.kind = MOTIONS[kind]
         # how a search ends without a border in the range
         self.to_here, self.from_here = f"{self.kind.below[0]} to here", f"{self.kind.above} from here"
-        self.along, across, curves, literature = (keys_of(text.get(name), f"{path}: {name}")
-                                                  for name in ("along", "across", "curves", "literature"))
+        self.along, across, curves = text["along"], text["across"], text["curves"]
         expect(set(self.along) == {"key", "from", "to", "within"}, f"{path}: along has key, from, to and within")
         low, high, within = self.range = [number(self.along[name], f"{path}: along, {name}")
                                           for name in ("from", "to", "within")]
@@ -94,55 +87,47 @@ class Diagram:
         expect(len(across) == 1 and curves, f"{path}: across has one key, and curves one or more")
         self.across, self.begin = next(iter(across)), number(text.get("begin", 0.4), f"{path}: begin")
         expect(0 <= self.begin < 1, f"{path}: begin is a share of a run, from 0 to less than 1, but is {self.begin:g}")
-        for name, rows in literature.items():
+        for name, rows in text["literature"].items():
             expect(isinstance(rows, list) and all(isinstance(row, list) and len(row) == 3 for row in rows),
                    f"{name}: literature has rows of a value across, the lowest and the highest one along")
         self.literature = {name: [[number(value, name) for value in row] for row in rows]
-                           for name, rows in literature.items()}
+                           for name, rows in text["literature"].items()}
         self.rows = {name: self.settings(name, across | keys_of(keys, f"{path}: the curve {name}"))
                      for name, keys in curves.items()}
         self.borders, self.made = {name: [] for name in curves}, {}  # runs by (curve, value across, value along)
 
     def settings(self, name, keys):
         """Returns the settings of a curve, one dict for each of its values across."""
-        values = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
-        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: values}
-        for key, given in lists.items():
-            expect(len(given) == len(values),
-                   f"{name}: {key} has {len(given)} values where {self.across} has {len(values)}")
+        at = [number(value, f"{name}: {self.across}") for value in values_of(self.across, keys[self.across])]
+        lists = {key: given for key, given in keys.items() if isinstance(given, list)} | {self.across: at}
+        for key, one in lists.items():
+            expect(len(one) == len(at), f"{name}: {key} has {len(one)} values where {self.across} has {len(at)}")
         return [keys | dict(zip(lists, row)) for row in zip(*lists.values())]
 
     def holds(self, name, row, value):
-        """Returns whether the motion is the one below the border."""
+        """Returns whether the motion is the one below the border. Keeps in `made` what is known about the run."""
         key = name, row[self.across], value
-        self.made[key] = self.made.get(key) or self.motion_at(name, row, value)
-        said = self.made[key][0]
-        expect(said != "neither",
+        if key not in self.made:
+            outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
+            said, *measures = (self.kind.tell(outcome.series, self.begin) if outcome.done else
+                               ("not run to its end: " + outcome.message, numpy.nan, numpy.nan))
+            self.made[key] = said or "neither", *measures, outcome.processor_seconds, outcome.directory.name
+            told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
+            log.info(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: "
+                     f"{said or 'neither'} ({told}; {outcome.processor_seconds:.0f} processor seconds)")
+        motion = self.made[key][0]
+        expect(motion != "neither",
                f"it neither {self.kind.below[0]} nor {self.kind.above}: it needs a later Time/final time")
-        expect(said in (*self.kind.below, self.kind.above), said)
-        return said != self.kind.above
-
-    def motion_at(self, name, row, value):
-        """Returns the motion of one run, or why there is none, its two measures, processor seconds and directory."""
-        outcome = self.runs.run(self.decks, self.fixed | row | {self.along["key"]: value})
-        said, *measures = (self.kind.tell(outcome.series, self.begin) if outcome.done else
-                           ("not run to its end: " + outcome.message, numpy.nan, numpy.nan))
-        said = said or "neither"
-        told = ", ".join(f"{label} {measure:.3g}" for label, measure in zip(self.kind.measures, measures))
-        log.info(f"{name}, {self.across} {row[self.across]:g}, {self.along['key']} {value:.4g}: {said} ({told}; "
-                 f"{outcome.processor_seconds:.0f} processor seconds)")
-        return said, *measures, outcome.processor_seconds, outcome.directory.name
+        expect(motion in (*self.kind.below, self.kind.above), motion)
+        return motion != self.kind.above
 
     def border(self, name, row, last):
-        """Returns the border and how the search ended. Searches about the last border first, then in the rest of the
-        range."""
+        """Returns the border and how the search ended. Searches about the last border first, then the rest."""
         low, high, factor = self.range
         holds = functools.partial(self.holds, name, row)
         if last:
-            found, how = common.edge(holds, max(low, last / NEAR), min(high, last * NEAR), factor)
-            if how == "edge" or found == {"fails from here": low, "holds to here": high}[how]:
-                return found, how
-            low, high = (low, found) if how == "fails from here" else (found, high)
+            near, far = max(low, last / NEAR), min(high, last * NEAR)
+            low, high = (low, near) if not holds(near) else (far, high) if holds(far) else (near, far)
         return common.edge(holds, low, high, factor)
 
     def find(self):
@@ -156,17 +141,16 @@ class Diagram:
             last = low if how == "edge" else last
             above = [value for (*curve, value), run in self.made.items()
                      if curve == [name, at] and value > low and run[0] == self.kind.above]
-            borders = {"fails from here": (at, numpy.nan, low, self.from_here),
-                       "holds to here": (at, low, numpy.nan, self.to_here)}
-            self.borders[name].append(borders.get(how, (at, low, min(above, default=numpy.nan), how)))
+            end = {"fails from here": (numpy.nan, low, self.from_here), "holds to here": (low, numpy.nan, self.to_here)}
+            self.borders[name].append((at, *end.get(how, (low, min(above, default=numpy.nan), how))))
 
     def write(self, directory):
-        borders = ["curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"]
-        common.write_table(directory / "borders.csv", borders,
-                           [(name, *row) for name, rows in self.borders.items() for row in rows])
-        runs = ["curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds",
-                "directory"]
-        common.write_table(directory / "runs.csv", runs, [(*key, *run) for key, run in self.made.items()])
+        borders = [(name, *row) for name, rows in self.borders.items() for row in rows]
+        common.write_table(directory / "borders.csv", [
+            "curve", self.across, f"{self.kind.below[0]} at", f"{self.kind.above} at", "how"], borders)
+        common.write_table(directory / "runs.csv", [
+            "curve", self.across, self.along["key"], "motion", *self.kind.measures, "processor seconds", "directory"],
+            [(*key, *run) for key, run in self.made.items()])
 
     found = property(lambda self: any(numpy.isfinite(row[1:3]).any() for rows in self.borders.values() for row in rows),
                      doc="Whether there is anything to draw.")
@@ -177,22 +161,21 @@ class Diagram:
 
         from ..figures import style
 
+        def bars(at, low, high, **look):
+            middle = numpy.sqrt(low * high)
+            axes.errorbar(at, middle, [middle - low, high - middle], capsize=2, **look)
+
         figure, (axes,) = style.panels(axes, 1, 1, 6.2, 4.2)
         for (name, rows), color in zip(self.borders.items(), style.RUNS * len(self.borders)):
             edges = numpy.array(sorted(row[:3] for row in rows if row[3] == "edge")).reshape(-1, 3)
             if len(edges):
-                middle = numpy.sqrt(edges[:, 1] * edges[:, 2])
-                bars = [middle - edges[:, 1], edges[:, 2] - middle]
-                axes.errorbar(edges[:, 0], middle, bars, fmt="o-", color=color, markersize=3.5, capsize=2, label=name)
+                bars(*edges.T, fmt="o-", color=color, markersize=3.5, label=name)
             for how, at, mark in (self.from_here, 2, "v"), (self.to_here, 1, "^"):
                 there = numpy.reshape([(row[0], row[at]) for row in rows if row[3] == how], (-1, 2))
                 label = None if len(edges) or not len(there) else name + (", below" if mark == "v" else ", above")
                 axes.plot(*there.T, mark, color=color, markersize=6, label=label)
         for (name, rows), mark in zip(self.literature.items(), style.MARKS[1:] * len(self.literature)):
-            x, low, high = numpy.array(rows, float).T
-            middle = numpy.sqrt(low * high)
-            axes.errorbar(x, middle, [middle - low, high - middle], fmt=mark, color=style.FAINT, markersize=4,
-                          linewidth=0.8, capsize=2, label=name)
+            bars(*numpy.reshape(rows, (-1, 3)).T, fmt=mark, color=style.FAINT, markersize=4, linewidth=0.8, label=name)
         axes.set(xscale="log", yscale="log", xlabel=self.across, ylabel=self.along["key"])
         for axis, words in (axes.xaxis, {"xscale": "linear"}), (axes.yaxis, {}):
             # there is no power of ten to go by
@@ -209,7 +192,7 @@ class Diagram:
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("study", type=pathlib.Path, help="the study, a YAML file")
+    parser.add_argument("study", help="the study, a YAML file")
     common.arguments(parser, "results/phases", limit=None)
     parsed = parser.parse_args()
     diagram = Diagram(parsed.study, common.study(parsed))
@@ -223,4 +206,3 @@ def main():
             style.save(style.draw(diagram.draw), parsed.output / "phases.png")
     expect(diagram.found,
            f"no border was found, and nothing is drawn: {parsed.output / 'borders.csv'} says how each search ended")
-    return 0

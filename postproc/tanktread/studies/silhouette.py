@@ -7,8 +7,7 @@ ZERO = 1e-11  # relative to the largest value of what vanishes on the outline: l
 
 
 class Outline:
-    """A closed smooth curve through `points` (n, 2), in their order, counter-clockwise: a periodic cubic spline over
-    the length of its chords."""
+    """A closed curve through `points` (n, 2) in counter-clockwise order: a periodic cubic spline over chord length."""
 
     def __init__(self, points):
         closed = numpy.vstack([points, points[:1]])
@@ -16,13 +15,9 @@ class Outline:
         self.points, self.length = numpy.asarray(points), along[-1]
         self._curve = scipy.interpolate.CubicSpline(along, closed, bc_type="periodic")
 
-    def at(self, share):
-        """Returns the points (n, 2) at shares of the length, from 0 to 1."""
-        return self._curve(numpy.asarray(share) * self.length)
-
     def even(self, n):
         """Returns n points (n, 2) at equal distances."""
-        return self.at(numpy.arange(n) / n)
+        return self._curve(numpy.arange(n) / n * self.length)
 
     def centred(self):
         """Returns the same outline about the centroid of the enclosed area."""
@@ -34,8 +29,7 @@ class Outline:
     def distances(self, points):
         """Returns the distances (m,) of points (m, 2) from the curve along its normal, positive outside."""
         u = numpy.linspace(0, self.length, 2 * len(self.points), endpoint=False)
-        known = self._curve(u)
-        u = u[((points[:, None] - known) ** 2).sum(2).argmin(1)]
+        u = u[((points[:, None] - self._curve(u)) ** 2).sum(2).argmin(1)]
         for _ in range(6):
             off, slope, bend = self._curve(u) - points, self._curve(u, 1), self._curve(u, 2)
             curvature = (slope**2 + off * bend).sum(1)
@@ -47,10 +41,9 @@ class Outline:
 
 
 def seen(shot, axis=1, k=8):
-    """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: the outermost points, by their direction
-    from the middle, of those where the normal is across the line of sight. These points are found exactly on k + 1
-    lines of each parameter in every cell. Raises ValueError of a shape whose outline is met twice in a direction from
-    its middle."""
+    """Returns the Outline of a snapshot's surface as seen along x_{axis+1}: of the points whose normal is across the
+    line of sight, found exactly on k + 1 lines of each parameter in every cell, the outermost in each direction from
+    the middle. Raises ValueError if the outline is met twice in a direction."""
 
     def across(cells, s, t):
         tangent_s, tangent_t = (shot.evaluate(shot.points, cells, s, t, *order) for order in ((1, 0), (0, 1)))
@@ -77,12 +70,10 @@ def seen(shot, axis=1, k=8):
 
 
 def _outermost(points):
-    """Returns the Outline of the outermost points in a plane, by direction from their middle; of points close together
-    one is kept."""
-    middle = (points.min(0) + points.max(0)) / 2
-    angle, radius = numpy.arctan2(*(points - middle).T[::-1]), numpy.linalg.norm(points - middle, axis=1)
-    order = numpy.argsort(angle)
-    angle, radius, points = angle[order], radius[order], points[order]
+    """Returns the Outline of the outermost points by direction from their middle; of close points one is kept."""
+    x, y = (points - (points.min(0) + points.max(0)) / 2).T
+    order = numpy.argsort(numpy.arctan2(y, x))
+    angle, radius, points = numpy.arctan2(y, x)[order], numpy.hypot(x, y)[order], points[order]
     window = 2 * numpy.pi * 4 / len(points)
     wide, far = numpy.concatenate([angle - 2 * numpy.pi, angle, angle + 2 * numpy.pi]), numpy.tile(radius, 3)
     first, last = numpy.searchsorted(wide, angle - window), numpy.searchsorted(wide, angle + window)

@@ -27,15 +27,14 @@ import time
 import h5py
 import numpy
 
-from ..files import opened
+from ..files import Named, opened
 from ..interpolation import mean
 from ..mistakes import command_line, expect, log, progress
 from ..runs import Study, text_of
-from .common import decks_of, keys_of, number, optional, spaced, values_of, whole, yaml_of
+from .common import keys_of, number, optional, spaced, study_of, values_of, whole
 
 TAKES = {"last": lambda time, values: values[-1], "smallest": lambda time, values: values.min(),
          "largest": lambda time, values: values.max(), "mean": mean, "all": None}
-KEYS = {"deck", "set", "grid", "together", "random", "record", "limit", "ranks"}
 
 
 def drawn(text):
@@ -58,14 +57,12 @@ def drawn(text):
 
 def combinations(text):
     """Returns the settings of every run that a study asks for, each once."""
-    grid = {key: values_of(key, given) for key, given in keys_of(text.get("grid"), "grid").items()}
-    together = {key: values_of(key, given) for key, given in keys_of(text.get("together"), "together").items()}
+    grid, together = ({key: values_of(key, one) for key, one in text[name].items()} for name in ("grid", "together"))
     expect(len({len(values) for values in together.values()}) <= 1, "the lists of `together` must be equally long")
     groups = [[dict(zip(grid, row)) for row in itertools.product(*grid.values())],
               [dict(zip(together, row)) for row in zip(*together.values())] or [{}],
-              drawn(text["random"]) if keys_of(text.get("random"), "random") else [{}]]
-    fixed = keys_of(text.get("set"), "set")
-    rows = [fixed | a | b | c for a, b, c in itertools.product(*groups)]
+              drawn(text["random"]) if text["random"] else [{}]]
+    rows = [text["set"] | a | b | c for a, b, c in itertools.product(*groups)]
     return [row for k, row in enumerate(rows) if row not in rows[:k]]
 
 
@@ -82,41 +79,37 @@ def columns_of(text, path):
         take = str(given.get("take", "last"))
         expect(take in TAKES, f"{path}: take {take} of {name} is not one of {', '.join(TAKES)}")
         expect(not set(given) - {"series", "take", "at"}, f"{path}: {name} has series, take and at")
-        at = number(given["at"], f"{path}: {name}, at") if "at" in given else None
-        found[name] = given.get("series", name), take, at
+        found[name] = given.get("series", name), take, optional(number, given, "at", f"{path}: {name}")
     return found
 
 
 def recorded(outcome, columns):
-    """Returns the columns of a run, whole series as arrays; NaN of a run that did not come to its end. A run with
+    """Returns the columns of a run, and `time` of whole series; none of a run that did not come to its end. A run with
     requested accuracy has a column `<column> error` in addition to each column of one value."""
-    row = {}
+    if not outcome.done:
+        return {}
+    row, time = {}, outcome.series["time"]
     for name, (series, take, at) in columns.items():
-        time, values = (outcome.series[one] if outcome.done else numpy.array([]) for one in ("time", series))
+        values, errors = outcome.series[series], outcome.run.errors.get(series)
         if take == "all":
-            row[name] = values
+            row |= {name: values, "time": time}
             continue
         kept = numpy.full(len(values), True) if take == "last" else ~numpy.isnan(values)  # it is NaN where undefined
-        errors = outcome.run.errors.get(series) if len(values) else None
         take_error = TAKES["last" if take == "last" else "largest"]
         for column, found, one in (name, values, TAKES[take]), (f"{name} error", errors, take_error):
-            if found is None:
-                continue
-            row[column] = numpy.nan
-            if at is not None and len(found):
+            if found is not None and at is not None and len(found):
                 row[column] = float(numpy.interp(at, time, found))
-            elif kept.any():
-                row[column] = float(one(time[kept], found[kept]))
+            elif found is not None:
+                row[column] = float(one(time[kept], found[kept])) if kept.any() else numpy.nan
     return row
 
 
 class Sweep:
-    """A study file and its runs: `keys` that vary, `rows` of settings, `outcomes` in the same order once they are
-    made."""
+    """A study file and its runs: `keys` that vary, `rows` of settings, and their `outcomes` once they are made."""
 
     def __init__(self, path, study):
-        text = yaml_of(path, KEYS)
-        self.name, self.study, self.decks = pathlib.Path(path).stem, study, decks_of(text, path)
+        text = study_of(path, {"set", "grid", "together", "random"}, {"record", "limit", "ranks"})
+        self.name, self.study, self.decks = pathlib.Path(path).stem, study, text["deck"]
         self.ranks = whole(text.get("ranks", 1), f"{path}: ranks")
         self.rows, self.columns = combinations(text), columns_of(text, path)
         self.study.limit = optional(number, text, "limit", path)
@@ -146,15 +139,17 @@ class Sweep:
         found = [recorded(outcome, self.columns) for outcome in self.outcomes]
         whole = [name for name, (_, take, _) in self.columns.items() if take == "all"]
         single = [word for name in self.columns if name not in whole for word in (name, f"{name} error")
-                  if any(word in values for values in found)]
-        found = [dict.fromkeys(single, numpy.nan) | values for values in found]
+                  if word == name or any(word in values for values in found)]
+        columns = {name: [values.get(name, numpy.nan) for values in found] for name in single}
         with open(directory / "table.csv", "w", encoding="utf-8", newline="") as file:
             out = csv.writer(file)
             out.writerow([*self.keys, *single, "status", "processor_seconds", "directory", "message"])
-            for row, values, outcome in zip(self.rows, found, self.outcomes):
-                out.writerow([*(row.get(key, "") for key in self.keys), *(values[name] for name in single),
-                              outcome.status, f"{outcome.processor_seconds:.3g}", outcome.directory.name,
-                              "" if outcome.done else outcome.message])
+            for row, one, *values in zip(self.rows, self.outcomes, *columns.values()):
+                out.writerow([*(row.get(key, "") for key in self.keys), *values, one.status,
+                              f"{one.processor_seconds:.3g}", one.directory.name, "" if one.done else one.message])
+        for name in [*whole, "time"] if whole else []:
+            padded = itertools.zip_longest(*(values.get(name, []) for values in found), fillvalue=numpy.nan)
+            columns[name] = numpy.reshape(list(padded), (-1, len(found))).T
         with h5py.File(directory / "table.h5", "w") as file:
             file["status"] = [outcome.status for outcome in self.outcomes]
             file["directory"] = [str(outcome.directory) for outcome in self.outcomes]
@@ -163,20 +158,13 @@ class Sweep:
                 values = [row.get(key, numpy.nan) for row in self.rows]
                 numbers = all(isinstance(value, (int, float)) for value in values)
                 file[f"keys/{key}"] = values if numbers else [str(value) for value in values]
-            if whole:
-                found = [values | {"time": outcome.series["time"] if outcome.done else []}
-                         for values, outcome in zip(found, self.outcomes)]
-            file.attrs["columns"] = [*single, *whole, *(["time"] if whole else [])]
-            for name in file.attrs["columns"]:
-                longest = max(numpy.size(values[name]) for values in found)
-                table = numpy.full((len(found), longest), numpy.nan)
-                for row, values in zip(table, found):
-                    row[:numpy.size(values[name])] = values[name]
-                file[f"columns/{name}"] = table[:, 0] if name in single else table
+            file.attrs["columns"] = list(columns)
+            for name, values in columns.items():
+                file[f"columns/{name}"] = values
             run = next((outcome.run for outcome in self.outcomes if outcome.done), None)
             for key in self.keys if run else []:
                 file[f"keys/{key}"].attrs["unit"] = run.unit(self.study.dimension(key))
-            for name in file.attrs["columns"] if run else []:
+            for name in columns if run else []:
                 series = (self.columns.get(name) or self.columns.get(name.removesuffix(" error")) or [name])[0]
                 file[f"columns/{name}"].attrs["unit"] = run.unit(run.units[series])
         for name in "table.csv", "table.h5":
@@ -191,17 +179,14 @@ def table(directory):
         found |= {name: file[f"columns/{name}"] for name in file.attrs["columns"]}
         labels = {name: name + data.attrs.get("unit", "") for name, data in found.items()}
         values = {name: data.asstr()[:] if data.dtype.kind == "O" else data[:] for name, data in found.items()}
-        return values, keys, labels
+        return Named(values, f"{directory}/table.h5 has no column"), keys, labels
 
 
 def plot(directory, column, key, axes=None):
-    """Returns a figure of a column of the table against a key, or of whole series against time, with a line for every
-    combination of the other keys."""
+    """Returns a figure of a column against a key, or of series against time, a line per combination of other keys."""
     from ..figures import style
 
     columns, keys, labels = table(directory)
-    for name in column, key:
-        expect(name in columns, f"the table has no {name}; there are: {', '.join(columns)}")
     expect(columns[column].ndim == columns[key].ndim,
            f"{column} and {key} cannot be drawn against each other: one of them is a whole series")
     figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
@@ -212,8 +197,7 @@ def plot(directory, column, key, axes=None):
     for k, label in enumerate(dict.fromkeys(lines)):
         x, y, color = columns[key][lines == label], columns[column][lines == label], style.RUNS[k % len(style.RUNS)]
         if y.ndim > 1:
-            for i, (along, values) in enumerate(zip(x, y)):
-                axis.plot(along, values, color=color, label=label if i == 0 else None)
+            axis.plot(x.T, y.T, color=color)[0].set_label(label)
             continue
         order = numpy.argsort(x)
         dash = ("-", "--", ":")[k // len(style.RUNS)] if few else ""  # where the colours begin again
@@ -229,10 +213,9 @@ def plot(directory, column, key, axes=None):
 
 
 def run(path, directory=None, jobs=None, fresh=False):
-    """Makes the runs of a study file, writes its table, and returns the Sweep with their `outcomes`. `directory`: of
-    table.csv, table.h5 and runs/ (default: results/<study>). `jobs`: runs at a time (default: the number of cores).
-    `fresh`: makes every run anew."""
-    directory = pathlib.Path(directory or pathlib.Path("results") / pathlib.Path(path).stem)
+    """Makes the runs of a study file, writes its table, and returns the Sweep. `directory`: of table.csv, table.h5 and
+    runs/ (default: results/<study>). `jobs`: runs at a time (default: one per core). `fresh`: makes all runs anew."""
+    directory = pathlib.Path(directory or f"results/{pathlib.Path(path).stem}")
     sweep = Sweep(path, Study(directory=directory / "runs", jobs=jobs or os.cpu_count(), fresh=fresh))
     directory.mkdir(parents=True, exist_ok=True)
     sweep.make()
@@ -243,7 +226,7 @@ def run(path, directory=None, jobs=None, fresh=False):
 def main():
     parser = command_line(__doc__)
     parser.add_argument("study", help="the study, a YAML file")
-    parser.add_argument("--output", type=pathlib.Path, metavar="DIR",
+    parser.add_argument("--output", metavar="DIR",
                         help="of the table and, under runs/, of results (default: results/<study>)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
                         help="runs at a time (default: the number of cores)")
@@ -258,14 +241,12 @@ def main():
     if arguments.list:
         for row in Sweep(arguments.study, Study()).rows:
             log.info(", ".join(f"{key}={text_of(value)}" for key, value in row.items()))
-        return 0
+        return
     sweep = run(arguments.study, arguments.output, arguments.jobs, arguments.fresh)
     if not any(outcome.done for outcome in sweep.outcomes):
-        progress(f"tanktread-sweep: none of the runs came to its end; the first one: {sweep.outcomes[0].message}\n")
-        return 1
+        sys.exit(f"tanktread-sweep: none of the runs came to its end; the first one: {sweep.outcomes[0].message}")
     if arguments.plot:
         from ..figures import style
 
         directory, name = sweep.study.directory.parent, re.sub(r"[^\w.-]", "_", arguments.plot[0]).strip("_")
         style.save(style.draw(plot, directory, *arguments.plot), arguments.picture or directory / f"{name}.png")
-    return 0
