@@ -70,8 +70,8 @@ def largest(one, other):
     return difference(*one, *other)
 
 
-@figure
-def work(run, axes=None, *, parts: bool = True):
+@figure(1, 1, 6.4, 4.4)
+def work(run, axis, *, parts: bool = True):
     """Estimated error against seconds, for each series whose accuracy was requested, with the part that dominates.
 
     Each point is a level of the run. The error of a level is its difference from the finest one, whose own error is
@@ -80,7 +80,6 @@ def work(run, axes=None, *, parts: bool = True):
     parts: also make the runs that tell the dominant part"""
     levels = Levels(run)
     study = Study(directory=run.directory / "parts")
-    figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
     for request, color in style.coloured(levels.requests):
         errors = levels.errors(request)
         known = numpy.isfinite(errors) & (errors > 0)
@@ -96,4 +95,3 @@ def work(run, axes=None, *, parts: bool = True):
         changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
         log.info(words + (f"; change by refinement of {changes}" if changes else ""))
     style.finish(axis, xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
-    return figure

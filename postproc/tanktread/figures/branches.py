@@ -9,7 +9,7 @@ from . import style
 from .register import figure
 
 
-@figure
+@figure()
 def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
     """Branches of steady shapes: D against the parameter, folds marked; below, the rate of the leading mode.
 
@@ -55,15 +55,14 @@ def draw(axes, run, x, y, color, label=None):
     axes.plot(x, y, ".", color=color, markersize=3)
 
 
-@figure
-def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
+@figure(2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
+def folds(runs, upper, lower, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
     """Folds of branches against a second parameter, such as where drops burst against their viscosity; D there below.
 
     The runs have the key Continuation/second parameter. Each fold is printed.
 
     series: what is drawn below
     exact: a known fold, as second parameter and value (repeatable)"""
-    figure, (upper, lower) = style.panels(axes, 2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
     names, reached = set(), []
     for run, color in style.coloured(runs):
         found = numpy.flatnonzero(run.series["fold"] > 0)
@@ -89,11 +88,10 @@ def folds(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
     lower.set(ylabel=label_of(runs[0], series) + (" there" if series.startswith("taylor") else ""), xlabel=second)
-    return figure
 
 
-@figure
-def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: float = 0.003, length: float = 2):
+@figure(1, 1, 5.2, 3.6)
+def growth_rates(run, axis, *, series: str = "taylor_surface", amplitude: float = 0.003, length: float = 2):
     """Rates of the leading mode along a branch of steady shapes, and those of runs in time from the same shapes.
 
     The run has the section Spectrum. From each of its points except folds, two runs in time start with the mode added
@@ -112,12 +110,10 @@ def growth_rates(run, axes=None, *, series: str = "taylor_surface", amplitude: f
     for p, one, other in zip(parameter, rate, found):
         compared = f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"
         log.info(f"{path} {p:.8g}: rate {one:.6f}{'' if numpy.isnan(other) else compared}")
-    figure, (axis,) = style.panels(axes, 1, 1, 5.2, 3.6)
     draw(axis, run, parameter, rate, style.RUNS[0], "eigenvalue")
     axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
     axis.axhline(0, color=style.INK, linewidth=0.6)
     style.finish(axis, xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
-    return figure
 
 
 def deck_in_time(run, directory):

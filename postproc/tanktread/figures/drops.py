@@ -18,12 +18,11 @@ ROUND = 1e-2  # by which the extents across the axis may differ
 COSINE, WEIGHT = legendre.leggauss(400)
 
 
-@figure
-def surfactant(runs, axes=None):
+@figure(2, 2, 7.2, 5.6)
+def surfactant(runs, cut, along, deformation, extremes):
     """Drops with surfactant: last section, concentration along the axis x3, and over time D and its extremes.
 
     A clean drop among the runs is drawn for comparison."""
-    figure, (cut, along, deformation, extremes) = style.panels(axes, 2, 2, 7.2, 5.6)
     for run, color in style.coloured(runs):
         last = run.snapshot_at(None)
         draw_pieces(cut, section(last, last.points[:, 1].mean()) / run.radius, color, 1.4)
@@ -45,10 +44,9 @@ def surfactant(runs, axes=None):
     along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
     style.finish(deformation, xlabel=time_label(runs), ylabel="D")
     extremes.set(xlabel=time_label(runs), ylabel="largest, smallest concentration")
-    return figure
 
 
-@figure
+@figure()
 def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     """Vesicles at rest beside axisymmetric shapes of least energy that are found without tanktread.
 

@@ -13,15 +13,14 @@ from .draw import draw_pieces, section
 from .register import figure
 
 
-@figure
-def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None):
+@figure(3, 1, 6.4, 8, sharex=True)
+def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None):
     """Two particles that meet: the path of one past the other, the smallest gap, and how they deform.
 
     Drawn against dx; dx, dz are x1 and x3 of the first centroid less those of the second one, over R_C.
 
     pair: names of the two particles (default: the first two)
     curve: a path of the literature, a CSV file with columns dx, dz over R_C"""
-    figure, (path, gap, deformation) = style.panels(axes, 3, 1, 6.4, 8, sharex=True)
     for run, color in style.coloured(runs):
         names = pair or run.particles[:2]
         expect(len(names) == 2, f"{run.directory}: an encounter is of two particles, and this run has one")
@@ -43,10 +42,9 @@ def encounter(runs, axes=None, *, pair: tuple[str, str] | None = None, curve: pa
     deformation.set(xlabel="dx / R$_C$", ylabel="D")
     if deformation.lines:
         deformation.legend()
-    return figure
 
 
-@figure
+@figure()
 def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = None):
     """Particles beside a plane wall: sections at several times, the gap, and the centroid's velocity along and away.
 

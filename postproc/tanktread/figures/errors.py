@@ -32,8 +32,8 @@ class Errors:
         self.family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
 
 
-@figure
-def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: str = "taylor_inertia"):
+@figure(2, 2, 9.6, 7)
+def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None, series: str = "taylor_inertia"):
     """Error of a run's deformation against a curve: over time, against the mesh, seconds and velocity evaluations.
 
     The curve is a CSV file with the columns `t`, which is time times the rate of the flow, and `taylor_inertia`. A line
@@ -46,7 +46,6 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
                                                  or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
     found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.costs[0])
-    figure, (over_time, *over_costs) = style.panels(axes, 2, 2, 9.6, 7)
     for one, shade in zip(found, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))):
         over_time.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
         points, seconds, evaluations = one.costs
@@ -68,11 +67,10 @@ def convergence(runs, axes=None, *, curve: pathlib.Path | None = None, series: s
     if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
         over_costs[0].loglog(n, 0.3 * found[0].largest * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
     over_costs[0].legend(loc="lower left")
-    return figure
 
 
-@figure
-def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
+@figure(1, 1, 7, 5)
+def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
          set_: list[str] | None = None, curves: tuple[pathlib.Path, pathlib.Path, pathlib.Path] | None = None,
          between: tuple[float, float] = (-3.9, 4.9)):
     """Extents of a capsule against its centroid in a channel that steps, with edges rounded less and less, and sharp.
@@ -100,7 +98,6 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
     x, runs, deck = numpy.linspace(begin, end, SAMPLES), Study(directory="results/step"), deck_at(deck)
     of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
     sharp = sharp_edges(of_large, of_small, large / small)
-    figure, (axis,) = style.panels(axes, 1, 1, 7, 5)
     for name, colour, dots, dashes, line in zip(style.AXES, style.RUNS, of_large, of_small, sharp):
         axis.plot(x, dots, ":", x, dashes, "--", color=colour)
         axis.plot(x, line, color=colour, label=f"along {name}")
@@ -116,7 +113,6 @@ def step(deck, axes=None, *, radii: tuple[float, float] = (0.1, 0.05), finer: li
                  f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
     style.finish(axis, xlabel="centroid $x_1$", ylabel="extent over 2a",
                  title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
-    return figure
 
 
 def power():

@@ -24,15 +24,14 @@ MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosi
 BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # look of what was measured
 
 
-@figure
-def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: float = 5.3):
+@figure(1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
+def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, shear_modulus: float = 5.3):
     """A red cell in optical tweezers: its diameters along and across the force, beside those that were measured.
 
     Beside them its outline from the side at each force. The deck, with lengths in radii of the disc, is run once for
     each force.
 
     shear_modulus: in uN/m"""
-    figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
     runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in STRETCHED]
     across, along = RADIUS * numpy.array([[run.series[f"length_x{k}"][-1] for run in runs] for k in (2, 1)])
     for (pn, narrow, wide, low, high), here_across, here_along in zip(STRETCHED, across, along):
@@ -52,7 +51,6 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: 
     plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="Mills and others 2004", **BAR)
     plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none", label="across, measured")
     style.finish(plot, xlabel="force / pN", ylabel="diameter / µm")
-    return figure
 
 
 def pulled(deck, force, more):
@@ -61,9 +59,9 @@ def pulled(deck, force, more):
     return run_of(deck, {f"Membrane/forces/{name}/force": [pull, 0, 0] for name, pull in ends.items()} | more)
 
 
-@figure
-def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list[float] = [0.1, 0.32, 1.0],
-             elements: int = 6):
+@figure(1, 2, 8.2, 3.4)
+def treading(deck="inputs/red_cell_treading.yaml", plot=None, angles=None, *,
+             viscosity: list[float] = [0.1, 0.32, 1.0], elements: int = 6):
     """A red cell that tank-treads in shear: frequency over shear rate, and inclination, beside those measured.
 
     Means of the last whole turn against the shear rate. The deck, with units, is run once for each shear rate and
@@ -71,7 +69,6 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
 
     viscosity: viscosities of the membrane, in uN s/m
     elements: elements per side"""
-    figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
     rates, frequencies, bars = numpy.transpose(TURNING)
     for value, color in style.coloured(sorted(viscosity)):
         found = [last_turn(deck, rate, value, elements) for rate in rates]
@@ -89,7 +86,6 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
     angles.axhspan(*INCLINATION, color=style.FAINT, alpha=0.4, label="measured")
     style.finish(plot, xlabel="shear rate / s$^{-1}$", ylabel="frequency / shear rate")
     style.finish(angles, xlabel="shear rate / s$^{-1}$", ylabel="inclination / degrees")
-    return figure
 
 
 def last_turn(deck, rate, viscosity, elements):
@@ -103,15 +99,14 @@ def last_turn(deck, rate, viscosity, elements):
     return 2 * numpy.pi / (time[-1] - begin), around.mean(), around.min(), around.max()
 
 
-@figure
-def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int = 6):
+@figure(1, 1, 5.2, 3.6)
+def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int = 6):
     """A red cell let go by tweezers at a length of twice its width returns to its disc, beside the experiment.
 
     Length over width against time, and the time constant of the exponential that fits best, for several moduli and
     viscosities of the membrane. The deck has lengths in radii of the disc.
 
     elements: elements per side"""
-    figure, (plot,) = style.panels(axes, 1, 1, 5.2, 3.6)
     time, ratio = numpy.array(RETURNING).T
     log.info(f"measured: time constant {constant(time, ratio):.4f} s")
     for (modulus, viscosity), color in zip(MEMBRANES, style.RUNS):
@@ -121,7 +116,6 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int =
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
     plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
     style.finish(plot, xlabel="time / s", ylabel="length over width")
-    return figure
 
 
 def let_go(deck, elements, modulus, viscosity):

@@ -13,36 +13,44 @@ from ..mistakes import expect
 from ..results import Run
 from ..runs import run as run_of
 from ..runs import SOURCE, runs_of, settings_of
-from .style import draw, save
+from . import style
 
 FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
 RUNS = {"runs": (runs_of, "+", "directories of results, or decks, which are run if they have none"),
         "run": (run_of, None, "directory of results, or a deck, which is run if it has none")}
+AXES = inspect.Parameter("axes", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None)
 
 
-def figure(function):
+def figure(*size, **layout):
     """Decorates the function of a figure: sets the style, accepts directories and decks as runs, adds it to FIGURES.
 
-    Parameters are `runs`, `run`, or a deck or study; `axes`; and options by keyword. The first paragraph of the
-    docstring is the caption; lines `option: text` below it describe options on the command line."""
-    first = _parameters(function)[0]
-    convert = RUNS.get(first.name, (lambda given: given,))[0]
+    Parameters are `runs`, `run`, or a deck or study; axes; and options by keyword. With the `size` and `layout` of its
+    panels (`style.panels`) the function is given the axes of each panel; otherwise it is given the `axes` of the caller
+    and returns the figure. The first paragraph of the docstring is the caption; lines `option: text` below it describe
+    options on the command line."""
+    def decorate(function):
+        first, *others = inspect.signature(function).parameters.values()
+        convert = RUNS.get(first.name, (lambda given: given,))[0]
 
-    @functools.wraps(function)
-    def drawn(given=first.default, axes=None, **options):
-        expect(given is not first.empty, f"{function.__name__} needs {first.name}")
-        given = convert(given)
-        for run in given if isinstance(given, list) else [given]:
-            expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
-        return draw(functools.partial(function, **options), given, axes)
+        @functools.wraps(function)
+        def drawn(given=first.default, axes=None, **options):
+            expect(given is not first.empty, f"{function.__name__} needs {first.name}")
+            given = convert(given)
+            for run in given if isinstance(given, list) else [given]:
+                expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
+            with style.plt.rc_context(style.STYLE):
+                if not size:
+                    return function(given, axes, **options)
+                whole, parts = style.panels(axes, *size, **layout)
+                function(given, *parts, **options)
+                return whole
 
-    FIGURES[function.__name__] = drawn
-    return drawn
+        drawn.__signature__ = inspect.Signature([first, AXES, *(one for one in others if one.kind is one.KEYWORD_ONLY)])
+        FIGURES[function.__name__] = drawn
+        return drawn
 
-
-def _parameters(function):
-    return list(inspect.signature(function).parameters.values())
+    return decorate
 
 
 def caption(function):
@@ -71,7 +79,7 @@ def _parsed_as(kind):
 def parser_of(name, program="tanktread-figure"):
     """Returns the parser of a figure's command line."""
     function = FIGURES[name]
-    first, _, *options = _parameters(function)
+    first, _, *options = inspect.signature(function).parameters.values()
     hints, doc = typing.get_type_hints(function), inspect.getdoc(function)
     texts = dict(line.split(": ", 1) for line in doc.split("\n") if ": " in line)
     parser = argparse.ArgumentParser(prog=f"{program} {name}", description=doc,
@@ -126,5 +134,5 @@ def command():
         expect(type(value) is not int or value > 0 or option == "from_", f"--{option} must be above 0, but is {value}")
     if settings:
         given = [run_of(one, settings) for one in given] if isinstance(given, list) else run_of(given, settings)
-    save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)
+    style.save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)
     return 0

@@ -16,7 +16,7 @@ EXPECTED = "expected by the deck"
 Deformation = Literal["taylor_inertia", "taylor_surface"]
 
 
-@figure
+@figure()
 def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
                 deformation: Deformation = "taylor_inertia"):
     """Deformation and inclination over time, beside published curves; of several particles, of each.
@@ -111,7 +111,7 @@ def draw_curves(axes, known, end):
                           markevery=max(1, len(inside) // 40), label=label)
 
 
-@figure
+@figure()
 def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     """D over time with a mark at every change of the mesh, and the number of control points (the paper's Figure 14).
 

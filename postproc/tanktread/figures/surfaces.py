@@ -26,7 +26,7 @@ def field_of(shots, field):
     return *((Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)), pattern
 
 
-@figure
+@figure()
 def shape(runs, axes=None, *, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
     """The deformed surface coloured by its traction, and its section in the x1 x3 plane with the axis of inertia.
 
@@ -46,7 +46,7 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
     return figure
 
 
-@figure
+@figure()
 def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "traction",
            view: tuple[float, float] = VIEW):
     """Meshes at some times, and below each the variation of a field along the section x2 = 0 (the paper's Figures 15,
@@ -97,7 +97,7 @@ def draw_variation(axis, shot, field):
     return max(variation.max(), 1e-12)
 
 
-@figure
+@figure()
 def animation(run, axes=None, *, field: str = "traction", view: tuple[float, float] = VIEW, rate: float = 8,
               width: int = 720, frame: float | None = None):
     """The particle in motion, as a GIF: its surface with the elements and a field, and series over time below.

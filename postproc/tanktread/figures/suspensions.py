@@ -18,13 +18,12 @@ DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ −
 CA = "Particles/capsule/Membrane/capillary number"
 
 
-@figure
-def rheology(runs, axes=None):
+@figure(2, 1, 6.4, 6.4, sharex=True)
+def rheology(runs, upper, lower):
     """Intrinsic viscosity and normal stress differences of a dilute suspension in simple shear, over time.
 
     [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
     particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
@@ -34,7 +33,6 @@ def rheology(runs, axes=None):
     style.finish(upper, ylabel="intrinsic viscosity [η]")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     style.finish(lower, ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
-    return figure
 
 
 def stresses(run):
@@ -47,8 +45,8 @@ def stresses(run):
     return s13, s11 - s33, s33 - s22
 
 
-@figure
-def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
+@figure(2, 1, 6.4, 6.4, sharex=True)
+def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     """Effective viscosity and normal stress differences of a lattice of particles over strain, with their averages.
 
     Averages have a standard error by blocks: the spread of the means of equal parts of the strain, over the root of
@@ -56,7 +54,6 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 
     from_: strain at which averages begin
     blocks: number of parts of an average"""
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in style.coloured(runs):
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
@@ -71,7 +68,6 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
     style.finish(lower, ylabel="normal stress differences" + stress, xlabel="strain")
-    return figure
 
 
 def average(strain, values, first, blocks):
@@ -83,8 +79,8 @@ def average(strain, values, first, blocks):
     return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
 
 
-@figure
-def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
+@figure(2, 1, 6.4, 7.2, sharex=True)
+def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
               jobs: int = 1):
     """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
 
@@ -108,7 +104,6 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         if row := averages(outcome, from_, blocks):
             rows.setdefault(settings[CA], []).append(row)
     expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
     deck = next(one for one in runs.outcomes if one.done).run.deck
     alike = {"Time/final time": deck["Time"]["final time"],
              "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]}
@@ -130,7 +125,6 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
                      f"one capsule: {alone:.4f}")
     style.finish(upper, ylabel="relative viscosity μ_eff/μ")
     lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
-    return figure
 
 
 def averages(outcome, first, blocks):
@@ -148,8 +142,8 @@ def averages(outcome, first, blocks):
     return fraction, *average(strain, series["relative_viscosity"], first, blocks)
 
 
-@figure
-def drift(run, axes=None, *, from_: int = 10):
+@figure(len(DRIFTS), 1, 6.4, 7.6, sharex=True)
+def drift(run, *axes, from_: int = 10):
     """Whether a run over many turns of a membrane drifts: series against the turns, and the mean of each turn.
 
     A turn is one of `phase`. A straight line through the means gives the change over all turns from --from on, with its
@@ -163,7 +157,6 @@ def drift(run, axes=None, *, from_: int = 10):
     made = phase[-1] / 360
     expect(made >= from_ + 3, f"{run.directory} has {max(made, 0):.1f} turns; a line from turn {from_} on needs "
                               f"{from_ + 3}: a later Time/final time, or --from an earlier one")
-    figure, axes = style.panels(axes, len(DRIFTS), 1, 6.4, 7.6, sharex=True)
     log.info(f"{made:.1f} turns, {len(time)} steps; "
              f"the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
     for (name, label), axis in zip(DRIFTS.items(), axes):
@@ -183,7 +176,6 @@ def drift(run, axes=None, *, from_: int = 10):
     if len(energy) > 1:
         log.info(f"without flow the energy goes from {energy[0]:.6g} to {energy[-1]:.6g} in {len(energy)} steps; "
                  f"it rises in {(numpy.diff(energy) > 0).sum()}")
-    return figure
 
 
 def turns(time, values, phase):

@@ -21,7 +21,7 @@ PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "vel
 ACROSS, UP = "x₂ / R$_T$", "x₃ / R$_T$"  # labels of axes
 
 
-@figure
+@figure()
 def duct(runs, axes=None):
     """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
     it."""
@@ -81,7 +81,7 @@ def draw_path(axis, run, d, color, size, **pen):
     return path
 
 
-@figure
+@figure()
 def tube(runs, axes=None, *, times: list[float] = TIMES):
     """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
 
@@ -147,11 +147,10 @@ def draw_across(axis, run, d, shaded):
     axis.grid(False)
 
 
-@figure
-def tube_motion(runs, axes=None):
+@figure(2, 3, 12.5, 6.6)
+def tube_motion(runs, paths, distance, *others):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
     ducts = [duct_of(run) for run in runs]
-    figure, (paths, distance, *others) = style.panels(axes, 2, 3, 12.5, 6.6)
     for (run, colour), d in zip(style.coloured(runs), ducts):
         speed, maximum = d["mean_velocity"], d["maximum"][:2]
         paths.plot(*d["outline"].T, color=colour, linewidth=1)
@@ -168,10 +167,9 @@ def tube_motion(runs, axes=None):
     paths.set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel=ACROSS, ylabel=UP)
     paths.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
-    return figure
 
 
-@figure
+@figure()
 def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
     """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
 
