@@ -4,11 +4,10 @@ axes, and returns a matplotlib figure. `tanktread-figure --list` prints all of t
 `axes`: as many matplotlib axes as the figure has panels, or a Figure or SubFigure to draw in; None: a new figure.
 Numbers that a figure reports as text are logged to the logger "tanktread" (level INFO); the command prints them."""
 
-from .accuracy import work
+from .accuracy import convergence, step, work
 from .branches import branch, folds, growth_rates
 from .drops import surfactant, vesicle
 from .encounters import encounter, plane_wall
-from .errors import convergence, step
 from .pushed import stuck
 from .red_cells import recovery, treading, tweezers
 from .register import FIGURES, caption, command, figure, parser_of

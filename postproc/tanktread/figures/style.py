@@ -82,7 +82,7 @@ def save(figure, path):
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if film:
-            film.save(path, writer="pillow", fps=film.rate, dpi=figure.dpi)
+            film.save(path, writer="pillow", dpi=figure.dpi)
         else:
             with plt.rc_context(STYLE):
                 figure.savefig(path, bbox_inches="tight", pad_inches=0.08)

@@ -13,8 +13,6 @@ from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, mid
 from .register import figure
 from .series import unbroken
 
-LEAST_WIDTH = 100  # pixels
-
 
 def field_of(shots, field):
     """Returns norm, colour map and label pattern of a field of snapshots. Raises Mistake if one does not hold it."""
@@ -58,10 +56,8 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     field: field whose variation is drawn
     view: azimuth and elevation of the eye, in degrees"""
     end = runs[0].series["time"][-1]
-    if len(runs) > 1:
-        pairs = [(run, times[-1] if times else end) for run in runs]
-    else:
-        pairs = [(runs[0], moment) for moment in times or [0, end / 2, end]]
+    moments = times or [0, end / 2, end]
+    pairs = [(run, moment) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
     shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
     norm, colours, pattern = field_of(shots, field)
     seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
@@ -77,8 +73,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
         surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
     share_window(surfaces)
     reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
-    for polar in polars:
-        polar.set_ylim(0, 1.05 * reach)
+    style.plt.setp(polars, ylim=(0, 1.05 * reach))
     figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
@@ -111,8 +106,8 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     rate: frames per second
     width: of the animation, in pixels
     frame: draw one picture of this time instead"""
-    expect(width >= LEAST_WIDTH and rate > 0,
-           f"--width must be at least {LEAST_WIDTH} and --rate positive, but they are {width} and {rate:g}")
+    expect(width >= 100 and rate > 0,
+           f"--width must be at least 100 and --rate positive, but they are {width} and {rate:g}")
     shots = [shot.scaled(run) for shot in run.snapshots()]
     expect(shots, f"{run.directory} holds no snapshots")
     # one scale, one window and the same colours in all frames
@@ -125,23 +120,21 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     def show(shot):
         surface.clear()
         draw_surface(surface, shot, field, *colouring[:2], *view, pixels=width * 2 // 3, triad=False)
-        (left, low), (right, high) = window + directions[:2] @ middle(shot.frame)
-        room = 0.11 * (right - left)
-        draw_triad(surface, directions, numpy.array([left, right, low, high]))
+        low, high = window + directions[:2] @ middle(shot.frame)
+        draw_triad(surface, directions, low, high)
+        xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
         # of this saved step, the last one if none came after
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
         title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
-        surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room), title=title)
+        surface.set(xlim=xlim, ylim=ylim, title=title)
         for name, mark in marks.items():
             mark.set_data([run.time[row]], [run.series[name][row]])
-        return list(marks.values())
 
     if frame is not None:
         show(run.snapshot_at(frame).scaled(run))
     else:
         figure.set_dpi(width / figure.get_figwidth())
-        figure.film = FuncAnimation(figure, show, frames=shots)
-        figure.film.rate = rate
+        figure.film = FuncAnimation(figure, show, frames=shots, interval=1000 / rate)
     return figure
 
 
