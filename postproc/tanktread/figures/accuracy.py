@@ -17,42 +17,24 @@ from .register import figure
 
 PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
          "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
+COSTS = {"n_control_points": "control points", "wall_seconds": "seconds", "evaluations": "velocity evaluations"}
 SAMPLES = 400  # along the way
 
 
-class Levels:
-    """The levels of a run with requested accuracy, coarse to fine: their settings, seconds and runs."""
-
-    def __init__(self, run):
-        found = (run.summary or {}).get("accuracy")
-        expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
-        expect(found.get("levels"), f"{run.directory} has no finished level")
-        self.requests, levels = found["requests"], found["levels"]
-        self.settings = [settings_of(level["settings"]) for level in levels]
-        self.seconds = numpy.array([level["seconds"] for level in levels])
-        self.runs = [Run(run.directory / f"level_{level['level']}") for level in levels]
-
-    def errors(self, request):
-        """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
-        finest = values(self.runs[-1], request)
-        found = [largest(values(one, request), finest) for one in self.runs[:-1]]
-        return numpy.array([*found, request["estimated error"]])
-
-    def parts(self, request, study):
-        """Returns {part: change of the result if only this part is refined}, at the second last level but one."""
-        k = max(0, len(self.runs) - 3)
-        base, found = values(self.runs[k], request), {}
-        with tempfile.TemporaryDirectory() as folder:
-            deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
-            deck.write_text(self.runs[k].deck_text, encoding="utf-8")
-            for part, keys in PARTS.items():
-                coarse, finer = ({key: value for key, value in settings.items() if key.startswith(keys)}
-                                 for settings in self.settings[k:k + 2])
-                if finer != coarse:
-                    outcome = study.run(deck, finer)
-                    expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
-                    found[part] = largest(values(outcome.run, request), base)
-        return found
+def changes_by_part(run, settings, request, study):
+    """Returns {part: change of the result of a run if only this part of its settings is refined}. `settings`: those of
+    the run and of the next finer one."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder) / f"{run.directory.parent.resolve().name}.yaml"
+        deck.write_text(run.deck_text, encoding="utf-8")
+        for part, keys in PARTS.items():
+            coarse, finer = ({key: one[key] for key in one if key.startswith(keys)} for one in settings)
+            if finer != coarse:
+                outcome = study.run(deck, finer)
+                expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
+                found[part] = largest(values(outcome.run, request), values(run, request))
+    return found
 
 
 def values(run, request):
@@ -82,38 +64,29 @@ def work(run, axis, *, parts: bool = True):
     estimated. The dominant part, mesh, time or quadrature, is the one whose refinement changes the result most.
 
     parts: also make the runs that tell the dominant part"""
-    levels = Levels(run)
-    study = Study(directory=run.directory / "parts")
-    for request, color in style.coloured(levels.requests):
-        errors = levels.errors(request)
+    found = (run.summary or {}).get("accuracy")
+    expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
+    expect(found.get("levels"), f"{run.directory} has no finished level")
+    runs = [Run(run.directory / f"level_{level['level']}") for level in found["levels"]]
+    settings = [settings_of(level["settings"]) for level in found["levels"]]
+    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts of the second last level but one
+    for request, color in style.coloured(found["requests"]):
+        *coarser, finest = (values(one, request) for one in runs)
+        errors = numpy.array([*(largest(one, finest) for one in coarser), request["estimated error"]])
         known = numpy.isfinite(errors) & (errors > 0)
         if known.sum() < 2:
             log.info(f"{request['request']}: {request.get('untrusted', 'the error is unknown')}")
             continue
-        seconds, errors = levels.seconds[known], errors[known]
+        seconds, errors = numpy.array([level["seconds"] for level in found["levels"]])[known], errors[known]
         slope = numpy.polyfit(numpy.log(seconds), numpy.log(errors), 1)[0]
-        found = levels.parts(request, study) if parts else {}
-        words = f"{request['request']}: slope {slope:.1f}" + (f", mostly {max(found, key=found.get)}" if found else "")
+        changes = changes_by_part(runs[k], settings[k:k + 2], request, study) if parts else {}
+        words = f"{request['request']}: slope {slope:.1f}"
+        words += f", mostly {max(changes, key=changes.get)}" if changes else ""
         axis.loglog(seconds, errors, "o-", ms=4, color=color, label=words)
         axis.axhline(request["allowed"], linewidth=0.8, **style.GUIDE | {"color": color})
-        changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
-        log.info(words + (f"; change by refinement of {changes}" if changes else ""))
+        listed = ", ".join(f"{part} {change:.2g}" for part, change in changes.items())
+        log.info(words + (f"; change by refinement of {listed}" if changes else ""))
     style.finish(axis, xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
-
-
-class Errors:
-    """Errors of one run at the times within the curve, its `costs` (control points, seconds, velocity evaluations), and
-    its family."""
-
-    def __init__(self, run, curve, series):
-        inside = (run.time >= curve["t"][0]) & (run.time <= curve["t"][-1])
-        expect(inside.any(), f"{run.directory} has no row within the times of the curve")
-        self.run, self.times, values = run, run.time[inside], run.series[series][inside]
-        self.errors = numpy.array([difference([time], [value], curve["t"], curve[series])
-                                   for time, value in zip(self.times, values)])
-        self.largest = self.errors.max()
-        self.costs = [run.series[name][-1] for name in ("n_control_points", "wall_seconds", "evaluations")]
-        self.family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
 
 
 @figure(2, 2, 9.6, 7)
@@ -129,27 +102,35 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
     known = table(curve, ("t", series))
     expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
                                                  or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
-    found = sorted((Errors(run, known, series) for run in runs), key=lambda one: one.costs[0])
-    for one, shade in zip(found, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(found)))):
-        over_time.semilogy(one.times, numpy.maximum(one.errors, 1e-12), color=shade, linewidth=1.2, label=one.run.name)
-        points, seconds, evaluations = one.costs
-        log.info(f"{one.run.name}: {points:.0f} control points, {one.family}: largest error {one.largest:.2e}, "
+    runs = sorted(runs, key=lambda run: run.series["n_control_points"][-1])
+    families: dict = {}
+    errors = []
+    for run, shade in zip(runs, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(runs)))):
+        inside = (run.time >= known["t"][0]) & (run.time <= known["t"][-1])
+        expect(inside.any(), f"{run.directory} has no row within the times of the curve")
+        times = run.time[inside]
+        errors.append(numpy.array([difference([time], [value], known["t"], known[series])
+                                   for time, value in zip(times, run.series[series][inside])]))
+        over_time.semilogy(times, numpy.maximum(errors[-1], 1e-12), color=shade, linewidth=1.2, label=run.name)
+        points, seconds, evaluations = (run.series[name][-1] for name in COSTS)
+        family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
+        families.setdefault(family, []).append((points, seconds, evaluations, errors[-1].max()))
+        log.info(f"{run.name}: {points:.0f} control points, {family}: largest error {errors[-1].max():.2e}, "
                  f"{evaluations:.0f} evaluations, {seconds:.2f} s")
-    room = 0.1 * min(numpy.median(one.errors) for one in found), 30 * found[0].largest  # for the legend
-    over_time.set(xlabel=time_label([one.run for one in found]), ylabel="error", ylim=room)
+    room = 0.1 * min(map(numpy.median, errors)), 30 * errors[0].max()  # for the legend
+    over_time.set(xlabel=time_label(runs), ylabel="error", ylim=room)
     over_time.legend(loc="upper left", ncols=2)
-    for family, color in style.coloured(sorted({one.family for one in found})):
-        members = [one for one in found if one.family == family]
-        costs, largest = numpy.array([one.costs for one in members]).T, [one.largest for one in members]
+    for (family, rows), color in style.coloured(sorted(families.items())):
+        *costs, worst = numpy.transpose(rows)
         for axis, cost in zip(over_costs, costs):
-            axis.loglog(cost, largest, "o-", color=color, ms=4, label=family)
+            axis.loglog(cost, worst, "o-", color=color, ms=4, label=family)
         if numpy.ptp(costs[0]) > 0:  # fitted in the mesh size, which is control points to the power -1/2
-            log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(largest), 1)[0]:.2f}")
-    for axis, label in zip(over_costs, ("control points", "seconds", "velocity evaluations")):
+            log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(worst), 1)[0]:.2f}")
+    for axis, label in zip(over_costs, COSTS.values()):
         axis.set(xlabel=label, ylabel=f"largest error of {series}")
-    n = numpy.array([found[0].costs[0], found[-1].costs[0]])
+    n = numpy.array([runs[k].series["n_control_points"][-1] for k in (0, -1)])
     if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
-        over_costs[0].loglog(n, 0.3 * found[0].largest * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
+        over_costs[0].loglog(n, 0.3 * errors[0].max() * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
     over_costs[0].legend(loc="lower left")
 
 
