@@ -64,12 +64,12 @@ def work(run, axis, *, parts: bool = True):
     estimated. The dominant part, mesh, time or quadrature, is the one whose refinement changes the result most.
 
     parts: also make the runs that tell the dominant part"""
-    found = (run.summary or {}).get("accuracy")
+    found = (run.summary or {}).get("accuracy") or {}
     expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
     expect(found.get("levels"), f"{run.directory} has no finished level")
     runs = [Run(run.directory / f"level_{level['level']}") for level in found["levels"]]
     settings = [settings_of(level["settings"]) for level in found["levels"]]
-    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts of the second last level but one
+    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts are refined from the third last level
     for request, color in style.coloured(found["requests"]):
         *coarser, finest = (values(one, request) for one in runs)
         errors = numpy.array([*(largest(one, finest) for one in coarser), request["estimated error"]])
@@ -122,12 +122,11 @@ def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None,
     over_time.legend(loc="upper left", ncols=2)
     for (family, rows), color in style.coloured(sorted(families.items())):
         *costs, worst = numpy.transpose(rows)
-        for axis, cost in zip(over_costs, costs):
+        for axis, cost, label in zip(over_costs, costs, COSTS.values()):
             axis.loglog(cost, worst, "o-", color=color, ms=4, label=family)
+            axis.set(xlabel=label, ylabel=f"largest error of {series}")
         if numpy.ptp(costs[0]) > 0:  # fitted in the mesh size, which is control points to the power -1/2
             log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(worst), 1)[0]:.2f}")
-    for axis, label in zip(over_costs, COSTS.values()):
-        axis.set(xlabel=label, ylabel=f"largest error of {series}")
     n = numpy.array([runs[k].series["n_control_points"][-1] for k in (0, -1)])
     if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
         over_costs[0].loglog(n, 0.3 * errors[0].max() * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)

@@ -30,8 +30,8 @@ def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = No
         gap.plot(dx, smallest, color=color)
         for name, line in zip(names, ("-", style.DASHES)):
             if f"{name}/taylor_inertia" in run.series:  # it is not rigid
-                deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line,
-                                 label=name if color == style.RUNS[0] else None)
+                label = name if run is runs[0] else None
+                deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line, label=label)
         least = numpy.argmin(smallest)
         log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, "
                  f"largest dz {dz.max():.5f}")
@@ -85,11 +85,10 @@ def sections(axis, run, moments):
     """Draws sections of the snapshots through their middle, in the plane of the normal and along the wall."""
     point, normal, along = wall(run)
     across = numpy.argmin(abs(normal) + abs(along))
-    point[across] = 0  # as in the sections
+    point, along, normal = numpy.delete([point, along, normal], across, axis=1)  # in the plane of the sections
     for shot, colour in style.shaded(evenly(run.snapshots(), moments), 0.15, 0.95):
-        pieces = section(shot, shot.points[:, across].mean(), across)
-        places = numpy.insert(pieces, across, 0, axis=2) - point
-        draw_pieces(axis, numpy.stack([places @ along, places @ normal], axis=2) / run.radius, colour, ends="butt")
+        pieces = section(shot, shot.points[:, across].mean(), across) - point
+        draw_pieces(axis, pieces @ numpy.transpose([along, normal]) / run.radius, colour, ends="butt")
         axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
     axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
     axis.autoscale_view()

@@ -40,10 +40,13 @@ def canvas(axes, width, height):
     raise Mistake("this figure arranges panels of different sizes: give it a Figure or SubFigure instead of axes")
 
 
-def panels(axes, rows, columns, width, height, **layout):
-    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure."""
+def panels(axes, rows, columns, width, height, mosaic=None, **layout):
+    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure.
+    `mosaic` arranges new ones as `Figure.subplot_mosaic` does."""
     if axes is None or isinstance(axes, FigureBase):
         figure = canvas(axes, width, height)
+        if mosaic:
+            return figure, list(figure.subplot_mosaic(mosaic, **layout).values())
         return figure, figure.subplots(rows, columns, squeeze=False, **layout).ravel()
     axes = numpy.atleast_1d(axes).ravel()
     expect(len(axes) == rows * columns, f"this figure needs {rows * columns} axes, and is given {len(axes)}")

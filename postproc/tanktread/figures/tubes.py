@@ -169,8 +169,8 @@ def tube_motion(runs, paths, distance, *others):
     distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
 
 
-@figure()
-def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
+@figure(5, 1, 10.5, 9.5, mosaic="AA;BC;DE", height_ratios=[1.1, 1, 1])
+def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, across: Literal[2, 3] = 2):
     """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
 
     Also the wall's shear stress and the velocity on the centre line of the empty channel.
@@ -178,20 +178,26 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
     shapes: number of times, evenly along the particle's way
     across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
     c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
-    if axes is None or hasattr(axes, "add_subplot"):
-        figure = style.canvas(axes, 10.5, 9.5)
-        panels = figure.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]],
-                                       height_ratios=[1.1, 1, 1])
-    else:
-        figure, axes = style.panels(axes, 5, 1, 10.5, 9.5)
-        panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
-    way = way_along(run, c)
-    cut_open(panels["cut"], run, c, way, shapes, across - 1)
-    along_the_way(panels, run, c, way)
-    panels["wall"].plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
-    panels["wall"].set(xlabel="arc length along the centre line" + run.in_units("length"),
-                       title="shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
-    return figure
+    s, way = run.series, way_along(run, c)
+    cut_open(cut, run, c, way, shapes, across - 1)
+    label = "arc length of the centroid along the centre line" + run.in_units("length")
+    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
+        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
+    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
+    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
+    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
+                  label="on the centre line, empty channel")
+    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
+    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    if "pressure_drop_by_flux" in s:
+        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
+    stress = run.in_units("force/length^2")
+    style.finish(pressure, xlabel=label,
+                 title=f"pressure drop that the particle adds{stress} (empty channel: {c['pressure_drop']:.5g})")
+    wall.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
+    wall.set(xlabel="arc length along the centre line" + run.in_units("length"),
+             title="shear stress on the wall of the empty channel" + stress)
 
 
 def way_along(run, c):
@@ -220,27 +226,8 @@ def cut_open(axis, run, c, way, n, across):
             axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
     axis.grid(False)
     shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
-    axis.set(aspect="equal", xlim=(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0)),
+    low, high = shown.min(0), shown.max(0) + (0.1 if bent else 0)
+    axis.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1] - 0.1, high[1]) if bent else (None, None),
              xlabel="x₁" + run.in_units("length"), ylabel=style.AXES[up] + run.in_units("length"),
              title=f"{run.name}: cut open at x{across + 1} = centroid; times "
                    f"{'inside' if bent else 'below'}{run.in_units('time')}")
-    if bent:
-        axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
-
-
-def along_the_way(panels, run, c, way):
-    s, label = run.series, "arc length of the centroid along the centre line" + run.in_units("length")
-    extents, velocity, pressure = panels["extents"], panels["velocity"], panels["pressure"]
-    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
-        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
-    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
-    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
-    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
-    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
-                  label="on the centre line, empty channel")
-    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
-    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
-    if "pressure_drop_by_flux" in s:
-        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
-    style.finish(pressure, xlabel=label, title=f"pressure drop that the particle adds{run.in_units('force/length^2')} "
-                                               f"(empty channel: {c['pressure_drop']:.5g})")
