@@ -8,7 +8,6 @@ and to play, curves with values under the pointer, deck, plan, phases, warnings,
 import base64
 import gzip
 import json
-import math
 import pathlib
 
 import numpy
@@ -87,15 +86,6 @@ def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
 
 
-def _finite(content):
-    """Returns the content of a page with dashes in the place of NaN and infinities, which JSON does not have."""
-    if isinstance(content, dict):
-        return {key: _finite(value) for key, value in content.items()}
-    if isinstance(content, (list, tuple)):
-        return [_finite(value) for value in content]
-    return "–" if isinstance(content, float) and not math.isfinite(content) else content
-
-
 def of_run(directory, field):
     run = run_of(directory)
     summary = run.summary or {}
@@ -161,7 +151,9 @@ def write(directory, output=None, field=None):
     expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
     colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
     content = kinds[kind]() | {"cite": CITE, "colours": packed(colours, 255, "u1")}
-    data = base64.b64encode(gzip.compress(json.dumps(_finite(content), allow_nan=False, default=str).encode())).decode()
+    # JSON has no NaN and no infinities: the page shows dashes instead
+    content = json.loads(json.dumps(content, default=str), parse_constant=lambda constant: "–")
+    data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False).encode())).decode()
     page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = pathlib.Path(output or directory / "report.html")
     title = content["title"].replace("&", "&amp;").replace("<", "&lt;")
@@ -171,11 +163,9 @@ def write(directory, output=None, field=None):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("results", type=pathlib.Path, help="directory of a run's, a sweep's or a fit's results")
+    parser.add_argument("directory", metavar="results", help="directory of a run's, a sweep's or a fit's results")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="the page (default: report.html in that directory)")
     parser.add_argument("--field", help="field of the snapshots that colours the surface (default: traction)")
-    arguments = parser.parse_args()
-    path = write(arguments.results, arguments.output, arguments.field)
+    path = write(**vars(parser.parse_args()))
     log.info(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
-    return 0

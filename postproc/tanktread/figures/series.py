@@ -41,7 +41,13 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
             apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {unit}"
                      for name, unit in words.items() if name in curve.dtype.names]
             log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
-    draw_curves(axes, known, end=max(run.time[-1] for run in runs))
+    end = max(run.time[-1] for run in runs)
+    for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
+        inside = curve[curve["t"] <= end * 1.001]
+        for axis, name in zip(axes, ("taylor_inertia", "inclination")):
+            if name in curve.dtype.names:
+                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
+                          markevery=max(1, len(inside) // 40), label=label)
     titles = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
               for key in ("Membrane/law", "Flow/type")]
     if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
@@ -100,15 +106,6 @@ def curve_of(path):
     found = table(path, ("t", "taylor_inertia"))
     expect(all(numpy.isfinite(found[name]).all() for name in ("t", "taylor_inertia")), f"{path} has NaN")
     return numpy.sort(found, order="t")
-
-
-def draw_curves(axes, known, end):
-    for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
-        inside = curve[curve["t"] <= end * 1.001]
-        for axis, name in zip(axes, ("taylor_inertia", "inclination")):
-            if name in curve.dtype.names:
-                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
-                          markevery=max(1, len(inside) // 40), label=label)
 
 
 @figure()

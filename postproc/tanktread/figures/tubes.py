@@ -86,9 +86,9 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
     """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
 
     times: simulated times of the shapes"""
-    ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
-    for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
+    for part, run in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs):
+        d = duct_of(run)
         reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
         expect(reached, f"{run.directory} ends before the first of these times")
         shots = list({shot.path: shot for shot in reached}.values())  # each once
@@ -102,56 +102,46 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
             axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
         share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        left, right = lower.subplots(1, 2, width_ratios=[2.1, 1])
-        draw_along(left, run, d, shaded)
-        draw_across(right, run, d, shaded)
+        draw_tube_sections(run, d, shaded, *lower.subplots(1, 2, width_ratios=[2.1, 1]))
         upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
 
-def tube_section(run, d, shot, across):
-    """Returns the section (pieces, 2, 2) of the particle at x_{across+1} = centroid and the centroid (3,), over R_T."""
-    c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
-    return section(shot, c[across], across) / d["radius"], c / d["radius"]
-
-
-def draw_along(axis, run, d, shaded):
+def draw_tube_sections(run, d, shaded, along, across):
     """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
-    along x1, and the wall's lowest and highest x3 on the line of the last centroid's x2."""
+    along x1, with the wall's lowest and highest x3 on the line of the last centroid's x2; and sections in the plane
+    x1 = centroid inside the wall. Lengths are divided by R_T."""
+    across.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     place = 0.0
     for shot, colour in shaded:
-        pieces, c = tube_section(run, d, shot, 1)
-        draw_pieces(axis, pieces - [c[0] - place, 0], colour)
-        axis.plot(place, c[2], marker=".", color=colour, markersize=4)
+        c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+        side, front = section(shot, c[1], 1) / d["radius"], section(shot, c[0], 0) / d["radius"]
+        c /= d["radius"]
+        draw_pieces(across, front, colour)
+        draw_pieces(along, side - [c[0] - place, 0], colour)
+        along.plot(place, c[2], marker=".", color=colour, markersize=4)
         place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
     a, b = d["outline"][:-1], d["outline"][1:]
     met = (a[:, 0] - c[1]) * (b[:, 0] - c[1]) <= 0
     (x, height), (dx, rise) = a[met].T, (b - a)[met].T
     heights = height + (c[1] - x) / numpy.where(dx == 0, 1, dx) * rise
     for wall in heights.min(), heights.max():
-        axis.axhline(wall, color=style.INK, linewidth=1.4)
-    axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
-    axis.autoscale_view()
-    axis.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
-    axis.grid(False)
-
-
-def draw_across(axis, run, d, shaded):
-    """Draws sections in the plane x1 = centroid inside the wall."""
-    axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
-    for shot, colour in shaded:
-        draw_pieces(axis, tube_section(run, d, shot, 0)[0], colour)
-    axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
-    axis.set(aspect="equal", xlabel=ACROSS, ylabel=UP, title="section x₁ = centroid")
-    axis.grid(False)
+        along.axhline(wall, color=style.INK, linewidth=1.4)
+    along.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
+    along.autoscale_view()
+    along.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
+    across.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
+    across.set(aspect="equal", xlabel=ACROSS, ylabel=UP, title="section x₁ = centroid")
+    for axis in along, across:
+        axis.grid(False)
 
 
 @figure(2, 3, 12.5, 6.6)
 def tube_motion(runs, paths, distance, *others):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
-    ducts = [duct_of(run) for run in runs]
-    for (run, colour), d in zip(style.coloured(runs), ducts):
+    for run, colour in style.coloured(runs):
+        d = duct_of(run)
         speed, maximum = d["mean_velocity"], d["maximum"][:2]
         paths.plot(*d["outline"].T, color=colour, linewidth=1)
         path = draw_path(paths, run, d, colour, 3.5, label=run.name)
