@@ -116,8 +116,7 @@ def of_sweep(directory):
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
     rows = [[*(labels[name] for name in single), "status"], *zip(*(one.tolist() for one in single.values()), status)]
-    scatter = {"keys": [key for key in keys if key in numbers],
-               "columns": [name for name in numbers if name not in keys],
+    scatter = {"keys": [key for key in keys if key in numbers], "columns": [one for one in numbers if one not in keys],
                "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
     facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
     return {"title": f"sweep {directory.resolve().name}", "facts": facts, "scatter": scatter,

@@ -5,15 +5,13 @@ axes, and returns a matplotlib figure. `tanktread-figure --list` prints all of t
 Numbers that a figure reports as text are logged to the logger "tanktread" (level INFO); the command prints them."""
 
 from .accuracy import convergence, step, work
-from .branches import branch, folds, growth_rates
 from .drops import surfactant, vesicle
-from .encounters import encounter, plane_wall
 from .pushed import stuck
 from .red_cells import recovery, treading, tweezers
 from .register import FIGURES, caption, command, figure, parser_of
-from .series import deformation, refinement
+from .series import branch, deformation, folds, growth_rates, refinement
 from .surfaces import animation, meshes, shape
-from .suspensions import drift, rheology, suspension, viscosity
+from .suspensions import drift, encounter, plane_wall, rheology, suspension, viscosity
 from .tubes import channel, duct, tube, tube_motion
 
 __all__ = ["FIGURES", "caption", "command", "figure", "parser_of", *FIGURES]

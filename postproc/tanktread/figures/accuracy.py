@@ -69,7 +69,7 @@ def work(run, axis, *, parts: bool = True):
     expect(found.get("levels"), f"{run.directory} has no finished level")
     runs = [Run(run.directory / f"level_{level['level']}") for level in found["levels"]]
     settings = [settings_of(level["settings"]) for level in found["levels"]]
-    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts are refined from the third last level
+    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts of the third last level
     for request, color in style.coloured(found["requests"]):
         *coarser, finest = (values(one, request) for one in runs)
         errors = numpy.array([*(largest(one, finest) for one in coarser), request["estimated error"]])

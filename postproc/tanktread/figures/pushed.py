@@ -141,9 +141,8 @@ class Pushed:
         ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
         cones, rings = self.numbers, self.rings
         for k, by, numbers, at in ((0, self.by_energy, cones, ends), (0, self.by_barrier, rings, z),
-                                   (1, self.by_volumes, cones, ends),
-                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind]),
-                                   (2, self.area_at, rings[ring, :1], z[ring, :1])):
+                                   (1, self.by_volumes, cones, ends), (2, self.area_at, rings[ring, :1], z[ring, :1]),
+                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind])):
             numpy.add.at(gradient[k], numbers, by(at))
             numpy.add.at(matrix[k], (numbers[:, :, None], numbers[:, None, :]), derivatives(by, at))
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
@@ -151,7 +150,7 @@ class Pushed:
     def rest(self, z, pressures, closed, behind):
         """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
         Newton's method; None if it is not found."""
-        z, pressures, n = z.copy(), pressures.copy(), self.loose.size
+        n = self.loose.size
         for _ in range(60):
             gradient, matrix = self.system(z, closed)
             residual = numpy.append(gradient[0] - pressures @ gradient[1:],

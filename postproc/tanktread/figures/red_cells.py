@@ -121,12 +121,11 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int =
 def let_go(deck, elements, modulus, viscosity):
     """Returns seconds, and length over width from where it is as in the experiment at first."""
     mesh = {"Surface/elements per side": elements}
-    start = pulled(deck, DRAWN, mesh)
+    start = pulled(deck, DRAWN, mesh).directory.resolve()
     unit = FLUID * RADIUS / modulus  # of time, in seconds: the deck's are fluid viscosity x radius / shear modulus
-    run = pulled(deck, 0, mesh | {
-        "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
-        "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit,
-        "Particle/initial shape/run": str(start.directory.resolve())})
+    run = pulled(deck, 0, mesh | {"Particle/initial shape/run": str(start), "Particle/viscosity ratio": INSIDE,
+                                  "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
+                                  "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit})
     seconds, ratio = run.series["time"] * unit, run.series["length_x1"] / run.series["length_x2"]
     first = numpy.interp(-RETURNING[0][1], -ratio, seconds)
     after = seconds >= first
@@ -137,5 +136,5 @@ def constant(seconds, ratio):
     """Returns t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
     times = numpy.linspace(0, min(0.397, seconds[-1]), 200)
     excess = numpy.interp(times, seconds, ratio) - 1
-    best = numpy.geomspace(0.005, 1, 2000)
-    return best[numpy.argmin([numpy.sum((excess - excess[0] * numpy.exp(-times / t)) ** 2) for t in best])]
+    return min(numpy.geomspace(0.005, 1, 2000),
+               key=lambda t: numpy.sum((excess - excess[0] * numpy.exp(-times / t)) ** 2))

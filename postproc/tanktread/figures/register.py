@@ -11,8 +11,7 @@ import typing
 
 from ..mistakes import expect
 from ..results import Run
-from ..runs import run as run_of
-from ..runs import SOURCE, runs_of, settings_of
+from ..runs import SOURCE, run as run_of, runs_of, settings_of
 from . import style
 
 FIGURES: dict = {}

@@ -23,12 +23,10 @@ GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # a line to comp
 
 STYLE = {
     "figure.dpi": 150, "figure.constrained_layout.use": True, "font.size": 9.5, "text.color": INK,
-    "axes.labelcolor": INK, "axes.edgecolor": FAINT, "axes.linewidth": 0.7, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "axes.titlesize": 10,
-    "axes.titlelocation": "left", "grid.color": GRID, "grid.linewidth": 0.7, "xtick.color": INK, "ytick.color": INK,
-    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "legend.frameon": False, "legend.fontsize": 8.5,
-    "lines.linewidth": 1.6,
-}
+    "axes.labelcolor": INK, "axes.edgecolor": FAINT, "axes.linewidth": 0.7, "axes.titlesize": 10,
+    "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
+    "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.7, "legend.frameon": False, "legend.fontsize": 8.5,
+    "xtick.color": INK, "ytick.color": INK, "xtick.major.width": 0.7, "ytick.major.width": 0.7, "lines.linewidth": 1.6}
 
 
 def canvas(axes, width, height):

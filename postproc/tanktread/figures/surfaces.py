@@ -2,8 +2,6 @@
 
 import numpy
 from matplotlib.animation import FuncAnimation
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 
 from ..mistakes import expect, log
 from ..results import field_label
@@ -21,7 +19,7 @@ def field_of(shots, field):
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
     low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
     bound = max(-low, high)
-    return *((Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)), pattern
+    return *((style.plt.Normalize(-bound, bound), style.SIGNED) if low < 0 else (style.plt.Normalize(low, high), style.FIELD)), pattern
 
 
 @figure()
@@ -38,7 +36,7 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
-    figure.colorbar(ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
                     orientation="horizontal", label=label)
     draw_sections(axes[-1], runs, shots)
     return figure
@@ -74,7 +72,7 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     share_window(surfaces)
     reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
     style.plt.setp(polars, ylim=(0, 1.05 * reach))
-    figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
 
@@ -148,7 +146,7 @@ def arranged(axes, run, extent, field, norm, colours, pattern):
     height = figure.get_figheight()
     surface = figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
     bar = figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
-    figure.colorbar(ScalarMappable(norm, colours), cax=bar, label=run.label(field, pattern))
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=bar, label=run.label(field, pattern))
     upper = figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
     return figure, surface, (upper, figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper))
 

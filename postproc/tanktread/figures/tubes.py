@@ -3,8 +3,6 @@
 from typing import Literal
 
 import numpy
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 
 from ..files import arrays_of
 from ..mistakes import expect
@@ -95,7 +93,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         shaded = style.shaded(shots)
         upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
         largest = max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots)
-        norm, unit = Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
+        norm, unit = style.plt.Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
         row = numpy.atleast_1d(upper.subplots(1, len(shots)))
         for axis, (shot, colour) in zip(row, shaded):
             draw_surface(axis, shot, "traction", norm, style.FIELD, *VIEW, pixels=360, triad=shot is shots[0])
@@ -103,7 +101,7 @@ def tube(runs, axes=None, *, times: list[float] = TIMES):
         share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
         draw_tube_sections(run, d, shaded, *lower.subplots(1, 2, width_ratios=[2.1, 1]))
-        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
+        upper.colorbar(style.plt.cm.ScalarMappable(style.plt.Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
