@@ -202,12 +202,10 @@ def extents(outcome, x):
 
 def of_radius(runs, deck, words, finer, radius, x):
     """Returns the extents (3, x.size) with edges of a radius, with the sum of the changes by each --finer."""
-    def of(more):
-        return extents(runs.run(deck, {"Channel/corner radius": radius} | settings_of(more)), x)
-
-    first = found = of(words)
+    settings = {"Channel/corner radius": radius} | settings_of(words)
+    first = found = extents(runs.run(deck, settings), x)
     for one in finer:
-        change = of(words + [one]) - first
+        change = extents(runs.run(deck, settings | settings_of([one])), x) - first
         log.info(f"radius {radius:g}, {one}: changes " + ", ".join(f"{value:.1e}" for value in abs(change).max(axis=1)))
         found = found + change
     return found

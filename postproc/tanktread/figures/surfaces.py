@@ -64,30 +64,25 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
     surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
                              for k in range(len(shots))])
-    for (run, _), shot, surface in zip(pairs, shots, surfaces):
+    reach = 1e-12
+    for (run, _), shot, surface, polar in zip(pairs, shots, surfaces, polars):
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
         surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
+        angle, variation = section_variation(shot, field)
+        log.info(f"{shot.path}: largest variation {variation.max():.3g}")
+        reach = max(reach, variation.max())
+        polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=style.RUNS[0], linewidth=1)
+        polar.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
+        polar.set_rlabel_position(55)
+        polar.tick_params(labelsize=7.5)
+        polar.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     share_window(surfaces)
-    reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
     style.plt.setp(polars, ylim=(0, 1.05 * reach))
     figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
-
-
-def draw_variation(axis, shot, field):
-    """Draws the variation of a field along the section, and returns the largest."""
-    angle, variation = section_variation(shot, field)
-    axis.plot(numpy.append(angle, angle[0] + 2 * numpy.pi), numpy.append(variation, variation[0]),
-              color=style.RUNS[0], linewidth=1)
-    axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
-    axis.set_rlabel_position(55)
-    axis.tick_params(labelsize=7.5)
-    axis.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
-    log.info(f"{shot.path}: largest variation {variation.max():.3g}")
-    return max(variation.max(), 1e-12)
 
 
 @figure()
