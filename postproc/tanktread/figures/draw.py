@@ -37,10 +37,9 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
     if shot.cell is not None:
         corners = shot.frame @ view.T
         front = corners[:, 2].argmax()  # the edges that meet in the foremost corner lie above the particles
-        for k, other in itertools.product(range(8), (1, 2, 4)):
-            if k | other > k:
-                axis.plot(*corners[[k, k | other], :2].T, color=style.INK, linewidth=0.8,
-                          zorder=3 if front in (k, k | other) else 1)
+        for edge in itertools.combinations(range(8), 2):
+            if edge[0] ^ edge[1] in (1, 2, 4):
+                axis.plot(*corners[[*edge], :2].T, color=style.INK, linewidth=0.8, zorder=3 if front in edge else 1)
     if triad:
         draw_triad(axis, view, *numpy.reshape(extent, (2, 2)).T)
     axis.set_anchor("N")

@@ -60,8 +60,7 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     last = run.snapshot_at(None)
     centre = last.points.mean(0)
     draw_pieces(axes[0], section(last, centre[1]) - centre[[0, 2]], style.RUNS[0], ends="butt")
-    for side in (-1, 1):
-        axes[0].plot(side * outline[0], outline[1], linewidth=1, **style.GUIDE)
+    axes[0].plot(numpy.outer(outline[0], [-1, 1]), outline[1], linewidth=1, **style.GUIDE)
     length = run.in_units("length")
     axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
     axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])

@@ -3,7 +3,6 @@
 import argparse
 import functools
 import inspect
-import pathlib
 import subprocess
 import sys
 import textwrap
@@ -18,6 +17,7 @@ FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
 RUNS = {"runs": (runs_of, "+", "directories of results, or decks, which are run if they have none"),
         "run": (run_of, None, "directory of results, or a deck, which is run if it has none")}
+ENDINGS = {"animation": "gif"}  # of the files of figures, by default png
 AXES = inspect.Parameter("axes", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None)
 
 
@@ -25,9 +25,9 @@ def figure(*size, **layout):
     """Decorates the function of a figure: sets the style, accepts directories and decks as runs, adds it to FIGURES.
 
     Parameters are `runs`, `run`, or a deck or study; axes; and options by keyword. With the `size` and `layout` of its
-    panels (`style.panels`) the function is given the axes of each panel; otherwise it is given the `axes` of the caller
-    and returns the figure. The first paragraph of the docstring is the caption; lines `option: text` below it describe
-    options on the command line."""
+    panels (`style.panels`; or a function that returns the size for the runs) the function is given the axes of each
+    panel; otherwise it is given the `axes` of the caller and returns the figure. The first paragraph of the docstring
+    is the caption; lines `option: text` below it describe options on the command line."""
     def decorate(function):
         first, *others = inspect.signature(function).parameters.values()
         convert = RUNS.get(first.name, (lambda given: given,))[0]
@@ -41,7 +41,7 @@ def figure(*size, **layout):
             with style.plt.rc_context(style.STYLE):
                 if not size:
                     return function(given, axes, **options)
-                whole, parts = style.panels(axes, *size, **layout)
+                whole, parts = style.panels(axes, *(size[0](given) if callable(size[0]) else size), **layout)
                 function(given, *parts, **options)
                 return whole
 
@@ -87,8 +87,8 @@ def parser_of(name, program="tanktread-figure"):
     if first.default is not first.empty:
         number, words = "?", f"{words} (default: {first.default})"
     parser.add_argument("given", metavar=first.name, nargs=number, default=first.default, help=words)
-    parser.add_argument("-o", "--output", default=getattr(function, "output", f"{name}.png"), metavar="FILE",
-                        help="the picture: .png, .pdf, .svg, … (default: %(default)s)")
+    parser.add_argument("-o", "--output", default=name, metavar="FILE",
+                        help=f"the picture: .png, .pdf, .svg, … (default: {name}.{ENDINGS.get(name, 'png')})")
     if first.name in RUNS:
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                             help="a key of the deck (repeatable)")
@@ -127,7 +127,7 @@ def command():
         return subprocess.run([sys.executable, BENCHMARK / f"{name}.py", *words[1:]], check=False).returncode
     expect(name in FIGURES, f"there is no figure {words[0]}; there are: {', '.join(sorted(figures))}")
     parsed = vars(parser_of(name).parse_args(words[1:]))
-    given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
+    given, output = parsed.pop("given"), parsed.pop("output")
     settings = settings_of(parsed.pop("set", []))
     for option, value in parsed.items():
         expect(type(value) is not int or value > 0 or option == "from_", f"--{option} must be above 0, but is {value}")

@@ -32,7 +32,10 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
     height, layout = (6.4, {"sharex": True, "height_ratios": [3, 2]}) if inclined else (4.2, {})
     figure, axes = style.panels(axes, 2 if inclined else 1, 1, 6.4 if len(runs) == 1 else 9.8, height, **layout)
     panels = dict(zip((deformation, "inclination"), axes))
-    known = {path.stem: curve_of(path) for path in map(pathlib.Path, curves or [])}
+    known: dict = {}
+    for path in map(pathlib.Path, curves or []):
+        known[path.stem] = curve = numpy.sort(table(path, ("t", "taylor_inertia")), order="t")
+        expect(numpy.isfinite([curve["t"], curve["taylor_inertia"]]).all(), f"{path} has NaN")
     for run, color in style.coloured(runs):
         if run.several:
             draw_particles(panels, run, deformation, style.RUNS if len(runs) == 1 else [color])
@@ -43,9 +46,8 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
             apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {unit}"
                      for name, unit in words.items() if name in curve.dtype.names]
             log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
-    end = max(run.time[-1] for run in runs)
     for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
-        inside = curve[curve["t"] <= end * 1.001]
+        inside = curve[curve["t"] <= 1.001 * max(run.time[-1] for run in runs)]
         for axis, name in zip(axes, ("taylor_inertia", "inclination")):
             if name in curve.dtype.names:
                 axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
@@ -80,9 +82,8 @@ def draw_run(panels, run, color):
         draw_series(axis, run, name, color=color, label=label)
         if expected := run.value(f"Expect/{name}"):
             at = expected["at"] * run.rate[0] if "at" in expected else run.time[-1]
-            first = EXPECTED not in {line.get_label() for line in axis.lines}
             axis.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6,
-                      label=EXPECTED if first else None)
+                      label=None if EXPECTED in {line.get_label() for line in axis.lines} else EXPECTED)
 
 
 def draw_particles(panels, run, deformation, colors):
@@ -101,13 +102,6 @@ def unbroken(t, angle):
     """Returns times and angles with NaN where an axis passes from one end of its range of 180 degrees to the other."""
     passes = numpy.flatnonzero(numpy.abs(numpy.diff(angle)) > 90) + 1
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
-
-
-def curve_of(path):
-    """Returns the rows of a published curve in the order of time, as a structured array."""
-    found = table(path, ("t", "taylor_inertia"))
-    expect(all(numpy.isfinite(found[name]).all() for name in ("t", "taylor_inertia")), f"{path} has NaN")
-    return numpy.sort(found, order="t")
 
 
 @figure()
@@ -168,7 +162,7 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
             draw_branch(axes[1], run, parameter, run.series["leading_rate"], color)
     for point in exact or []:
         upper.plot(*point, "+", color=style.INK)
-    upper.set_ylabel(label_of(runs[0], series))
+    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else runs[0].axis(series))
     if len(runs) > 1:
         upper.legend()
     if rated:
@@ -176,10 +170,6 @@ def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple
         axes[1].set_ylabel(runs[0].axis("leading_rate").replace("_", " "))
     axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
     return figure
-
-
-def label_of(run, series):
-    return "Taylor parameter D" if series.startswith("taylor") else run.axis(series)
 
 
 def draw_branch(axes, run, x, y, color, label=None):
@@ -223,7 +213,7 @@ def folds(runs, upper, lower, *, series: str = "taylor_surface", exact: list[tup
     if len(runs) > 1:
         upper.legend()
     upper.set_ylabel(parameter + " at the fold")
-    lower.set(ylabel=label_of(runs[0], series) + (" there" if series.startswith("taylor") else ""), xlabel=second)
+    lower.set(xlabel=second, ylabel="Taylor parameter D there" if series.startswith("taylor") else runs[0].axis(series))
 
 
 @figure(1, 1, 5.2, 3.6)

@@ -76,8 +76,8 @@ def finish(axes, **properties):
 def save(figure, path):
     """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
     path = pathlib.Path(path)
-    path = path if path.suffix or not path.name else path.with_name(path.name + ".png")
     film = getattr(figure, "film", None)
+    path = path if path.suffix or not path.name else path.with_name(path.name + (".gif" if film else ".png"))
     kinds = ["gif"] if film else sorted(figure.canvas.get_supported_filetypes())
     expect(path.suffix[1:].lower() in kinds, f"the name of a figure ends in .{', .'.join(kinds)}, but it is {path}")
     try:

@@ -19,11 +19,12 @@ def field_of(shots, field):
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
     low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
     bound = max(-low, high)
-    return *((style.plt.Normalize(-bound, bound), style.SIGNED) if low < 0 else (style.plt.Normalize(low, high), style.FIELD)), pattern
+    limits, colours = ((-bound, bound), style.SIGNED) if low < 0 else ((low, high), style.FIELD)
+    return style.plt.Normalize(*limits), colours, pattern
 
 
-@figure()
-def shape(runs, axes=None, *, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
+@figure(lambda runs: (1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4))
+def shape(runs, *axes, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
     """The deformed surface coloured by its traction, and its section in the x1 x3 plane with the axis of inertia.
 
     time: simulated time of the snapshot (default: the last one)
@@ -31,15 +32,13 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
     view: azimuth and elevation of the eye, in degrees"""
     shots = [run.snapshot_at(time).scaled(run) for run in runs]
     norm, colours, pattern = field_of(shots, field)
-    figure, axes = style.panels(axes, 1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
-    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
-                    orientation="horizontal", label=label)
+    axes[0].figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", label=label,
+                            cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]))
     draw_sections(axes[-1], runs, shots)
-    return figure
 
 
 @figure()
@@ -129,9 +128,6 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
         figure.set_dpi(width / figure.get_figwidth())
         figure.film = FuncAnimation(figure, show, frames=shots, interval=1000 / rate)
     return figure
-
-
-animation.output = "animation.gif"
 
 
 def arranged(axes, run, extent, field, norm, colours, pattern):

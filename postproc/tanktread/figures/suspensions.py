@@ -147,8 +147,7 @@ def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
             axis.plot(strain, run.series[name], color=color, linestyle=line,
                       label=label if axis is upper else symbol if run is runs[0] else None)
             mean, error = average(strain, run.series[name], from_, blocks)
-            if numpy.isfinite(mean):
-                axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
+            axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
             words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
         log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
     style.finish(upper, ylabel="effective viscosity μ_eff/μ")

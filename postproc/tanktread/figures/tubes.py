@@ -19,8 +19,8 @@ PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "vel
 ACROSS, UP = "x₂ / R$_T$", "x₃ / R$_T$"  # labels of axes
 
 
-@figure()
-def duct(runs, axes=None):
+@figure(lambda runs: (1, len(runs), 3.9 * len(runs) + 0.9, 4.0))
+def duct(runs, *axes):
     """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
     it."""
     ducts = [duct_of(run) for run in runs]
@@ -29,7 +29,6 @@ def duct(runs, axes=None):
     margin = 0.02 * numpy.ptp(outlines, axis=0).max()
     low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
     levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
-    figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
     for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
         if "centroid_x2" in run.series:
@@ -38,18 +37,15 @@ def duct(runs, axes=None):
         axis.set_title(f"{run.name}: largest {most:.4f}", pad=10)
     axes[0].set_ylabel(UP)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
-    figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
-                    ticks=levels[:-1:2], spacing="proportional")
-    return figure
+    axes[0].figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
+                            ticks=levels[:-1:2], spacing="proportional")
 
 
 def duct_of(run):
     """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
     arrays = arrays_of(run.directory / "duct.h5")
-    for name in "outline", "x2", "x3":
-        arrays[name] = arrays[name] / arrays["radius"]
     arrays["maximum"][:2] /= arrays["radius"]
-    return arrays
+    return arrays | {name: arrays[name] / arrays["radius"] for name in ("outline", "x2", "x3")}
 
 
 def draw_section(axis, d, levels):
@@ -150,8 +146,7 @@ def tube_motion(runs, paths, distance, *others):
             scale = run.value("Flow/viscosity", 1) * speed / d["radius"] if "pressure" in name else speed
             axis.plot(run.time[1:], run.series[name][1:] / scale, color=colour)
             axis.set(title=label, xlabel="t vₘ / R$_T$")
-    for axis in others:
-        axis.set_xlim(left=0)
+    style.plt.setp(others, xlim=(0, None))
     paths.set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel=ACROSS, ylabel=UP)
     paths.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
