@@ -34,8 +34,9 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
     panels = dict(zip((deformation, "inclination"), axes))
     known: dict = {}
     for path in map(pathlib.Path, curves or []):
-        known[path.stem] = curve = numpy.sort(table(path, ("t", "taylor_inertia")), order="t")
-        expect(numpy.isfinite([curve["t"], curve["taylor_inertia"]]).all(), f"{path} has NaN")
+        rows = table(path, ("t", "taylor_inertia"))
+        expect(numpy.isfinite([rows["t"], rows["taylor_inertia"]]).all(), f"{path} has NaN")
+        known[path.stem] = numpy.sort(rows, order="t")
     for run, color in style.coloured(runs):
         if run.several:
             draw_particles(panels, run, deformation, style.RUNS if len(runs) == 1 else [color])
