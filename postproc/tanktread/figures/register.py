@@ -65,7 +65,7 @@ def _parsed_as(kind):
     if kind is bool:
         return {"action": "store_true"}
     if origin is typing.Literal:
-        return {"choices": arguments}
+        return {"choices": arguments, "type": type(arguments[0])}
     if origin is tuple:
         return {"nargs": len(arguments), "type": arguments[0]}
     if origin is not list:
