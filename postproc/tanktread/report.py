@@ -8,7 +8,6 @@ and to play, curves with values under the pointer, deck, plan, phases, warnings,
 import base64
 import gzip
 import json
-import math
 import pathlib
 
 import numpy
@@ -76,24 +75,14 @@ def curves(run):
     step = max(1, len(run.time) // 600)
     rows = sorted({*range(0, len(run.time), step), len(run.time) - 1})
     kept = [name for name in names if len(names) <= 80 or "/" not in name or name.endswith("/taylor_inertia")]
-    return {"x": _list(run.time[rows]), "label": run.time_label,
+    return {"x": _list(run.time[rows]), "label": run.time_label, "labels": {name: run.axis(name) for name in kept},
             "y": {name: _list(run.series[name][rows]) for name in kept},
             "errors": {name: _list(run.errors[name][rows]) for name in kept if run.band(name) is not None},
-            "labels": {name: run.axis(name) for name in kept},
             "meanings": {name: run.descriptions[name] for name in kept}}
 
 
 def _list(values):
     return [float(f"{value:.7g}") if numpy.isfinite(value) else None for value in numpy.asarray(values, float)]
-
-
-def _finite(content):
-    """Returns the content of a page with dashes in the place of NaN and infinities, which JSON does not have."""
-    if isinstance(content, dict):
-        return {key: _finite(value) for key, value in content.items()}
-    if isinstance(content, (list, tuple)):
-        return [_finite(value) for value in content]
-    return "–" if isinstance(content, float) and not math.isfinite(content) else content
 
 
 def of_run(directory, field):
@@ -126,8 +115,7 @@ def of_sweep(directory):
         status = file["status"].asstr()[:]
     numbers = [name for name, values in single.items() if values.dtype.kind in "fiu"]
     rows = [[*(labels[name] for name in single), "status"], *zip(*(one.tolist() for one in single.values()), status)]
-    scatter = {"keys": [key for key in keys if key in numbers],
-               "columns": [name for name in numbers if name not in keys],
+    scatter = {"keys": [key for key in keys if key in numbers], "columns": [one for one in numbers if one not in keys],
                "labels": labels, "values": {name: _list(single[name]) for name in numbers}}
     facts = {"runs": len(status), "done": int((status == "done").sum()), "keys": ", ".join(keys)}
     return {"title": f"sweep {directory.resolve().name}", "facts": facts, "scatter": scatter,
@@ -161,7 +149,9 @@ def write(directory, output=None, field=None):
     expect(kind, f"{directory} holds no run, sweep or fit ({', '.join(kinds)})")
     colours = colormaps["viridis"](numpy.linspace(0, 1, 256))[:, :3]
     content = kinds[kind]() | {"cite": CITE, "colours": packed(colours, 255, "u1")}
-    data = base64.b64encode(gzip.compress(json.dumps(_finite(content), allow_nan=False, default=str).encode())).decode()
+    # JSON has no NaN and no infinities: the page shows dashes instead
+    content = json.loads(json.dumps(content, default=str), parse_constant=lambda constant: "–")
+    data = base64.b64encode(gzip.compress(json.dumps(content, allow_nan=False).encode())).decode()
     page = (pathlib.Path(__file__).resolve().parent / "report_page.html").read_text(encoding="utf-8")
     path = pathlib.Path(output or directory / "report.html")
     title = content["title"].replace("&", "&amp;").replace("<", "&lt;")
@@ -171,11 +161,9 @@ def write(directory, output=None, field=None):
 
 def main():
     parser = command_line(__doc__)
-    parser.add_argument("results", type=pathlib.Path, help="directory of a run's, a sweep's or a fit's results")
+    parser.add_argument("directory", metavar="results", help="directory of a run's, a sweep's or a fit's results")
     parser.add_argument("-o", "--output", type=pathlib.Path, metavar="FILE",
                         help="the page (default: report.html in that directory)")
     parser.add_argument("--field", help="field of the snapshots that colours the surface (default: traction)")
-    arguments = parser.parse_args()
-    path = write(arguments.results, arguments.output, arguments.field)
+    path = write(**vars(parser.parse_args()))
     log.info(f"{path}: {path.stat().st_size / 1e6:.2f} MB")
-    return 0

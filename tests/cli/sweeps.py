@@ -170,7 +170,7 @@ def what_drifts_over_many_turns_is_told_from_what_swings():
 
 
 def what_sharp_edges_do_is_told_from_two_roundings():
-    from tanktread.figures import errors as step
+    from tanktread.figures import accuracy as step
     q = step.power() / 2
     close(numpy.sin(1.5 * numpy.pi * q), q, 1e-14, "the velocity beside an edge of 90 degrees")
     close(step.sharp_edges(2 + 0.1**(2 * q), 2 + 0.05**(2 * q), 2), 2, 1e-14, "without rounding")

@@ -4,17 +4,14 @@ axes, and returns a matplotlib figure. `tanktread-figure --list` prints all of t
 `axes`: as many matplotlib axes as the figure has panels, or a Figure or SubFigure to draw in; None: a new figure.
 Numbers that a figure reports as text are logged to the logger "tanktread" (level INFO); the command prints them."""
 
-from .accuracy import work
-from .branches import branch, folds, growth_rates
+from .accuracy import convergence, step, work
 from .drops import surfactant, vesicle
-from .encounters import encounter, plane_wall
-from .errors import convergence, step
 from .pushed import stuck
 from .red_cells import recovery, treading, tweezers
 from .register import FIGURES, caption, command, figure, parser_of
-from .series import deformation, refinement
+from .series import branch, deformation, folds, growth_rates, refinement
 from .surfaces import animation, meshes, shape
-from .suspensions import drift, rheology, suspension, viscosity
+from .suspensions import drift, encounter, plane_wall, rheology, suspension, viscosity
 from .tubes import channel, duct, tube, tube_motion
 
 __all__ = ["FIGURES", "caption", "command", "figure", "parser_of", *FIGURES]

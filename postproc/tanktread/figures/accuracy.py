@@ -1,54 +1,40 @@
-"""Figure of the work of a scene against its accuracy."""
+"""Figures of accuracy: errors against a known curve, work against accuracy, and sharp edges from rounded ones."""
 
 import pathlib
 import tempfile
 
 import numpy
+import scipy.interpolate
+import scipy.optimize
 
+from ..files import table
 from ..interpolation import difference, mean
 from ..mistakes import expect, log
-from ..results import Run
-from ..runs import Study, settings_of
+from ..results import Run, time_label
+from ..runs import Study, deck_at, settings_of
 from . import style
 from .register import figure
 
 PARTS = {"mesh": ("Surface/", "Particles/", "Adaptation/", "Tube/", "Channel/"),
          "time": ("Time/", "Steady/", "Periodic/"), "quadrature": ("Quadrature/", "Solvers/")}
+COSTS = {"n_control_points": "control points", "wall_seconds": "seconds", "evaluations": "velocity evaluations"}
+SAMPLES = 400  # along the way
 
 
-class Levels:
-    """The levels of a run with requested accuracy, coarse to fine: their settings, seconds and runs."""
-
-    def __init__(self, run):
-        found = (run.summary or {}).get("accuracy")
-        expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
-        expect(found.get("levels"), f"{run.directory} has no finished level")
-        self.requests, levels = found["requests"], found["levels"]
-        self.settings = [settings_of(level["settings"]) for level in levels]
-        self.seconds = numpy.array([level["seconds"] for level in levels])
-        self.runs = [Run(run.directory / f"level_{level['level']}") for level in levels]
-
-    def errors(self, request):
-        """Returns the error of each level: the difference from the finest one, of which the estimate is taken."""
-        finest = values(self.runs[-1], request)
-        found = [largest(values(one, request), finest) for one in self.runs[:-1]]
-        return numpy.array([*found, request["estimated error"]])
-
-    def parts(self, request, study):
-        """Returns {part: change of the result if only this part is refined}, at the second last level but one."""
-        k = max(0, len(self.runs) - 3)
-        base, found = values(self.runs[k], request), {}
-        with tempfile.TemporaryDirectory() as folder:
-            deck = pathlib.Path(folder) / f"{self.runs[k].directory.parent.resolve().name}.yaml"
-            deck.write_text(self.runs[k].deck_text, encoding="utf-8")
-            for part, keys in PARTS.items():
-                coarse, finer = ({key: value for key, value in settings.items() if key.startswith(keys)}
-                                 for settings in self.settings[k:k + 2])
-                if finer != coarse:
-                    outcome = study.run(deck, finer)
-                    expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
-                    found[part] = largest(values(outcome.run, request), base)
-        return found
+def changes_by_part(run, settings, request, study):
+    """Returns {part: change of the result of a run if only this part of its settings is refined}. `settings`: those of
+    the run and of the next finer one."""
+    found = {}
+    with tempfile.TemporaryDirectory() as folder:
+        deck = pathlib.Path(folder) / f"{run.directory.parent.resolve().name}.yaml"
+        deck.write_text(run.deck_text, encoding="utf-8")
+        for part, keys in PARTS.items():
+            coarse, finer = ({key: one[key] for key in one if key.startswith(keys)} for one in settings)
+            if finer != coarse:
+                outcome = study.run(deck, finer)
+                expect(outcome.done, f"the run with a finer {part} did not come to its end: {outcome.message}")
+                found[part] = largest(values(outcome.run, request), values(run, request))
+    return found
 
 
 def values(run, request):
@@ -70,30 +56,156 @@ def largest(one, other):
     return difference(*one, *other)
 
 
-@figure
-def work(run, axes=None, *, parts: bool = True):
+@figure(1, 1, 6.4, 4.4)
+def work(run, axis, *, parts: bool = True):
     """Estimated error against seconds, for each series whose accuracy was requested, with the part that dominates.
 
     Each point is a level of the run. The error of a level is its difference from the finest one, whose own error is
     estimated. The dominant part, mesh, time or quadrature, is the one whose refinement changes the result most.
 
     parts: also make the runs that tell the dominant part"""
-    levels = Levels(run)
-    study = Study(directory=run.directory / "parts")
-    figure, (axis,) = style.panels(axes, 1, 1, 6.4, 4.4)
-    for request, color in style.coloured(levels.requests):
-        errors = levels.errors(request)
+    found = (run.summary or {}).get("accuracy") or {}
+    expect(found, f"{run.directory} is no run with requested accuracy: run its deck with --accuracy SERIES=VALUE")
+    expect(found.get("levels"), f"{run.directory} has no finished level")
+    runs = [Run(run.directory / f"level_{level['level']}") for level in found["levels"]]
+    settings = [settings_of(level["settings"]) for level in found["levels"]]
+    study, k = Study(directory=run.directory / "parts"), max(0, len(runs) - 3)  # parts of the third last level
+    for request, color in style.coloured(found["requests"]):
+        *coarser, finest = (values(one, request) for one in runs)
+        errors = numpy.array([*(largest(one, finest) for one in coarser), request["estimated error"]])
         known = numpy.isfinite(errors) & (errors > 0)
         if known.sum() < 2:
             log.info(f"{request['request']}: {request.get('untrusted', 'the error is unknown')}")
             continue
-        seconds, errors = levels.seconds[known], errors[known]
+        seconds, errors = numpy.array([level["seconds"] for level in found["levels"]])[known], errors[known]
         slope = numpy.polyfit(numpy.log(seconds), numpy.log(errors), 1)[0]
-        found = levels.parts(request, study) if parts else {}
-        words = f"{request['request']}: slope {slope:.1f}" + (f", mostly {max(found, key=found.get)}" if found else "")
+        changes = changes_by_part(runs[k], settings[k:k + 2], request, study) if parts else {}
+        words = f"{request['request']}: slope {slope:.1f}"
+        words += f", mostly {max(changes, key=changes.get)}" if changes else ""
         axis.loglog(seconds, errors, "o-", ms=4, color=color, label=words)
         axis.axhline(request["allowed"], linewidth=0.8, **style.GUIDE | {"color": color})
-        changes = ", ".join(f"{part} {change:.2g}" for part, change in found.items())
-        log.info(words + (f"; change by refinement of {changes}" if changes else ""))
+        listed = ", ".join(f"{part} {change:.2g}" for part, change in changes.items())
+        log.info(words + (f"; change by refinement of {listed}" if changes else ""))
     style.finish(axis, xlabel="seconds of the level", ylabel="estimated error", title="dashed: requested accuracy")
-    return figure
+
+
+@figure(2, 2, 9.6, 7)
+def convergence(runs, over_time, *over_costs, curve: pathlib.Path | None = None, series: str = "taylor_inertia"):
+    """Error of a run's deformation against a curve: over time, against the mesh, seconds and velocity evaluations.
+
+    The curve is a CSV file with the columns `t`, which is time times the rate of the flow, and `taylor_inertia`. A line
+    joins runs that agree in Time/scheme and Time/tolerance.
+
+    curve: the reference, a table with named columns
+    series: which series, and column of the curve"""
+    expect(curve, "give the reference: --curve FILE")
+    known = table(curve, ("t", series))
+    expect(numpy.isfinite(known["t"]).all() and ("NaN if" in runs[0].descriptions.get(series, "")
+                                                 or numpy.isfinite(known[series]).all()), f"{curve} has NaN")
+    runs = sorted(runs, key=lambda run: run.series["n_control_points"][-1])
+    families: dict = {}
+    errors = []
+    for run, shade in zip(runs, style.plt.get_cmap(style.FIELD)(numpy.linspace(0.1, 0.8, len(runs)))):
+        inside = (run.time >= known["t"][0]) & (run.time <= known["t"][-1])
+        expect(inside.any(), f"{run.directory} has no row within the times of the curve")
+        times = run.time[inside]
+        errors.append(numpy.array([difference([time], [value], known["t"], known[series])
+                                   for time, value in zip(times, run.series[series][inside])]))
+        over_time.semilogy(times, numpy.maximum(errors[-1], 1e-12), color=shade, linewidth=1.2, label=run.name)
+        points, seconds, evaluations = (run.series[name][-1] for name in COSTS)
+        family = f"{run.value('Time/scheme')}, tolerance {run.value('Time/tolerance')}"
+        families.setdefault(family, []).append((points, seconds, evaluations, errors[-1].max()))
+        log.info(f"{run.name}: {points:.0f} control points, {family}: largest error {errors[-1].max():.2e}, "
+                 f"{evaluations:.0f} evaluations, {seconds:.2f} s")
+    room = 0.1 * min(map(numpy.median, errors)), 30 * errors[0].max()  # for the legend
+    over_time.set(xlabel=time_label(runs), ylabel="error", ylim=room)
+    over_time.legend(loc="upper left", ncols=2)
+    for (family, rows), color in style.coloured(sorted(families.items())):
+        *costs, worst = numpy.transpose(rows)
+        for axis, cost, label in zip(over_costs, costs, COSTS.values()):
+            axis.loglog(cost, worst, "o-", color=color, ms=4, label=family)
+            axis.set(xlabel=label, ylabel=f"largest error of {series}")
+        if numpy.ptp(costs[0]) > 0:  # fitted in the mesh size, which is control points to the power -1/2
+            log.info(f"{family}: order {-2 * numpy.polyfit(numpy.log(costs[0]), numpy.log(worst), 1)[0]:.2f}")
+    n = numpy.array([runs[k].series["n_control_points"][-1] for k in (0, -1)])
+    if n[1] > n[0]:  # in the mesh size, from the coarsest mesh on
+        over_costs[0].loglog(n, 0.3 * errors[0].max() * (n / n[0]) ** -2.0, label="fourth order", **style.GUIDE)
+    over_costs[0].legend(loc="lower left")
+
+
+@figure(1, 1, 7, 5)
+def step(deck, axis, *, radii: tuple[float, float] = (0.1, 0.05), finer: list[str] | None = None,
+         set_: list[str] | None = None, curves: tuple[pathlib.Path, pathlib.Path, pathlib.Path] | None = None,
+         between: tuple[float, float] = (-3.9, 4.9)):
+    """Extents of a capsule against its centroid in a channel that steps, with edges rounded less and less, and sharp.
+
+    The extent along x3 has kinks, beside which it is no better than rows are close: --set 'Time/maximum step=0.01' for
+    three digits. Each --finer is made with both radii, and its change is printed; the curves add these changes. An edge
+    rounded with the radius r changes the flow around by r^2q, where q = 0.544 is the power of the velocity beside a
+    sharp edge of 90 degrees, sin(3 pi q/2) = q (Dean & Montagnon, Proc. Camb. Phil. Soc. 45, 1949); so two radii give
+    the extents beside sharp edges.
+
+    radii: radii of the edges, the larger one first
+    finer: keys by which runs are made finer, each KEY=VALUE
+    set_: other keys of all runs, each KEY=VALUE
+    curves: published extents along x1, x2, x3: a centroid and an extent over 2 a per row
+    between: centroids between which extents are drawn"""
+    (large, small), (begin, end), words, finer = radii, between, set_ or [], finer or []
+    expect(0 < small < large,
+           f"--radii needs two positive radii, the larger one first, but is given {large:g} and {small:g}")
+    expect(begin < end, f"--between needs two centroids that ascend, but is given {begin:g} and {end:g}")
+    settings_of(words + finer)
+    known = [table(path)[:, :2] for path in curves or []]
+    within = [curve[(curve[:, 0] > begin) & (curve[:, 0] < end)].T for curve in known]
+    for path, rows in zip(curves or [], within):
+        expect(rows.size, f"{path} has no row between {begin:g} and {end:g}")
+    x, runs, deck = numpy.linspace(begin, end, SAMPLES), Study(directory="results/step"), deck_at(deck)
+    of_large, of_small = (of_radius(runs, deck, words, finer, radius, x) for radius in radii)
+    sharp = sharp_edges(of_large, of_small, large / small)
+    for name, colour, dots, dashes, line in zip(style.AXES, style.RUNS, of_large, of_small, sharp):
+        axis.plot(x, dots, ":", x, dashes, "--", color=colour)
+        axis.plot(x, line, color=colour, label=f"along {name}")
+        off = numpy.abs(line - dashes)
+        log.info(f"along {name}: radii {large:g} and {small:g} differ by {numpy.abs(dots - dashes).max():.1e}, "
+                 f"sharp edges from {small:g} by {off.max():.1e} at most, at {x[off.argmax()]:.2f}")
+    for curve, (centroid, extent), name, mark, line in zip(known, within, style.AXES, style.MARKS, sharp):
+        off = numpy.interp(centroid, x, line) - extent
+        at = numpy.argmax(numpy.abs(off))
+        axis.plot(*curve.T, mark, color=style.FAINT, markersize=3, label=f"published, {name}")
+        log.info(f"along {name}: {off[at]:+.4f} off the curve at most, at {centroid[at]:.3f}; "
+                 f"{numpy.sqrt(numpy.mean(off**2)):.4f} on average")
+    style.finish(axis, xlabel="centroid $x_1$", ylabel="extent over 2a",
+                 title=f"edges sharp (lines), rounded by {small:g} (dashes) and {large:g} (dots)")
+
+
+def power():
+    """Returns the power 2 q of the radius of an edge."""
+    return 2 * scipy.optimize.brentq(lambda q: numpy.sin(1.5 * numpy.pi * q) - q, 0.5, 0.6, xtol=1e-15)
+
+
+def sharp_edges(of_large, of_small, ratio):
+    """Returns the extents beside sharp edges, from those of two radii with this ratio."""
+    return of_small - (of_large - of_small) / (ratio**power() - 1)
+
+
+def extents(outcome, x):
+    """Returns the extents (3, x.size) over 2 a with the centroid at x1 = x, by cubic splines."""
+    expect(outcome.done, f"{outcome.directory}: {outcome.message}")
+    series, way = outcome.series, outcome.series["centroid_x1"]
+    expect((numpy.diff(way) > 0).all(),
+           f"{outcome.directory}: its centroid went back, so that there are several extents at a place")
+    expect(way[0] <= x[0] and x[-1] <= way[-1],
+           f"{outcome.directory}: --between {x[0]:g} {x[-1]:g}, but it went from {way[0]:g} to {way[-1]:g}")
+    lengths = [series[f"length_x{k}"] for k in (1, 2, 3)]
+    return scipy.interpolate.CubicSpline(way, lengths, axis=1)(x) / (2 * outcome.run.value("Particle/radius", 1.0))
+
+
+def of_radius(runs, deck, words, finer, radius, x):
+    """Returns the extents (3, x.size) with edges of a radius, with the sum of the changes by each --finer."""
+    settings = {"Channel/corner radius": radius} | settings_of(words)
+    first = found = extents(runs.run(deck, settings), x)
+    for one in finer:
+        change = extents(runs.run(deck, settings | settings_of([one])), x) - first
+        log.info(f"radius {radius:g}, {one}: changes " + ", ".join(f"{value:.1e}" for value in abs(change).max(axis=1)))
+        found = found + change
+    return found

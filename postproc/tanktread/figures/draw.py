@@ -37,20 +37,18 @@ def draw_surface(axis, shot, field, norm, colours, azimuth, elevation, pixels=64
     if shot.cell is not None:
         corners = shot.frame @ view.T
         front = corners[:, 2].argmax()  # the edges that meet in the foremost corner lie above the particles
-        for k, other in itertools.product(range(8), (1, 2, 4)):
-            if k | other > k:
-                axis.plot(*corners[[k, k | other], :2].T, color=style.INK, linewidth=0.8,
-                          zorder=3 if front in (k, k | other) else 1)
+        for edge in itertools.combinations(range(8), 2):
+            if edge[0] ^ edge[1] in (1, 2, 4):
+                axis.plot(*corners[[*edge], :2].T, color=style.INK, linewidth=0.8, zorder=3 if front in edge else 1)
     if triad:
-        draw_triad(axis, view, numpy.array(extent))
+        draw_triad(axis, view, *numpy.reshape(extent, (2, 2)).T)
     axis.set_anchor("N")
     axis.autoscale_view()
     axis.axis("off")
 
 
-def draw_triad(axis, view, extent):
-    """Draws the directions of the axes at the lower left of the extent (left, right, low, high)."""
-    low, high = extent[[0, 2]], extent[[1, 3]]
+def draw_triad(axis, view, low, high):
+    """Draws the directions of the axes at the lower left of the window with the corners low (2,) and high (2,)."""
     length = 0.13 * (high - low).max()
     foot = low - 0.3 * length
     arrow = {"arrowstyle": "->", "color": style.INK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
@@ -90,10 +88,10 @@ def draw_pieces(axis, pieces, color, width=1.6, ends="round"):
 
 
 def draw_sections(axis, runs, shots):
-    moved = runs[0].snapshots()[0].time < shots[0].time and shots[0].cell is None
+    start = runs[0].snapshots()[0]
+    moved = start.time < shots[0].time and shots[0].cell is None
     if moved:
-        rest = runs[0].snapshots()[0].scaled(runs[0])
-        draw_pieces(axis, section(rest, middle(shots[0].frame)[1]), style.FAINT, 1, "butt")
+        draw_pieces(axis, section(start.scaled(runs[0]), middle(shots[0].frame)[1]), style.FAINT, 1, "butt")
     for run, shot, color in zip(runs, shots, style.RUNS * len(runs)):
         pieces = section(shot, middle(shot.frame)[1])
         draw_pieces(axis, pieces, color, 1.8)
@@ -112,9 +110,8 @@ def draw_sections(axis, runs, shots):
                   label=f"{name}inclination {round(angle, 2) + 0.0:.2f}°, D = {deformation:.4f}")
     if moved:
         axis.plot([], [], color=style.FAINT, linewidth=1, label="at the start")
-    axis.set_aspect("equal", anchor="N")
     axis.autoscale_view()
-    axis.set(xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
+    axis.set(aspect="equal", anchor="N", xlabel="x₁ / R$_C$", ylabel="x₃ / R$_C$", title="section in the x₁x₃ plane")
     axis.legend(loc="upper center", bbox_to_anchor=(0.5, 0), borderaxespad=4)
 
 

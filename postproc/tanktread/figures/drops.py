@@ -6,8 +6,7 @@ from scipy import optimize
 
 from ..mistakes import expect, log
 from ..results import time_label
-from ..runs import Study
-from ..runs import run as run_of
+from ..runs import Study, run as run_of
 from . import style
 from .draw import draw_pieces, section
 from .pushed import derivatives
@@ -18,21 +17,18 @@ ROUND = 1e-2  # by which the extents across the axis may differ
 COSINE, WEIGHT = legendre.leggauss(400)
 
 
-@figure
-def surfactant(runs, axes=None):
+@figure(2, 2, 7.2, 5.6)
+def surfactant(runs, cut, along, deformation, extremes):
     """Drops with surfactant: last section, concentration along the axis x3, and over time D and its extremes.
 
     A clean drop among the runs is drawn for comparison."""
-    figure, (cut, along, deformation, extremes) = style.panels(axes, 2, 2, 7.2, 5.6)
     for run, color in style.coloured(runs):
         last = run.snapshot_at(None)
         draw_pieces(cut, section(last, last.points[:, 1].mean()) / run.radius, color, 1.4)
         deformation.plot(run.time, run.series["taylor_inertia"], color=color, label=run.name)
         line = f"{run.name}: D = {run.series['taylor_inertia'][-1]:.6f}"
         if "surfactant_mass" in run.series:
-            order = numpy.argsort(last.points[:, 2])
-            along.plot(last.points[order, 2] / run.radius, last.fields["concentration"][order], ".", color=color,
-                       markersize=2)
+            along.plot(last.points[:, 2] / run.radius, last.fields["concentration"], ".", color=color, markersize=2)
             smallest, largest, mass = (run.series[name] for name in ("smallest_concentration", "largest_concentration",
                                                                      "surfactant_mass"))
             extremes.plot(run.time, largest, color=color)
@@ -45,10 +41,9 @@ def surfactant(runs, axes=None):
     along.set(xlabel="$x_3$ / R$_C$", ylabel="concentration / initial one")
     style.finish(deformation, xlabel=time_label(runs), ylabel="D")
     extremes.set(xlabel=time_label(runs), ylabel="largest, smallest concentration")
-    return figure
 
 
-@figure
+@figure()
 def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     """Vesicles at rest beside axisymmetric shapes of least energy that are found without tanktread.
 
@@ -65,8 +60,7 @@ def vesicle(deck, axes=None, *, meshes: list[int] | None = None):
     last = run.snapshot_at(None)
     centre = last.points.mean(0)
     draw_pieces(axes[0], section(last, centre[1]) - centre[[0, 2]], style.RUNS[0], ends="butt")
-    for side in (-1, 1):
-        axes[0].plot(side * outline[0], outline[1], linewidth=1, **style.GUIDE)
+    axes[0].plot(numpy.outer(outline[0], [-1, 1]), outline[1], linewidth=1, **style.GUIDE)
     length = run.in_units("length")
     axes[0].set(aspect="equal", xlabel="$x_1$" + length, ylabel="$x_3$" + length)
     axes[1].semilogy(run.time, abs(run.series["energy"] - energy), color=style.RUNS[0])
@@ -92,24 +86,22 @@ def least(run):
     return outline, energy, run.series["energy"][-1] / energy - 1
 
 
-class Shape:
-    """exp(sum c_k P_2k): values, first and second derivatives of the polynomials at the points, and what is measured of
-    a surface, by complex numbers too."""
+def polynomials(degree):
+    """Returns values, first and second derivatives (400, n) at COSINE of the even Legendre polynomials P_2k."""
+    even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
+    return [numpy.array([one.deriv(order)(COSINE) for one in even]).T for order in (0, 1, 2)]
 
-    def __init__(self, degree):
-        even = [legendre.Legendre.basis(l) for l in range(0, degree + 1, 2)]
-        self.bases = [numpy.array([one.deriv(order)(COSINE) for one in even]).T for order in (0, 1, 2)]
-        self.size = len(even)
 
-    def measures(self, c):
-        """Returns (4,): area, volume, integral of twice the mean curvature, and half the integral of its square."""
-        exponent, first, second = (basis @ c for basis in self.bases)
-        r, sine2 = numpy.exp(exponent), 1 - COSINE**2
-        slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
-        g = numpy.sqrt(r**2 + slope2)
-        curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
-        ring = 2 * numpy.pi * WEIGHT * r * g
-        return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
+def measures(bases, c):
+    """Returns area, volume, integral of twice the mean curvature, and half the integral of its square (4,) of the
+    surface r = exp(sum c_k P_2k); of complex numbers too."""
+    exponent, first, second = (basis @ c for basis in bases)
+    r, sine2 = numpy.exp(exponent), 1 - COSINE**2
+    slope2, bend = sine2 * (r * first) ** 2, sine2 * r * (second + first**2) - COSINE * r * first  # by theta
+    g = numpy.sqrt(r**2 + slope2)
+    curvature = (r**2 + 2 * slope2 - r * bend) / g**3 + (1 + COSINE * first) / g
+    ring = 2 * numpy.pi * WEIGHT * r * g
+    return numpy.array([ring.sum(), 2 * numpy.pi / 3 * WEIGHT @ r**3, ring @ curvature, ring @ curvature**2 / 2])
 
 
 class Energy:
@@ -120,9 +112,8 @@ class Energy:
                f"{run.name}: a vesicle has the law `surface tension` and the bending reference `flat`")
         expect(run.summary, f"{run.name} has not come to its end")
         last = [run.series[f"length_x{k}"][-1] for k in (1, 2)]
-        expect(abs(last[0] / last[1] - 1) < ROUND,
-               f"{run.name}: its last shape is {last[0]:.4g} long along x1 and {last[1]:.4g} along x2, not "
-               "axisymmetric about x3")
+        expect(abs(last[0] / last[1] - 1) < ROUND, f"{run.name}: its last shape is {last[0]:.4g} long along x1 and "
+               f"{last[1]:.4g} along x2, not axisymmetric about x3")
         expect(run.value("Flow/type") == "quiescent", f"{run.name}: a vesicle at rest is in a `quiescent` fluid")
         numbers = run.summary["numbers"]
         self.area, self.volume = numbers["area"], numbers["volume"]  # of the resting shape, whatever the run began with
@@ -146,16 +137,15 @@ class Energy:
 def at_rest(energy, aspect):
     """Returns the section (2, 400) (r sin, r cos) and the energy of the shape of least energy near a spheroid of this
     axis over equator."""
-    first = Shape(DEGREES[0])
-    logarithm = -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2
-    c = numpy.array([(4 * k + 1) / 2 * (WEIGHT * first.bases[0][:, k]) @ logarithm for k in range(first.size)])
-    c[0] += numpy.log(energy.volume / first.measures(c)[1]) / 3
+    first = polynomials(DEGREES[0])
+    c = legendre.legfit(COSINE, -numpy.log(1 - COSINE**2 + (COSINE / aspect) ** 2) / 2, DEGREES[0])[::2]
+    c[0] += numpy.log(energy.volume / measures(first, c)[1]) / 3
 
     def of_energy(c):
-        return energy(first.measures(c))
+        return energy(measures(first, c))
 
     def excess(c):
-        return first.measures(c)[1] / energy.volume - 1
+        return measures(first, c)[1] / energy.volume - 1
 
     c = optimize.minimize(of_energy, c, jac=lambda c: derivatives(of_energy, c), method="SLSQP",
                           constraints={"type": "eq", "fun": excess, "jac": lambda c: derivatives(excess, c)},
@@ -163,17 +153,17 @@ def at_rest(energy, aspect):
     slopes = energy.volume * derivatives(excess, c)
     pressure, values = derivatives(of_energy, c) @ slopes / (slopes @ slopes), []
     for degree in DEGREES[1:]:
-        now = Shape(degree)
+        bases = polynomials(degree)
 
         def lagrangian(y):
-            measures = now.measures(y[:-1])
-            return energy(measures) - y[-1] * (measures[1] - energy.volume)
+            found = measures(bases, y[:-1])
+            return energy(found) - y[-1] * (found[1] - energy.volume)
 
-        start = numpy.append(numpy.pad(c, (0, now.size - len(c))), pressure)
+        start = numpy.append(numpy.pad(c, (0, degree // 2 + 1 - len(c))), pressure)
         solved = optimize.root(lambda y: derivatives(lagrangian, y), start, tol=1e-13)
         expect(abs(solved.fun).max() < 1e-8 * energy.bending,
                f"no axisymmetric shape at rest was found, {abs(solved.fun).max():.1e} is left")
         c, pressure = solved.x[:-1], solved.x[-1]
-        values.append(energy(now.measures(c)))
+        values.append(energy(measures(bases, c)))
     log.info(f"axisymmetric: energy {values[-1]:.9g}, of degree {DEGREES[1]} {values[0] - values[-1]:+.1e}")
-    return numpy.exp(now.bases[0] @ c) * [numpy.sqrt(1 - COSINE**2), COSINE], values[-1]
+    return numpy.exp(bases[0] @ c) * [numpy.sqrt(1 - COSINE**2), COSINE], values[-1]

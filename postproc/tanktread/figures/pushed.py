@@ -10,8 +10,8 @@ from .register import figure
 BARRIER = 1e-5  # energy by which the membrane keeps off the wall, over G_s and unstressed area
 
 
-@figure
-def stuck(runs, axes=None, *, elements: int = 160):
+@figure(2, 1, 5.6, 6, sharex=True)
+def stuck(runs, upper, lower, *, elements: int = 160):
     """Whether a capsule passes a round constriction at a given pressure drop: runs, and the drop without friction.
 
     Without friction an axisymmetric neo-Hookean membrane touches the wall and closes the channel, at rest. Its largest
@@ -28,7 +28,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
     largest, there = highest(way, pressure)
     log.info(f"without friction: critical Ca = {largest / drop:.5g}, centroid there {there:.3f}, "
              f"pressure drop {largest:.5g} G_s / length")
-    figure, (upper, lower) = style.panels(axes, 2, 1, 5.6, 6, sharex=True)
     upper.plot(way, pressure / drop, color=style.INK, label="at rest, without friction")
     for run, color in style.coloured(runs):
         x, speed = run.series["centroid_x1"], run.series["velocity_x1"]
@@ -43,7 +42,6 @@ def stuck(runs, axes=None, *, elements: int = 160):
                  f"smallest film {run.series['gap'].min():.4g}")
     style.finish(upper, ylim=(0, None), ylabel="Ca")
     style.finish(lower, yscale="log", ylabel="velocity / V", xlabel="centroid $x_1$" + first.in_units("length"))
-    return figure
 
 
 def of_flow(run):
@@ -143,9 +141,8 @@ class Pushed:
         ends, behind, ring = numpy.hstack([z[:-1], z[1:]]), slice(closed), slice(closed, closed + 1)
         cones, rings = self.numbers, self.rings
         for k, by, numbers, at in ((0, self.by_energy, cones, ends), (0, self.by_barrier, rings, z),
-                                   (1, self.by_volumes, cones, ends),
-                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind]),
-                                   (2, self.area_at, rings[ring, :1], z[ring, :1])):
+                                   (1, self.by_volumes, cones, ends), (2, self.area_at, rings[ring, :1], z[ring, :1]),
+                                   (2, lambda ends: -self.by_volumes(ends), cones[behind], ends[behind])):
             numpy.add.at(gradient[k], numbers, by(at))
             numpy.add.at(matrix[k], (numbers[:, :, None], numbers[:, None, :]), derivatives(by, at))
         return gradient[:, self.loose], matrix[:, self.loose][:, :, self.loose]
@@ -153,7 +150,7 @@ class Pushed:
     def rest(self, z, pressures, closed, behind):
         """Returns the shape at rest with this volume of fluid behind it and the pressures inside and behind, by
         Newton's method; None if it is not found."""
-        z, pressures, n = z.copy(), pressures.copy(), self.loose.size
+        n = self.loose.size
         for _ in range(60):
             gradient, matrix = self.system(z, closed)
             residual = numpy.append(gradient[0] - pressures @ gradient[1:],

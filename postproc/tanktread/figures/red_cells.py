@@ -1,49 +1,41 @@
 """Figures of red cells beside experiments."""
 
+import pathlib
+
 import numpy
 
+from ..files import parsed
 from ..mistakes import log
 from ..runs import run as run_of
 from . import style
 from .register import figure
 
-# Mills, Qie, Dao, Lim & Suresh, Mech. Chem. Biosyst. 1, 2004: force in pN, transverse and axial diameter in um, the
-# bounds of the axial one, which are not known without force.
-STRETCHED = ((0, 7.74, 7.74, 7.74, 7.74), (16, 6.71, 9.16, 8.34, 9.99), (47, 5.40, 11.34, 10.06, 12.75),
-             (88, 4.75, 13.03, 11.4, 14.7), (151, 4.48, 14.55, 12.4, 16.7), (193, 4.26, 15.26, 12.95, 17.65))
-# Tran-Son-Tay, Sutera & Rao, Biophys. J. 46, 1984, tables 1 and 2: shear rate in 1/s, angular frequency and its bar in
-# radians per second; inclination in degrees, of all of them.
-TURNING = ((28.6, 6.22, 0.31), (42.9, 9.42, 0.57), (57.1, 12.7, 0.57), (114.3, 24.6, 1.07), (171.4, 37.4, 1.45))
-INCLINATION = (12.5, 13.2)
-# Hochmuth, Worthy & Evans, Biophys. J. 26, 1979: seconds, and length over width.
-RETURNING = ((0, 2.005), (0.032, 1.732), (0.065, 1.525), (0.115, 1.367), (0.184, 1.247), (0.231, 1.197), (0.300, 1.157),
-             (0.397, 1.112))
+MEASURED = parsed(pathlib.Path(__file__).with_name("red_cells.yaml"))
 RADIUS, FLUID, INSIDE = 3.91, 1.2e-3, 5  # of the disc in um; Pa s outside; viscosity inside over that outside
 DRAWN = 5.6  # force that draws the cell out, over shear modulus and radius
 MEMBRANES = ((5.3, 0.32), (4, 1.0), (10, 0.1))  # shear modulus in uN/m, viscosity in uN s/m: in use, slowest, fastest
 BAR = {"color": style.INK, "markersize": 4, "linewidth": 0.8, "capsize": 2}  # look of what was measured
 
 
-@figure
-def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: float = 5.3):
+@figure(1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
+def tweezers(deck="inputs/red_cell_tweezers.yaml", plot=None, outlines=None, *, shear_modulus: float = 5.3):
     """A red cell in optical tweezers: its diameters along and across the force, beside those that were measured.
 
     Beside them its outline from the side at each force. The deck, with lengths in radii of the disc, is run once for
     each force.
 
     shear_modulus: in uN/m"""
-    figure, (plot, outlines) = style.panels(axes, 1, 2, 8.2, 3.6, width_ratios=(1.2, 1))
-    runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in STRETCHED]
+    runs = [pulled(deck, row[0] / (RADIUS * shear_modulus), {}) for row in MEASURED["stretched"]]
     across, along = RADIUS * numpy.array([[run.series[f"length_x{k}"][-1] for run in runs] for k in (2, 1)])
-    for (pn, narrow, wide, low, high), here_across, here_along in zip(STRETCHED, across, along):
+    for (pn, narrow, wide, low, high), here_across, here_along in zip(MEASURED["stretched"], across, along):
         within = f", {'within' if low <= here_along <= high else 'OUTSIDE'} its bar" if low < high else ""
         log.info(f"{pn:4d} pN: along {here_along:.2f} um (measured {wide}{within}), "
                  f"across {here_across:.2f} um (measured {narrow})")
-    forces, narrow, wide, low, high = numpy.transpose(STRETCHED)
+    forces, narrow, wide, low, high = numpy.transpose(MEASURED["stretched"])
     plot.plot(forces, along, color=style.RUNS[0], label=f"{runs[0].value('Membrane/law')}, along")
     plot.plot(forces, across, color=style.RUNS[0], linestyle=style.DASHES, label="across")
     around = numpy.linspace(0, 2 * numpy.pi, 361)
-    for (pn, *_), (run, color) in zip(STRETCHED, style.shaded(runs, 0.25)):  # convex outlines as seen along x3
+    for (pn, *_), (run, color) in zip(MEASURED["stretched"], style.shaded(runs, 0.25)):  # convex, as seen along x3
         points = run.snapshots()[-1].points[:, :2] * RADIUS
         outline = points[(points @ [numpy.cos(around), numpy.sin(around)]).argmax(axis=0)]
         outlines.plot(*outline.T, color=color, linewidth=1.1, label=f"{pn} pN")
@@ -52,7 +44,6 @@ def tweezers(deck="inputs/red_cell_tweezers.yaml", axes=None, *, shear_modulus: 
     plot.errorbar(forces, wide, (wide - low, high - wide), fmt=style.MARKS[0], label="Mills and others 2004", **BAR)
     plot.plot(forces, narrow, style.MARKS[1], color=style.INK, markersize=4, fillstyle="none", label="across, measured")
     style.finish(plot, xlabel="force / pN", ylabel="diameter / µm")
-    return figure
 
 
 def pulled(deck, force, more):
@@ -61,9 +52,9 @@ def pulled(deck, force, more):
     return run_of(deck, {f"Membrane/forces/{name}/force": [pull, 0, 0] for name, pull in ends.items()} | more)
 
 
-@figure
-def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list[float] = [0.1, 0.32, 1.0],
-             elements: int = 6):
+@figure(1, 2, 8.2, 3.4)
+def treading(deck="inputs/red_cell_treading.yaml", plot=None, angles=None, *,
+             viscosity: list[float] = [0.1, 0.32, 1.0], elements: int = 6):
     """A red cell that tank-treads in shear: frequency over shear rate, and inclination, beside those measured.
 
     Means of the last whole turn against the shear rate. The deck, with units, is run once for each shear rate and
@@ -71,8 +62,7 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
 
     viscosity: viscosities of the membrane, in uN s/m
     elements: elements per side"""
-    figure, (plot, angles) = style.panels(axes, 1, 2, 8.2, 3.4)
-    rates, frequencies, bars = numpy.transpose(TURNING)
+    rates, frequencies, bars = numpy.transpose(MEASURED["treading"])
     for value, color in style.coloured(sorted(viscosity)):
         found = [last_turn(deck, rate, value, elements) for rate in rates]
         turning, angle, least, largest = numpy.transpose(found)
@@ -80,16 +70,15 @@ def treading(deck="inputs/red_cell_treading.yaml", axes=None, *, viscosity: list
         plot.plot(rates, turning / rates, "o-", **pen)
         angles.plot(rates, angle, "o-", **pen)
         angles.fill_between(rates, least, largest, color=color, alpha=0.12, linewidth=0)
-        for (rate, frequency, bar), (here, mean, low, high) in zip(TURNING, found):
+        for (rate, frequency, bar), (here, mean, low, high) in zip(MEASURED["treading"], found):
             within = "within" if abs(here - frequency) <= bar else "OUTSIDE"
             log.info(f"{value:g} uN s/m, {rate} 1/s: frequency {here:.3f} 1/s (measured {frequency} +- {bar}, {within} "
                      f"its bar), inclination {mean:.2f} ({low:.2f} to {high:.2f})")
     plot.errorbar(rates, frequencies / rates, bars / rates, fmt=style.MARKS[1], label="Tran-Son-Tay and others 1984",
                   **BAR)
-    angles.axhspan(*INCLINATION, color=style.FAINT, alpha=0.4, label="measured")
+    angles.axhspan(*MEASURED["inclination"], color=style.FAINT, alpha=0.4, label="measured")
     style.finish(plot, xlabel="shear rate / s$^{-1}$", ylabel="frequency / shear rate")
     style.finish(angles, xlabel="shear rate / s$^{-1}$", ylabel="inclination / degrees")
-    return figure
 
 
 def last_turn(deck, rate, viscosity, elements):
@@ -103,16 +92,15 @@ def last_turn(deck, rate, viscosity, elements):
     return 2 * numpy.pi / (time[-1] - begin), around.mean(), around.min(), around.max()
 
 
-@figure
-def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int = 6):
+@figure(1, 1, 5.2, 3.6)
+def recovery(deck="inputs/red_cell_tweezers.yaml", plot=None, *, elements: int = 6):
     """A red cell let go by tweezers at a length of twice its width returns to its disc, beside the experiment.
 
     Length over width against time, and the time constant of the exponential that fits best, for several moduli and
     viscosities of the membrane. The deck has lengths in radii of the disc.
 
     elements: elements per side"""
-    figure, (plot,) = style.panels(axes, 1, 1, 5.2, 3.6)
-    time, ratio = numpy.array(RETURNING).T
+    time, ratio = numpy.array(MEASURED["recovery"]).T
     log.info(f"measured: time constant {constant(time, ratio):.4f} s")
     for (modulus, viscosity), color in zip(MEMBRANES, style.RUNS):
         seconds, found = let_go(deck, elements, modulus, viscosity)
@@ -121,20 +109,18 @@ def recovery(deck="inputs/red_cell_tweezers.yaml", axes=None, *, elements: int =
         plot.plot(seconds, found, color=color, label=f"{modulus:g} µN/m, {viscosity:g} µN s/m")
     plot.plot(time, ratio, style.MARKS[0], color=style.INK, markersize=4, label="Hochmuth and others 1979")
     style.finish(plot, xlabel="time / s", ylabel="length over width")
-    return figure
 
 
 def let_go(deck, elements, modulus, viscosity):
     """Returns seconds, and length over width from where it is as in the experiment at first."""
     mesh = {"Surface/elements per side": elements}
-    start = pulled(deck, DRAWN, mesh)
+    start = pulled(deck, DRAWN, mesh).directory.resolve()
     unit = FLUID * RADIUS / modulus  # of time, in seconds: the deck's are fluid viscosity x radius / shear modulus
-    run = pulled(deck, 0, mesh | {
-        "Particle/viscosity ratio": INSIDE, "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
-        "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit,
-        "Particle/initial shape/run": str(start.directory.resolve())})
+    run = pulled(deck, 0, mesh | {"Particle/initial shape/run": str(start), "Particle/viscosity ratio": INSIDE,
+                                  "Membrane/shear viscosity": viscosity / (FLUID * RADIUS),
+                                  "Time/final time": 0.4 / unit, "Output/interval": 0.1 / unit})
     seconds, ratio = run.series["time"] * unit, run.series["length_x1"] / run.series["length_x2"]
-    first = numpy.interp(-RETURNING[0][1], -ratio, seconds)
+    first = numpy.interp(-MEASURED["recovery"][0][1], -ratio, seconds)
     after = seconds >= first
     return seconds[after] - first, ratio[after]
 
@@ -143,5 +129,5 @@ def constant(seconds, ratio):
     """Returns t_c of (ratio - 1) = (first - 1) exp(-t/t_c), by least squares over 0.4 s at even times."""
     times = numpy.linspace(0, min(0.397, seconds[-1]), 200)
     excess = numpy.interp(times, seconds, ratio) - 1
-    best = numpy.geomspace(0.005, 1, 2000)
-    return best[numpy.argmin([numpy.sum((excess - excess[0] * numpy.exp(-times / t)) ** 2) for t in best])]
+    return min(numpy.geomspace(0.005, 1, 2000),
+               key=lambda t: numpy.sum((excess - excess[0] * numpy.exp(-times / t)) ** 2))

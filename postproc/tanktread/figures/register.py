@@ -3,7 +3,6 @@
 import argparse
 import functools
 import inspect
-import pathlib
 import subprocess
 import sys
 import textwrap
@@ -11,38 +10,46 @@ import typing
 
 from ..mistakes import expect
 from ..results import Run
-from ..runs import run as run_of
-from ..runs import SOURCE, runs_of, settings_of
-from .style import draw, save
+from ..runs import SOURCE, run as run_of, runs_of, settings_of
+from . import style
 
 FIGURES: dict = {}
 BENCHMARK = SOURCE / "tests/benchmark"
 RUNS = {"runs": (runs_of, "+", "directories of results, or decks, which are run if they have none"),
         "run": (run_of, None, "directory of results, or a deck, which is run if it has none")}
+ENDINGS = {"animation": "gif"}  # of the files of figures, by default png
+AXES = inspect.Parameter("axes", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None)
 
 
-def figure(function):
+def figure(*size, **layout):
     """Decorates the function of a figure: sets the style, accepts directories and decks as runs, adds it to FIGURES.
 
-    Parameters are `runs`, `run`, or a deck or study; `axes`; and options by keyword. The first paragraph of the
-    docstring is the caption; lines `option: text` below it describe options on the command line."""
-    first = _parameters(function)[0]
-    convert = RUNS.get(first.name, (lambda given: given,))[0]
+    Parameters are `runs`, `run`, or a deck or study; axes; and options by keyword. With the `size` and `layout` of its
+    panels (`style.panels`; or a function that returns the size for the runs) the function is given the axes of each
+    panel; otherwise it is given the `axes` of the caller and returns the figure. The first paragraph of the docstring
+    is the caption; lines `option: text` below it describe options on the command line."""
+    def decorate(function):
+        first, *others = inspect.signature(function).parameters.values()
+        convert = RUNS.get(first.name, (lambda given: given,))[0]
 
-    @functools.wraps(function)
-    def drawn(given=first.default, axes=None, **options):
-        expect(given is not first.empty, f"{function.__name__} needs {first.name}")
-        given = convert(given)
-        for run in given if isinstance(given, list) else [given]:
-            expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
-        return draw(functools.partial(function, **options), given, axes)
+        @functools.wraps(function)
+        def drawn(given=first.default, axes=None, **options):
+            expect(given is not first.empty, f"{function.__name__} needs {first.name}")
+            given = convert(given)
+            for run in given if isinstance(given, list) else [given]:
+                expect(not isinstance(run, Run) or len(run.series["time"]), f"{run} holds no row of series yet")
+            with style.plt.rc_context(style.STYLE):
+                if not size:
+                    return function(given, axes, **options)
+                whole, parts = style.panels(axes, *(size[0](given) if callable(size[0]) else size), **layout)
+                function(given, *parts, **options)
+                return whole
 
-    FIGURES[function.__name__] = drawn
-    return drawn
+        drawn.__signature__ = inspect.Signature([first, AXES, *(one for one in others if one.kind is one.KEYWORD_ONLY)])
+        FIGURES[function.__name__] = drawn
+        return drawn
 
-
-def _parameters(function):
-    return list(inspect.signature(function).parameters.values())
+    return decorate
 
 
 def caption(function):
@@ -58,7 +65,7 @@ def _parsed_as(kind):
     if kind is bool:
         return {"action": "store_true"}
     if origin is typing.Literal:
-        return {"choices": arguments}
+        return {"choices": arguments, "type": type(arguments[0])}
     if origin is tuple:
         return {"nargs": len(arguments), "type": arguments[0]}
     if origin is not list:
@@ -71,7 +78,7 @@ def _parsed_as(kind):
 def parser_of(name, program="tanktread-figure"):
     """Returns the parser of a figure's command line."""
     function = FIGURES[name]
-    first, _, *options = _parameters(function)
+    first, _, *options = inspect.signature(function).parameters.values()
     hints, doc = typing.get_type_hints(function), inspect.getdoc(function)
     texts = dict(line.split(": ", 1) for line in doc.split("\n") if ": " in line)
     parser = argparse.ArgumentParser(prog=f"{program} {name}", description=doc,
@@ -80,8 +87,8 @@ def parser_of(name, program="tanktread-figure"):
     if first.default is not first.empty:
         number, words = "?", f"{words} (default: {first.default})"
     parser.add_argument("given", metavar=first.name, nargs=number, default=first.default, help=words)
-    parser.add_argument("-o", "--output", default=getattr(function, "output", f"{name}.png"), metavar="FILE",
-                        help="the picture: .png, .pdf, .svg, … (default: %(default)s)")
+    parser.add_argument("-o", "--output", default=name, metavar="FILE",
+                        help=f"the picture: .png, .pdf, .svg, … (default: {name}.{ENDINGS.get(name, 'png')})")
     if first.name in RUNS:
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                             help="a key of the deck (repeatable)")
@@ -120,11 +127,11 @@ def command():
         return subprocess.run([sys.executable, BENCHMARK / f"{name}.py", *words[1:]], check=False).returncode
     expect(name in FIGURES, f"there is no figure {words[0]}; there are: {', '.join(sorted(figures))}")
     parsed = vars(parser_of(name).parse_args(words[1:]))
-    given, output = parsed.pop("given"), pathlib.Path(parsed.pop("output"))
+    given, output = parsed.pop("given"), parsed.pop("output")
     settings = settings_of(parsed.pop("set", []))
     for option, value in parsed.items():
         expect(type(value) is not int or value > 0 or option == "from_", f"--{option} must be above 0, but is {value}")
     if settings:
         given = [run_of(one, settings) for one in given] if isinstance(given, list) else run_of(given, settings)
-    save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)
+    style.save(FIGURES[name](given, **{option: value for option, value in parsed.items() if value is not None}), output)
     return 0

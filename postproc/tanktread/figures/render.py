@@ -24,11 +24,10 @@ def picture(shot, values, view, colour_of, pixels=640):
     `colour_of`: maps values to RGBA."""
     depth, found, corner, size = seen(shot, values, view, OVERSAMPLING * pixels)
     columns, rows = numpy.array(depth.shape) // OVERSAMPLING
-    fine = _coloured(depth, found, colour_of).reshape(columns, OVERSAMPLING, rows, OVERSAMPLING, 4)
-    coarse = fine.mean((1, 3))
-    coarse[..., :3] /= numpy.maximum(coarse[..., 3:], 1e-12)
+    image = _coloured(depth, found, colour_of).reshape(columns, OVERSAMPLING, rows, OVERSAMPLING, 4).mean((1, 3))
+    image[..., :3] /= numpy.maximum(image[..., 3:], 1e-12)
     end = corner + numpy.array(depth.shape) / size
-    return numpy.clip(coarse.transpose(1, 0, 2)[::-1], 0, 1), (corner[0], end[0], corner[1], end[1])
+    return numpy.clip(image.transpose(1, 0, 2)[::-1], 0, 1), (corner[0], end[0], corner[1], end[1])
 
 
 def seen(shot, values, view, pixels):

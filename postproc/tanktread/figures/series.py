@@ -1,14 +1,16 @@
-"""Figures of series over time."""
+"""Figures of series over time, and along branches of steady shapes."""
 
 import pathlib
 from typing import Literal
 
 import numpy
+import yaml
 
 from ..files import table
 from ..interpolation import difference
 from ..mistakes import expect, log
 from ..results import time_label
+from ..runs import Study
 from . import style
 from .register import figure
 
@@ -16,7 +18,7 @@ EXPECTED = "expected by the deck"
 Deformation = Literal["taylor_inertia", "taylor_surface"]
 
 
-@figure
+@figure()
 def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
                 deformation: Deformation = "taylor_inertia"):
     """Deformation and inclination over time, beside published curves; of several particles, of each.
@@ -30,7 +32,11 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
     height, layout = (6.4, {"sharex": True, "height_ratios": [3, 2]}) if inclined else (4.2, {})
     figure, axes = style.panels(axes, 2 if inclined else 1, 1, 6.4 if len(runs) == 1 else 9.8, height, **layout)
     panels = dict(zip((deformation, "inclination"), axes))
-    known = {path.stem: curve_of(path) for path in map(pathlib.Path, curves or [])}
+    known: dict = {}
+    for path in map(pathlib.Path, curves or []):
+        rows = table(path, ("t", "taylor_inertia"))
+        expect(numpy.isfinite([rows["t"], rows["taylor_inertia"]]).all(), f"{path} has NaN")
+        known[path.stem] = numpy.sort(rows, order="t")
     for run, color in style.coloured(runs):
         if run.several:
             draw_particles(panels, run, deformation, style.RUNS if len(runs) == 1 else [color])
@@ -41,7 +47,12 @@ def deformation(runs, axes=None, *, curves: list[pathlib.Path] | None = None,
             apart = [f"{difference(run.time, run.series[name], curve['t'], curve[name]):.2e} {unit}"
                      for name, unit in words.items() if name in curve.dtype.names]
             log.info(f"{run.name}: largest difference from {label}: {', '.join(apart)}")
-    draw_curves(axes, known, end=max(run.time[-1] for run in runs))
+    for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
+        inside = curve[curve["t"] <= 1.001 * max(run.time[-1] for run in runs)]
+        for axis, name in zip(axes, ("taylor_inertia", "inclination")):
+            if name in curve.dtype.names:
+                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
+                          markevery=max(1, len(inside) // 40), label=label)
     titles = [" and ".join(dict.fromkeys(str(run.value(key)) for run in runs if run.value(key)))
               for key in ("Membrane/law", "Flow/type")]
     if len(runs) == 1 and runs[0].value("Membrane/capillary number"):
@@ -72,9 +83,8 @@ def draw_run(panels, run, color):
         draw_series(axis, run, name, color=color, label=label)
         if expected := run.value(f"Expect/{name}"):
             at = expected["at"] * run.rate[0] if "at" in expected else run.time[-1]
-            first = EXPECTED not in {line.get_label() for line in axis.lines}
             axis.plot(at, expected["value"], "x", color=style.INK, ms=7, mew=1.4, zorder=6,
-                      label=EXPECTED if first else None)
+                      label=None if EXPECTED in {line.get_label() for line in axis.lines} else EXPECTED)
 
 
 def draw_particles(panels, run, deformation, colors):
@@ -95,23 +105,7 @@ def unbroken(t, angle):
     return numpy.insert(t, passes, numpy.nan), numpy.insert(angle, passes, numpy.nan)
 
 
-def curve_of(path):
-    """Returns the rows of a published curve in the order of time, as a structured array."""
-    found = table(path, ("t", "taylor_inertia"))
-    expect(all(numpy.isfinite(found[name]).all() for name in ("t", "taylor_inertia")), f"{path} has NaN")
-    return numpy.sort(found, order="t")
-
-
-def draw_curves(axes, known, end):
-    for (label, curve), mark in zip(known.items(), style.MARKS * len(known)):
-        inside = curve[curve["t"] <= end * 1.001]
-        for axis, name in zip(axes, ("taylor_inertia", "inclination")):
-            if name in curve.dtype.names:
-                axis.plot(inside["t"], inside[name], mark, ms=3.6, mfc="none", mec=style.FAINT, mew=0.8, zorder=2,
-                          markevery=max(1, len(inside) // 40), label=label)
-
-
-@figure
+@figure()
 def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     """D over time with a mark at every change of the mesh, and the number of control points (the paper's Figure 14).
 
@@ -144,3 +138,137 @@ def refinement(runs, axes=None, *, deformation: Deformation = "taylor_inertia"):
     upper.legend(loc="lower right")
     lower.set(ylabel="control points", ylim=(0, None), xlabel=time_label(runs))
     return figure
+
+
+@figure()
+def branch(runs, axes=None, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
+    """Branches of steady shapes: D against the parameter, folds marked; below, the rate of the leading mode.
+
+    Unstable parts are broken lines. The runs have the section Continuation; the rate, and what is unstable, need the
+    section Spectrum too.
+
+    series: what is drawn against the parameter
+    exact: a known point, as parameter and value (repeatable)"""
+    rated = all("leading_rate" in run.series for run in runs)
+    heights = [3, 1.6] if rated else [3]
+    figure, axes = style.panels(axes, len(heights), 1, 5.2, 3.4 + 1.8 * rated, sharex=True, height_ratios=heights)
+    upper = axes[0]
+    for run, color in style.coloured(runs):
+        parameter, value, fold = run.series["parameter"], run.series[series], run.series["fold"] > 0
+        draw_branch(upper, run, parameter, value, color, run.name)
+        upper.plot(parameter[fold], value[fold], "o", color=color, markerfacecolor="white")
+        for p, d in zip(parameter[fold], value[fold]):
+            log.info(f"{run.name}: fold at {p:.7g}, {series} = {d:.6f}")
+        if rated:
+            draw_branch(axes[1], run, parameter, run.series["leading_rate"], color)
+    for point in exact or []:
+        upper.plot(*point, "+", color=style.INK)
+    upper.set_ylabel("Taylor parameter D" if series.startswith("taylor") else runs[0].axis(series))
+    if len(runs) > 1:
+        upper.legend()
+    if rated:
+        axes[1].axhline(0, color=style.INK, linewidth=0.6)
+        axes[1].set_ylabel(runs[0].axis("leading_rate").replace("_", " "))
+    axes[-1].set_xlabel(runs[0].deck["Continuation"]["parameter"])
+    return figure
+
+
+def draw_branch(axes, run, x, y, color, label=None):
+    """Draws a curve of a branch point by point, with a broken line between two points if a mode grows at one."""
+    broken = run.series.get("unstable_modes", 0 * x) > 0
+    axes.plot([], [], color=color, label=label)
+    for k in range(len(x) - 1):
+        axes.plot(x[k:k + 2], y[k:k + 2], color=color, linestyle="--" if broken[k:k + 2].any() else "-")
+    axes.plot(x, y, ".", color=color, markersize=3)
+
+
+@figure(2, 1, 5.2, 5.2, sharex=True, height_ratios=[3, 2])
+def folds(runs, upper, lower, *, series: str = "taylor_surface", exact: list[tuple[float, float]] | None = None):
+    """Folds of branches against a second parameter, such as where drops burst against their viscosity; D there below.
+
+    The runs have the key Continuation/second parameter. Each fold is printed.
+
+    series: what is drawn below
+    exact: a known fold, as second parameter and value (repeatable)"""
+    names, reached = set(), []
+    for run, color in style.coloured(runs):
+        found = numpy.flatnonzero(run.series["fold"] > 0)
+        expect(len(found) and "second_parameter" in run.series,
+               f"{run.directory} has no folds along a Continuation/second parameter")
+        name = run.deck["Continuation"]["second parameter"]
+        names.add((name, run.deck["Continuation"]["parameter"]))
+        found = found[numpy.argsort(run.series["second_parameter"][found], kind="stable")]
+        second, parameter, value = (run.series[key][found] for key in ("second_parameter", "parameter", series))
+        reached += list(second)
+        upper.plot(second, parameter, "o-", color=color, markersize=3.5, label=run.name)
+        lower.plot(second, value, "o-", color=color, markersize=3.5)
+        for at, p, d in zip(second, parameter, value):
+            log.info(f"{run.name}: {name} {at:.7g}: fold at {p:.7g}, {series} = {d:.6f}")
+    pairs = "; ".join(f"{parameter} against {second}" for second, parameter in sorted(names))
+    expect(len(names) == 1, f"one figure has one pair of parameters; these runs have {pairs}")
+    for point in exact or []:
+        upper.plot(*point, "+", color=style.INK, markersize=9)
+    second, parameter = names.pop()
+    if min(reached) > 0 and max(reached) > 10 * min(reached):
+        lower.set_xscale("log")
+    if len(runs) > 1:
+        upper.legend()
+    upper.set_ylabel(parameter + " at the fold")
+    lower.set(xlabel=second, ylabel="Taylor parameter D there" if series.startswith("taylor") else runs[0].axis(series))
+
+
+@figure(1, 1, 5.2, 3.6)
+def growth_rates(run, axis, *, series: str = "taylor_surface", amplitude: float = 0.003, length: float = 2):
+    """Rates of the leading mode along a branch of steady shapes, and those of runs in time from the same shapes.
+
+    The run has the section Spectrum. From each of its points except folds, two runs in time start with the mode added
+    with either sign; their difference grows or decays at the mode's rate, which is fitted to its later half. Complex
+    modes are left out. Runs are kept in results/growth_rates.
+
+    series: series whose difference is taken
+    amplitude: of the mode, over R_C
+    length: of the runs, in times of the rate"""
+    study = Study(directory="results/growth_rates")
+    deck = deck_in_time(run, study.directory)
+    path = (run.value("Continuation") or {}).get("parameter", "Membrane/capillary number")
+    parameter = run.series.get("parameter", numpy.array([run.value(path)]))
+    rate = run.series["leading_rate"]
+    found = [in_time(study, deck, run, k, path, series, amplitude, length) for k in range(len(rate))]
+    for p, one, other in zip(parameter, rate, found):
+        compared = f", of runs in time {other:.6f}, relative difference {abs(other / one - 1):.1e}"
+        log.info(f"{path} {p:.8g}: rate {one:.6f}{'' if numpy.isnan(other) else compared}")
+    draw_branch(axis, run, parameter, rate, style.RUNS[0], "eigenvalue")
+    axis.plot(parameter, found, "o", color=style.RUNS[1], markerfacecolor="none", label="run in time")
+    axis.axhline(0, color=style.INK, linewidth=0.6)
+    style.finish(axis, xlabel=path, ylabel="rate of the leading mode" + run.unit(run.units["leading_rate"]))
+
+
+def deck_in_time(run, directory):
+    """Writes the deck of a run without the sections that replace time, and returns its path."""
+    sections = {key: run.deck[key] for key in run.deck if key not in ("Steady", "Continuation", "Spectrum", "Expect")}
+    sections["Particle"] = {key: value for key, value in run.deck.get("Particle", {}).items() if key != "initial shape"}
+    directory.mkdir(parents=True, exist_ok=True)
+    path = directory.resolve() / f"{run.name}.yaml"
+    path.write_text(yaml.safe_dump({"Tanktread": sections}, sort_keys=False), encoding="utf-8")
+    return path
+
+
+def in_time(study, deck, run, k, path, series, amplitude, length):
+    """Returns the rate from two runs in time at point k; NaN at a fold, of a complex mode, or if a run fails."""
+    here = {name: values[k] for name, values in run.series.items()}
+    number = next((n for n in range(1, len(here)) if here.get(f"rate_{n}") == here["leading_rate"]), 0)
+    if here.get("fold", 0) or here.get(f"frequency_{number}", 1):
+        return numpy.nan
+    end, start, values = length / abs(here["leading_rate"]), run.snapshots()[k].path.resolve(), []
+    settings = {"Time/final time": end, "Time/tolerance": 1e-6, "Output/interval": end,
+                "Particle/initial shape/mode": number, "Particle/initial shape/run": start}
+    keys = {"parameter": path, "second_parameter": run.value("Continuation/second parameter")}
+    settings |= {key: here[name] for name, key in keys.items() if name in here}
+    t = numpy.linspace(end / 2, end, 11)
+    for sign in 1, -1:
+        outcome = study.run(deck, settings | {"Particle/initial shape/mode amplitude": sign * amplitude})
+        values.append(numpy.interp(t, outcome.series["time"], outcome.series[series]) if outcome.done else numpy.nan)
+        if numpy.isnan(values[-1]).any():
+            log.info(f"from {start}: {f'{series} is undefined (NaN)' if outcome.done else outcome.message}")
+            return numpy.nan
+    return numpy.polyfit(t, numpy.log(abs(values[0] - values[1])), 1)[0]

@@ -23,12 +23,10 @@ GUIDE = {"color": FAINT, "linestyle": (0, (4, 3))}              # a line to comp
 
 STYLE = {
     "figure.dpi": 150, "figure.constrained_layout.use": True, "font.size": 9.5, "text.color": INK,
-    "axes.labelcolor": INK, "axes.edgecolor": FAINT, "axes.linewidth": 0.7, "axes.spines.top": False,
-    "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "axes.titlesize": 10,
-    "axes.titlelocation": "left", "grid.color": GRID, "grid.linewidth": 0.7, "xtick.color": INK, "ytick.color": INK,
-    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "legend.frameon": False, "legend.fontsize": 8.5,
-    "lines.linewidth": 1.6,
-}
+    "axes.labelcolor": INK, "axes.edgecolor": FAINT, "axes.linewidth": 0.7, "axes.titlesize": 10,
+    "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True,
+    "axes.grid": True, "grid.color": GRID, "grid.linewidth": 0.7, "legend.frameon": False, "legend.fontsize": 8.5,
+    "xtick.color": INK, "ytick.color": INK, "xtick.major.width": 0.7, "ytick.major.width": 0.7, "lines.linewidth": 1.6}
 
 
 def canvas(axes, width, height):
@@ -40,10 +38,13 @@ def canvas(axes, width, height):
     raise Mistake("this figure arranges panels of different sizes: give it a Figure or SubFigure instead of axes")
 
 
-def panels(axes, rows, columns, width, height, **layout):
-    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure."""
+def panels(axes, rows, columns, width, height, mosaic=None, **layout):
+    """Returns a figure and its axes (rows * columns,): new ones, or those given, or new ones in a given (Sub)Figure.
+    `mosaic` arranges new ones as `Figure.subplot_mosaic` does."""
     if axes is None or isinstance(axes, FigureBase):
         figure = canvas(axes, width, height)
+        if mosaic:
+            return figure, list(figure.subplot_mosaic(mosaic, **layout).values())
         return figure, figure.subplots(rows, columns, squeeze=False, **layout).ravel()
     axes = numpy.atleast_1d(axes).ravel()
     expect(len(axes) == rows * columns, f"this figure needs {rows * columns} axes, and is given {len(axes)}")
@@ -75,14 +76,14 @@ def finish(axes, **properties):
 def save(figure, path):
     """Writes a figure as PNG, PDF, SVG and so on by its name, or its animation as GIF. Makes the folder."""
     path = pathlib.Path(path)
-    path = path if path.suffix or not path.name else path.with_name(path.name + ".png")
     film = getattr(figure, "film", None)
+    path = path if path.suffix or not path.name else path.with_name(path.name + (".gif" if film else ".png"))
     kinds = ["gif"] if film else sorted(figure.canvas.get_supported_filetypes())
     expect(path.suffix[1:].lower() in kinds, f"the name of a figure ends in .{', .'.join(kinds)}, but it is {path}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         if film:
-            film.save(path, writer="pillow", fps=film.rate, dpi=figure.dpi)
+            film.save(path, writer="pillow", dpi=figure.dpi)
         else:
             with plt.rc_context(STYLE):
                 figure.savefig(path, bbox_inches="tight", pad_inches=0.08)

@@ -2,8 +2,6 @@
 
 import numpy
 from matplotlib.animation import FuncAnimation
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 
 from ..mistakes import expect, log
 from ..results import field_label
@@ -13,8 +11,6 @@ from .draw import (VIEW, draw_sections, draw_surface, draw_triad, magnitude, mid
 from .register import figure
 from .series import unbroken
 
-LEAST_WIDTH = 100  # pixels
-
 
 def field_of(shots, field):
     """Returns norm, colour map and label pattern of a field of snapshots. Raises Mistake if one does not hold it."""
@@ -23,11 +19,12 @@ def field_of(shots, field):
     values = numpy.concatenate([magnitude(shot.fields[field]) for shot in shots])
     low, high, pattern = values.min(), values.max(), "|{}|" if numpy.ndim(shots[0].fields[field]) > 1 else "{}"
     bound = max(-low, high)
-    return *((Normalize(-bound, bound), style.SIGNED) if low < 0 else (Normalize(low, high), style.FIELD)), pattern
+    limits, colours = ((-bound, bound), style.SIGNED) if low < 0 else ((low, high), style.FIELD)
+    return style.plt.Normalize(*limits), colours, pattern
 
 
-@figure
-def shape(runs, axes=None, *, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
+@figure(lambda runs: (1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4))
+def shape(runs, *axes, time: float | None = None, field: str = "traction", view: tuple[float, float] = VIEW):
     """The deformed surface coloured by its traction, and its section in the x1 x3 plane with the axis of inertia.
 
     time: simulated time of the snapshot (default: the last one)
@@ -35,18 +32,16 @@ def shape(runs, axes=None, *, time: float | None = None, field: str = "traction"
     view: azimuth and elevation of the eye, in degrees"""
     shots = [run.snapshot_at(time).scaled(run) for run in runs]
     norm, colours, pattern = field_of(shots, field)
-    figure, axes = style.panels(axes, 1, len(runs) + 1, 4.4 * len(runs) + 4.6, 4.4)
     for axis, run, shot in zip(axes, runs, shots):
         draw_surface(axis, shot, field, norm, colours, *view)
         axis.set_title(f"{run.name}, t = {shot.time:g}")
     label = field_label(runs, field, pattern if pattern == "{}" else "magnitude of the {}")
-    figure.colorbar(ScalarMappable(norm, colours), cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]),
-                    orientation="horizontal", label=label)
+    axes[0].figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), orientation="horizontal", label=label,
+                            cax=axes[0].inset_axes([0.3, -0.08, 0.5, 0.03]))
     draw_sections(axes[-1], runs, shots)
-    return figure
 
 
-@figure
+@figure()
 def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "traction",
            view: tuple[float, float] = VIEW):
     """Meshes at some times, and below each the variation of a field along the section x2 = 0 (the paper's Figures 15,
@@ -58,10 +53,8 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     field: field whose variation is drawn
     view: azimuth and elevation of the eye, in degrees"""
     end = runs[0].series["time"][-1]
-    if len(runs) > 1:
-        pairs = [(run, times[-1] if times else end) for run in runs]
-    else:
-        pairs = [(runs[0], moment) for moment in times or [0, end / 2, end]]
+    moments = times or [0, end / 2, end]
+    pairs = [(run, moment) for run in runs for moment in (moments if len(runs) == 1 else moments[-1:])]
     shots = [run.snapshot_at(moment).scaled(run) for run, moment in pairs]
     norm, colours, pattern = field_of(shots, field)
     seen = numpy.concatenate([(shot.points - middle(shot.points)) @ view_axes(*view)[:2].T for shot in shots])
@@ -70,34 +63,28 @@ def meshes(runs, axes=None, *, times: list[float] | None = None, field: str = "t
     grid = figure.add_gridspec(3, len(shots), height_ratios=[4 * tall + 0.4, 0.12, 3.9])
     surfaces, polars = zip(*[(figure.add_subplot(grid[0, k]), figure.add_subplot(grid[2, k], projection="polar"))
                              for k in range(len(shots))])
-    for (run, _), shot, surface in zip(pairs, shots, surfaces):
+    reach = 1e-12
+    for (run, _), shot, surface, polar in zip(pairs, shots, surfaces, polars):
         draw_surface(surface, shot, field, norm, colours, *view)
         row = numpy.searchsorted(run.series["time"], shot.time * (1 + 1e-12), side="right") - 1
         points = run.series["n_control_points"][row]
         surface.set_title(f"{run.name}\nt = {shot.time:.3g}: {points:.0f} control points")
+        angle, variation = section_variation(shot, field)
+        log.info(f"{shot.path}: largest variation {variation.max():.3g}")
+        reach = max(reach, variation.max())
+        polar.plot([*angle, angle[0] + 2 * numpy.pi], [*variation, variation[0]], color=style.RUNS[0], linewidth=1)
+        polar.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
+        polar.set_rlabel_position(55)
+        polar.tick_params(labelsize=7.5)
+        polar.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
     share_window(surfaces)
-    reach = max(draw_variation(polar, shot, field) for polar, shot in zip(polars, shots))
-    for polar in polars:
-        polar.set_ylim(0, 1.05 * reach)
-    figure.colorbar(ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
+    style.plt.setp(polars, ylim=(0, 1.05 * reach))
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=figure.add_subplot(grid[1, len(shots) // 2]),
                     orientation="horizontal", label=field_label(runs, field, pattern))
     return figure
 
 
-def draw_variation(axis, shot, field):
-    """Draws the variation of a field along the section, and returns the largest."""
-    angle, variation = section_variation(shot, field)
-    axis.plot(numpy.append(angle, angle[0] + 2 * numpy.pi), numpy.append(variation, variation[0]),
-              color=style.RUNS[0], linewidth=1)
-    axis.set_xticks(numpy.radians([0, 90, 180, 270]), ["x₁", "x₃", "", ""])
-    axis.set_rlabel_position(55)
-    axis.tick_params(labelsize=7.5)
-    axis.set_title(f"|d {field}/dl| on the section x₂ = 0, l in R$_C$", fontsize=8.5, loc="center")
-    log.info(f"{shot.path}: largest variation {variation.max():.3g}")
-    return max(variation.max(), 1e-12)
-
-
-@figure
+@figure()
 def animation(run, axes=None, *, field: str = "traction", view: tuple[float, float] = VIEW, rate: float = 8,
               width: int = 720, frame: float | None = None):
     """The particle in motion, as a GIF: its surface with the elements and a field, and series over time below.
@@ -111,8 +98,8 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     rate: frames per second
     width: of the animation, in pixels
     frame: draw one picture of this time instead"""
-    expect(width >= LEAST_WIDTH and rate > 0,
-           f"--width must be at least {LEAST_WIDTH} and --rate positive, but they are {width} and {rate:g}")
+    expect(width >= 100 and rate > 0,
+           f"--width must be at least 100 and --rate positive, but they are {width} and {rate:g}")
     shots = [shot.scaled(run) for shot in run.snapshots()]
     expect(shots, f"{run.directory} holds no snapshots")
     # one scale, one window and the same colours in all frames
@@ -125,27 +112,22 @@ def animation(run, axes=None, *, field: str = "traction", view: tuple[float, flo
     def show(shot):
         surface.clear()
         draw_surface(surface, shot, field, *colouring[:2], *view, pixels=width * 2 // 3, triad=False)
-        (left, low), (right, high) = window + directions[:2] @ middle(shot.frame)
-        room = 0.11 * (right - left)
-        draw_triad(surface, directions, numpy.array([left, right, low, high]))
+        low, high = window + directions[:2] @ middle(shot.frame)
+        draw_triad(surface, directions, low, high)
+        xlim, ylim = numpy.transpose([low, high]) + 0.11 * (high[0] - low[0]) * numpy.array([-1, 1])
         # of this saved step, the last one if none came after
         row = min(numpy.searchsorted(run.series["time"], shot.time * (1 - 1e-12)), len(run.time) - 1)
         title = f"{run.name}, t = {shot.time:.4g}: {run.series['n_control_points'][row]:.0f} control points"
-        surface.set(xlim=(left - room, right + room), ylim=(low - room, high + room), title=title)
+        surface.set(xlim=xlim, ylim=ylim, title=title)
         for name, mark in marks.items():
             mark.set_data([run.time[row]], [run.series[name][row]])
-        return list(marks.values())
 
     if frame is not None:
         show(run.snapshot_at(frame).scaled(run))
     else:
         figure.set_dpi(width / figure.get_figwidth())
-        figure.film = FuncAnimation(figure, show, frames=shots)
-        figure.film.rate = rate
+        figure.film = FuncAnimation(figure, show, frames=shots, interval=1000 / rate)
     return figure
-
-
-animation.output = "animation.gif"
 
 
 def arranged(axes, run, extent, field, norm, colours, pattern):
@@ -155,7 +137,7 @@ def arranged(axes, run, extent, field, norm, colours, pattern):
     height = figure.get_figheight()
     surface = figure.add_axes([0.02, 2.75 / height, 0.84, 1 - 3.1 / height])
     bar = figure.add_axes([0.88, 2.9 / height, 0.018, max(0.15, 1 - 3.9 / height)])
-    figure.colorbar(ScalarMappable(norm, colours), cax=bar, label=run.label(field, pattern))
+    figure.colorbar(style.plt.cm.ScalarMappable(norm, colours), cax=bar, label=run.label(field, pattern))
     upper = figure.add_axes([0.11, 1.55 / height, 0.75, 0.95 / height])
     return figure, surface, (upper, figure.add_axes([0.11, 0.5 / height, 0.75, 0.75 / height], sharex=upper))
 

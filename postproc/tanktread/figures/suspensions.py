@@ -1,15 +1,18 @@
-"""Figures of suspensions: stress, viscosity, and drift over many turns."""
+"""Figures of particles beside each other and beside a wall, of suspensions, and of the drift over many turns."""
 
 import pathlib
 
 import numpy
 
+from ..files import table
 from ..interpolation import averages_between
 from ..mistakes import expect, log
 from ..results import time_label
 from ..runs import Study
+from ..snapshots import evenly
 from ..studies.sweep import Sweep
 from . import style
+from .draw import draw_pieces, section
 from .register import figure
 
 SYMBOLS = {"relative_viscosity": "μ_eff/μ", "normal_stress_difference_1": "N₁", "normal_stress_difference_2": "N₂"}
@@ -18,13 +21,96 @@ DRIFTS = {"area": "area / its first value − 1", "volume_error": "V / V$_0$ −
 CA = "Particles/capsule/Membrane/capillary number"
 
 
-@figure
-def rheology(runs, axes=None):
+@figure(3, 1, 6.4, 8, sharex=True)
+def encounter(runs, path, gap, deformation, *, pair: tuple[str, str] | None = None, curve: pathlib.Path | None = None):
+    """Two particles that meet: the path of one past the other, the smallest gap, and how they deform.
+
+    Drawn against dx; dx, dz are x1 and x3 of the first centroid less those of the second one, over R_C.
+
+    pair: names of the two particles (default: the first two)
+    curve: a path of the literature, a CSV file with columns dx, dz over R_C"""
+    for run, color in style.coloured(runs):
+        names = pair or run.particles[:2]
+        expect(len(names) == 2, f"{run.directory}: an encounter is of two particles, and this run has one")
+        dx, dz = (numpy.subtract(*[run.of(name, f"centroid_x{k}") for name in names]) / run.radius for k in (1, 3))
+        path.plot(dx, dz, color=color, label=run.name)
+        smallest = run.series["smallest_gap"] / run.radius
+        gap.plot(dx, smallest, color=color)
+        for name, line in zip(names, ("-", style.DASHES)):
+            if f"{name}/taylor_inertia" in run.series:  # it is not rigid
+                label = name if run is runs[0] else None
+                deformation.plot(dx, run.of(name, "taylor_inertia"), color=color, linestyle=line, label=label)
+        least = numpy.argmin(smallest)
+        log.info(f"{run.name}: smallest gap {smallest[least]:.5f} R_C at dx = {dx[least]:.3f}, "
+                 f"largest dz {dz.max():.5f}")
+    if curve:
+        path.plot(*table(curve).T[:2], style.MARKS[0], color=style.FAINT, markersize=3.5, label="literature")
+    style.finish(path, ylabel="dz / R$_C$")
+    gap.set(ylabel="smallest gap / R$_C$", ylim=(0, None))
+    deformation.set(xlabel="dx / R$_C$", ylabel="D")
+    if deformation.lines:
+        deformation.legend()
+
+
+@figure()
+def plane_wall(runs, axes=None, *, times: int = 5, curve: pathlib.Path | None = None):
+    """Particles beside a plane wall: sections at several times, the gap, and the centroid's velocity along and away.
+
+    times: number of times that are drawn
+    curve: a gap over time to draw beside the first one, a CSV file in the units of the figure"""
+    figure = style.canvas(axes, 7.2, 2.6 * len(runs) + 2.8)
+    grid = figure.add_gridspec(len(runs) + 1, 2, height_ratios=[1] * len(runs) + [1.1])
+    gap, speed = (figure.add_subplot(grid[-1, k]) for k in (0, 1))
+    for k, (run, color) in enumerate(style.coloured(runs)):
+        film = run.series["gap"] / run.radius
+        sections(figure.add_subplot(grid[k, :]), run, times)
+        gap.plot(run.time, film, color=color, label=run.name)
+        velocity = numpy.array([run.series[f"velocity_x{i}"] for i in (1, 2, 3)]) / run.scale("velocity")[0]
+        away, along = (direction @ velocity for direction in wall(run)[1:])
+        speed.plot(run.time, away, color=color, label=None if k else "away")
+        speed.plot(run.time, along, color=color, linestyle=style.DASHES, label=None if k else "along")
+        log.info(f"{run.name}: gap from {film[0]:.6g} to {film[-1]:.6g} R_C; "
+                 f"velocity away from the wall {away[-1]:.5g}, along it {along[-1]:.5g}")
+    if curve:
+        gap.plot(*table(curve).T[:2], style.MARKS[0], color=style.INK, markersize=3, label="exact")
+    speed.axhline(0, color=style.FAINT, linewidth=0.8)
+    style.finish(gap, yscale="log", xlabel=time_label(runs), ylabel="gap / R$_C$")
+    style.finish(speed, xlabel=time_label(runs), ylabel=runs[0].label("velocity", "centroid's {}"))
+    return figure
+
+
+def wall(run):
+    """Returns a point of the wall, its unit normal, and the direction along it: x1, or x3 if the normal is x1; (3,)."""
+    expect(run.value("Wall/normal"), f"{run.directory}: its deck has no plane Wall")
+    point, normal = (numpy.array(run.value(f"Wall/{key}"), float) for key in ("point", "normal"))
+    normal /= numpy.linalg.norm(normal)
+    along = numpy.eye(3)[2 if abs(normal[0]) > 0.9 else 0]
+    along -= along @ normal * normal
+    return point, normal, along / numpy.linalg.norm(along)
+
+
+def sections(axis, run, moments):
+    """Draws sections of the snapshots through their middle, in the plane of the normal and along the wall."""
+    point, normal, along = wall(run)
+    across = numpy.argmin(abs(normal) + abs(along))
+    point, along, normal = numpy.delete([point, along, normal], across, axis=1)  # in the plane of the sections
+    for shot, colour in style.shaded(evenly(run.snapshots(), moments), 0.15, 0.95):
+        pieces = section(shot, shot.points[:, across].mean(), across) - point
+        draw_pieces(axis, pieces @ numpy.transpose([along, normal]) / run.radius, colour, ends="butt")
+        axis.plot([], [], color=colour, label=f"{shot.time * run.rate[0]:.3g}")
+    axis.axhspan(-0.15, 0, color=style.FAINT, alpha=0.5, linewidth=0)
+    axis.autoscale_view()
+    axis.set(ylim=(-0.15, None), aspect="equal", title=f"{run.name}: section across the wall at several times",
+             xlabel="along the wall / R$_C$", ylabel="above it / R$_C$")
+    axis.legend(ncols=2, fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
+
+
+@figure(2, 1, 6.4, 6.4, sharex=True)
+def rheology(runs, upper, lower):
     """Intrinsic viscosity and normal stress differences of a dilute suspension in simple shear, over time.
 
     [η] = S_13/(μ γ̇ V), N1 = (S_11 − S_33)/(μ γ̇ V), N2 = (S_33 − S_22)/(μ γ̇ V) from the stresslet S, per volume of
     particles in a volume of suspension; flow along x1, its gradient along x3. A rigid sphere has [η] = 5/2."""
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in style.coloured(runs):
         viscosity, n1, n2 = stresses(run)
         upper.plot(run.time, viscosity, color=color, label=run.name)
@@ -34,7 +120,6 @@ def rheology(runs, axes=None):
     style.finish(upper, ylabel="intrinsic viscosity [η]")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     style.finish(lower, ylabel="normal stress differences / (μ γ̇ φ)", xlabel=time_label(runs))
-    return figure
 
 
 def stresses(run):
@@ -47,8 +132,8 @@ def stresses(run):
     return s13, s11 - s33, s33 - s22
 
 
-@figure
-def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
+@figure(2, 1, 6.4, 6.4, sharex=True)
+def suspension(runs, upper, lower, *, from_: float = 1, blocks: int = 8):
     """Effective viscosity and normal stress differences of a lattice of particles over strain, with their averages.
 
     Averages have a standard error by blocks: the spread of the means of equal parts of the strain, over the root of
@@ -56,22 +141,19 @@ def suspension(runs, axes=None, *, from_: float = 1, blocks: int = 8):
 
     from_: strain at which averages begin
     blocks: number of parts of an average"""
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 6.4, sharex=True)
     for run, color in style.coloured(runs):
         strain, words, label = run.time, [], f"{run.name}, φ = {run.series['volume_fraction'][0]:.3g}"
         for (name, symbol), axis, line in zip(SYMBOLS.items(), (upper, lower, lower), ("-", "-", "--")):
             axis.plot(strain, run.series[name], color=color, linestyle=line,
                       label=label if axis is upper else symbol if run is runs[0] else None)
             mean, error = average(strain, run.series[name], from_, blocks)
-            if numpy.isfinite(mean):
-                axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
+            axis.plot([from_, strain[-1]], [mean, mean], color=color, linewidth=0.8, linestyle=":")
             words.append(f"{symbol} = {mean:.5f} ± {error:.5f}")
         log.info(f"{run.name}, strain {from_:g} to {strain[-1]:g}: {', '.join(words)}")
     style.finish(upper, ylabel="effective viscosity μ_eff/μ")
     lower.axhline(0, color=style.FAINT, linewidth=0.8)
     stress = runs[0].unit(runs[0].units["normal_stress_difference_1"])
     style.finish(lower, ylabel="normal stress differences" + stress, xlabel="strain")
-    return figure
 
 
 def average(strain, values, first, blocks):
@@ -83,8 +165,8 @@ def average(strain, values, first, blocks):
     return means.mean(), means.std(ddof=1) / numpy.sqrt(blocks)
 
 
-@figure
-def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
+@figure(2, 1, 6.4, 7.2, sharex=True)
+def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.yaml", from_: float = 4, blocks: int = 4,
               jobs: int = 1):
     """Relative viscosity of a sheared suspension against its volume fraction, with standard errors by blocks.
 
@@ -97,7 +179,6 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
     blocks: number of parts of an average
     jobs: runs at a time"""
     directory = pathlib.Path("results") / pathlib.Path(study).stem
-    directory.mkdir(parents=True, exist_ok=True)
     made = Study(directory=directory / "runs", jobs=jobs)
     runs = Sweep(study, made)
     expect(all(CA in row for row in runs.rows), f"{study} varies or sets no {CA}")
@@ -108,7 +189,6 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
         if row := averages(outcome, from_, blocks):
             rows.setdefault(settings[CA], []).append(row)
     expect(rows, f"none of the runs of {study} went beyond --from {from_:g}; the first one: {runs.outcomes[0].message}")
-    figure, (upper, lower) = style.panels(axes, 2, 1, 6.4, 7.2, sharex=True)
     deck = next(one for one in runs.outcomes if one.done).run.deck
     alike = {"Time/final time": deck["Time"]["final time"],
              "Surface/elements per side": deck["Particles"]["capsule"]["Surface"]["elements per side"]}
@@ -130,7 +210,6 @@ def viscosity(study, axes=None, *, single: str = "inputs/shear_neo_hookean.yaml"
                      f"one capsule: {alone:.4f}")
     style.finish(upper, ylabel="relative viscosity μ_eff/μ")
     lower.set(ylabel="(μ_eff/μ − 1)/φ; at 0: one capsule", xlabel="volume fraction φ", xlim=(-0.005, None))
-    return figure
 
 
 def averages(outcome, first, blocks):
@@ -148,8 +227,8 @@ def averages(outcome, first, blocks):
     return fraction, *average(strain, series["relative_viscosity"], first, blocks)
 
 
-@figure
-def drift(run, axes=None, *, from_: int = 10):
+@figure(len(DRIFTS), 1, 6.4, 7.6, sharex=True)
+def drift(run, *axes, from_: int = 10):
     """Whether a run over many turns of a membrane drifts: series against the turns, and the mean of each turn.
 
     A turn is one of `phase`. A straight line through the means gives the change over all turns from --from on, with its
@@ -163,7 +242,6 @@ def drift(run, axes=None, *, from_: int = 10):
     made = phase[-1] / 360
     expect(made >= from_ + 3, f"{run.directory} has {max(made, 0):.1f} turns; a line from turn {from_} on needs "
                               f"{from_ + 3}: a later Time/final time, or --from an earlier one")
-    figure, axes = style.panels(axes, len(DRIFTS), 1, 6.4, 7.6, sharex=True)
     log.info(f"{made:.1f} turns, {len(time)} steps; "
              f"the largest error of the volume {numpy.abs(run.series['volume_error']).max():.2g}")
     for (name, label), axis in zip(DRIFTS.items(), axes):
@@ -183,7 +261,6 @@ def drift(run, axes=None, *, from_: int = 10):
     if len(energy) > 1:
         log.info(f"without flow the energy goes from {energy[0]:.6g} to {energy[-1]:.6g} in {len(energy)} steps; "
                  f"it rises in {(numpy.diff(energy) > 0).sum()}")
-    return figure
 
 
 def turns(time, values, phase):

@@ -3,8 +3,6 @@
 from typing import Literal
 
 import numpy
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 
 from ..files import arrays_of
 from ..mistakes import expect
@@ -21,8 +19,8 @@ PANELS = {"migration_velocity": "migration velocity / vₘ", "velocity_x1": "vel
 ACROSS, UP = "x₂ / R$_T$", "x₃ / R$_T$"  # labels of axes
 
 
-@figure
-def duct(runs, axes=None):
+@figure(lambda runs: (1, len(runs), 3.9 * len(runs) + 0.9, 4.0))
+def duct(runs, *axes):
     """The section of the tube with the velocity of the empty tube, and the path of the particle's centroid across
     it."""
     ducts = [duct_of(run) for run in runs]
@@ -31,7 +29,6 @@ def duct(runs, axes=None):
     margin = 0.02 * numpy.ptp(outlines, axis=0).max()
     low, high = outlines.min(0) - margin, outlines.max(0) + margin  # of every panel: one scale
     levels = numpy.append(numpy.arange(0, max(largest), STEP), max(largest))
-    figure, axes = style.panels(axes, 1, len(ducts), 3.9 * len(ducts) + 0.9, 4.0)
     for axis, d, run, most in zip(axes, ducts, runs, largest):
         filled = draw_section(axis, d, levels)
         if "centroid_x2" in run.series:
@@ -40,18 +37,15 @@ def duct(runs, axes=None):
         axis.set_title(f"{run.name}: largest {most:.4f}", pad=10)
     axes[0].set_ylabel(UP)
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, handlelength=1.5)
-    figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
-                    ticks=levels[:-1:2], spacing="proportional")
-    return figure
+    axes[0].figure.colorbar(filled, ax=list(axes), label="velocity of the empty tube over its mean", shrink=0.8,
+                            ticks=levels[:-1:2], spacing="proportional")
 
 
 def duct_of(run):
     """Returns the arrays of duct.h5 by name, lengths over R_T, and the `radius` R_T."""
     arrays = arrays_of(run.directory / "duct.h5")
-    for name in "outline", "x2", "x3":
-        arrays[name] = arrays[name] / arrays["radius"]
     arrays["maximum"][:2] /= arrays["radius"]
-    return arrays
+    return arrays | {name: arrays[name] / arrays["radius"] for name in ("outline", "x2", "x3")}
 
 
 def draw_section(axis, d, levels):
@@ -81,78 +75,67 @@ def draw_path(axis, run, d, color, size, **pen):
     return path
 
 
-@figure
+@figure()
 def tube(runs, axes=None, *, times: list[float] = TIMES):
     """Particles in tubes: shapes over time in perspective and in two sections, one row per run.
 
     times: simulated times of the shapes"""
-    ducts = [duct_of(run) for run in runs]
     figure = style.canvas(axes, 11.5, 4.4 * len(runs))
-    for part, run, d in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs, ducts):
+    for part, run in zip(figure.subfigures(len(runs), 1, squeeze=False)[:, 0], runs):
+        d = duct_of(run)
         reached = [run.snapshot_at(time) for time in times if time <= run.series["time"][-1] * (1 + 1e-9)]
         expect(reached, f"{run.directory} ends before the first of these times")
         shots = list({shot.path: shot for shot in reached}.values())  # each once
         shaded = style.shaded(shots)
         upper, lower = part.subfigures(2, 1, height_ratios=[0.45, 0.55])
         largest = max(numpy.linalg.norm(shot.fields["traction"], axis=1).max() for shot in shots[1:] or shots)
-        norm, unit = Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
+        norm, unit = style.plt.Normalize(0, largest), run.value("Flow/viscosity", 1) * run.rate[0]
         row = numpy.atleast_1d(upper.subplots(1, len(shots)))
         for axis, (shot, colour) in zip(row, shaded):
             draw_surface(axis, shot, "traction", norm, style.FIELD, *VIEW, pixels=360, triad=shot is shots[0])
             axis.set_title(f"t = {shot.time:.3g}", color=colour, loc="center")
         share_window(row)
         part.suptitle(run.name, x=0.01, ha="left", fontsize=11, fontweight="bold")
-        left, right = lower.subplots(1, 2, width_ratios=[2.1, 1])
-        draw_along(left, run, d, shaded)
-        draw_across(right, run, d, shaded)
-        upper.colorbar(ScalarMappable(Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
+        draw_tube_sections(run, d, shaded, *lower.subplots(1, 2, width_ratios=[2.1, 1]))
+        upper.colorbar(style.plt.cm.ScalarMappable(style.plt.Normalize(0, norm.vmax / unit), style.FIELD), ax=row,
                        label="traction / (μ vₘ/R$_T$)", shrink=0.8)
     return figure
 
 
-def tube_section(run, d, shot, across):
-    """Returns the section (pieces, 2, 2) of the particle at x_{across+1} = centroid and the centroid (3,), over R_T."""
-    c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
-    return section(shot, c[across], across) / d["radius"], c / d["radius"]
-
-
-def draw_along(axis, run, d, shaded):
+def draw_tube_sections(run, d, shaded, along, across):
     """Draws sections in the plane x2 = centroid, side by side as the particle travels, each about its own centroid
-    along x1, and the wall's lowest and highest x3 on the line of the last centroid's x2."""
+    along x1, with the wall's lowest and highest x3 on the line of the last centroid's x2; and sections in the plane
+    x1 = centroid inside the wall. Lengths are divided by R_T."""
+    across.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
     place = 0.0
     for shot, colour in shaded:
-        pieces, c = tube_section(run, d, shot, 1)
-        draw_pieces(axis, pieces - [c[0] - place, 0], colour)
-        axis.plot(place, c[2], marker=".", color=colour, markersize=4)
+        c = numpy.array([numpy.interp(shot.time, run.series["time"], run.series[f"centroid_x{k}"]) for k in (1, 2, 3)])
+        side, front = section(shot, c[1], 1) / d["radius"], section(shot, c[0], 0) / d["radius"]
+        c /= d["radius"]
+        draw_pieces(across, front, colour)
+        draw_pieces(along, side - [c[0] - place, 0], colour)
+        along.plot(place, c[2], marker=".", color=colour, markersize=4)
         place += numpy.ptp(shot.points[:, 0]) / d["radius"] + 0.12
     a, b = d["outline"][:-1], d["outline"][1:]
     met = (a[:, 0] - c[1]) * (b[:, 0] - c[1]) <= 0
     (x, height), (dx, rise) = a[met].T, (b - a)[met].T
     heights = height + (c[1] - x) / numpy.where(dx == 0, 1, dx) * rise
     for wall in heights.min(), heights.max():
-        axis.axhline(wall, color=style.INK, linewidth=1.4)
-    axis.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
-    axis.autoscale_view()
-    axis.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
-    axis.grid(False)
+        along.axhline(wall, color=style.INK, linewidth=1.4)
+    along.axhline(0, color=style.FAINT, linewidth=0.8, linestyle=(0, (6, 4)))
+    along.autoscale_view()
+    along.set(aspect="equal", xticks=[], xlabel="x₁, flow to the right", ylabel=UP, title="section x₂ = centroid")
+    across.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
+    across.set(aspect="equal", xlabel=ACROSS, ylabel=UP, title="section x₁ = centroid")
+    for axis in along, across:
+        axis.grid(False)
 
 
-def draw_across(axis, run, d, shaded):
-    """Draws sections in the plane x1 = centroid inside the wall."""
-    axis.plot(*d["outline"].T, color=style.INK, linewidth=1.4)
-    for shot, colour in shaded:
-        draw_pieces(axis, tube_section(run, d, shot, 0)[0], colour)
-    axis.plot(*d["maximum"][:2], marker="+", color=style.INK, markersize=8)
-    axis.set(aspect="equal", xlabel=ACROSS, ylabel=UP, title="section x₁ = centroid")
-    axis.grid(False)
-
-
-@figure
-def tube_motion(runs, axes=None):
+@figure(2, 3, 12.5, 6.6)
+def tube_motion(runs, paths, distance, *others):
     """How particles move in tubes: path across the tube, migration, velocity, tank-treading and pressure drop."""
-    ducts = [duct_of(run) for run in runs]
-    figure, (paths, distance, *others) = style.panels(axes, 2, 3, 12.5, 6.6)
-    for (run, colour), d in zip(style.coloured(runs), ducts):
+    for run, colour in style.coloured(runs):
+        d = duct_of(run)
         speed, maximum = d["mean_velocity"], d["maximum"][:2]
         paths.plot(*d["outline"].T, color=colour, linewidth=1)
         path = draw_path(paths, run, d, colour, 3.5, label=run.name)
@@ -163,16 +146,14 @@ def tube_motion(runs, axes=None):
             scale = run.value("Flow/viscosity", 1) * speed / d["radius"] if "pressure" in name else speed
             axis.plot(run.time[1:], run.series[name][1:] / scale, color=colour)
             axis.set(title=label, xlabel="t vₘ / R$_T$")
-    for axis in others:
-        axis.set_xlim(left=0)
+    style.plt.setp(others, xlim=(0, None))
     paths.set(aspect="equal", title="paths of the centroid; + largest velocity", xlabel=ACROSS, ylabel=UP)
     paths.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
     distance.set(ylim=(FLOOR, None), title="distance from the largest velocity / R$_T$", xlabel="t vₘ / R$_T$")
-    return figure
 
 
-@figure
-def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
+@figure(5, 1, 10.5, 9.5, mosaic="AA;BC;DE", height_ratios=[1.1, 1, 1])
+def channel(run, cut, extents, velocity, pressure, wall, *, shapes: int = 7, across: Literal[2, 3] = 2):
     """A channel cut open with its particle at several times; extents, velocity and pressure drop along the way.
 
     Also the wall's shear stress and the velocity on the centre line of the empty channel.
@@ -180,20 +161,26 @@ def channel(run, axes=None, *, shapes: int = 7, across: Literal[2, 3] = 2):
     shapes: number of times, evenly along the particle's way
     across: the section x2 = 0 or x3 = 0 is drawn, of a bend x3 = 0"""
     c = arrays_of(run.directory / "channel.h5")  # centre (n, 3), s (n,), wall (4, n, 3) and others
-    if axes is None or hasattr(axes, "add_subplot"):
-        figure = style.canvas(axes, 10.5, 9.5)
-        panels = figure.subplot_mosaic([["cut", "cut"], ["extents", "velocity"], ["pressure", "wall"]],
-                                       height_ratios=[1.1, 1, 1])
-    else:
-        figure, axes = style.panels(axes, 5, 1, 10.5, 9.5)
-        panels = dict(zip(("cut", "extents", "velocity", "pressure", "wall"), axes))
-    way = way_along(run, c)
-    cut_open(panels["cut"], run, c, way, shapes, across - 1)
-    along_the_way(panels, run, c, way)
-    panels["wall"].plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
-    panels["wall"].set(xlabel="arc length along the centre line" + run.in_units("length"),
-                       title="shear stress on the wall of the empty channel" + run.in_units("force/length^2"))
-    return figure
+    s, way = run.series, way_along(run, c)
+    cut_open(cut, run, c, way, shapes, across - 1)
+    label = "arc length of the centroid along the centre line" + run.in_units("length")
+    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
+        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
+    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
+    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
+    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
+    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
+                  label="on the centre line, empty channel")
+    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
+    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
+    if "pressure_drop_by_flux" in s:
+        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
+    stress = run.in_units("force/length^2")
+    style.finish(pressure, xlabel=label,
+                 title=f"pressure drop that the particle adds{stress} (empty channel: {c['pressure_drop']:.5g})")
+    wall.plot(c["wall_s"], c["wall_shear_stress"], color=style.RUNS[2])
+    wall.set(xlabel="arc length along the centre line" + run.in_units("length"),
+             title="shear stress on the wall of the empty channel" + stress)
 
 
 def way_along(run, c):
@@ -222,27 +209,8 @@ def cut_open(axis, run, c, way, n, across):
             axis.text(*at, f"{shot.time:.3g}", color=colour, ha="center", va="center" if bent else "bottom", fontsize=8)
     axis.grid(False)
     shown = lines[:, (c["s"] > way.min() - reach) & (c["s"] < way.max() + reach)].reshape(-1, 3)
-    axis.set(aspect="equal", xlim=(shown[:, 0].min(), shown[:, 0].max() + (0.1 if bent else 0)),
+    low, high = shown.min(0), shown.max(0) + (0.1 if bent else 0)
+    axis.set(aspect="equal", xlim=(low[0], high[0]), ylim=(low[1] - 0.1, high[1]) if bent else (None, None),
              xlabel="x₁" + run.in_units("length"), ylabel=style.AXES[up] + run.in_units("length"),
              title=f"{run.name}: cut open at x{across + 1} = centroid; times "
                    f"{'inside' if bent else 'below'}{run.in_units('time')}")
-    if bent:
-        axis.set_ylim(shown[:, 1].min() - 0.1, shown[:, 1].max() + 0.1)
-
-
-def along_the_way(panels, run, c, way):
-    s, label = run.series, "arc length of the centroid along the centre line" + run.in_units("length")
-    extents, velocity, pressure = panels["extents"], panels["velocity"], panels["pressure"]
-    for k, name, color, line in zip((1, 2, 3), style.AXES, style.RUNS, ("-", "-", "--")):
-        extents.plot(way, s[f"length_x{k}"], color=color, linestyle=line, label=f"along {name}")
-    style.finish(extents, xlabel=label, title="extents of the particle" + run.in_units("length"))
-    speed = numpy.linalg.norm([s[f"velocity_x{k}"] for k in (1, 2, 3)], axis=0)
-    velocity.plot(way, speed, color=style.RUNS[0], label="of the centroid")
-    velocity.plot(c["s"], numpy.linalg.norm(c["velocity"], axis=1), color=style.FAINT, linestyle="--",
-                  label="on the centre line, empty channel")
-    style.finish(velocity, xlim=(way.min(), way.max()), xlabel=label, title="velocity" + run.in_units("length/time"))
-    pressure.plot(way, s["disturbed_pressure_drop"], color=style.RUNS[0], label="reciprocal theorem")
-    if "pressure_drop_by_flux" in s:
-        pressure.plot(way, s["pressure_drop_by_flux"], color=style.RUNS[1], linestyle=":", label="by the flow rate")
-    style.finish(pressure, xlabel=label, title=f"pressure drop that the particle adds{run.in_units('force/length^2')} "
-                                               f"(empty channel: {c['pressure_drop']:.5g})")
