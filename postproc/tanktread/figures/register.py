@@ -93,10 +93,10 @@ def parser_of(name, program="tanktread-figure"):
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
                             help="a key of the deck (repeatable)")
     for option in options:
-        told = "" if option.default in (None, False) else f" (default: {option.default})"
+        told = "" if isinstance(option.default, bool | None) else f" (default: {option.default})"
         parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), **(
             {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told}
-            | _parsed_as(hints[option.name])))
+            | ({"action": argparse.BooleanOptionalAction} if option.default is True else _parsed_as(hints[option.name]))))
     return parser
 
 

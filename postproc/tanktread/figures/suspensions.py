@@ -204,7 +204,7 @@ def viscosity(study, upper, lower, *, single: str = "inputs/shear_neo_hookean.ya
         lower.errorbar(fraction, slope, error / fraction, **look)
         lower.plot(0, alone, "D", color=color, markersize=5, markerfacecolor="none", clip_on=False)
         log.info(f"Ca = {ca:g}: " + ", ".join(f"{m:.4f} ± {e:.4f} at {f:.3g}" for f, m, e in sorted(found)))
-        if len(fraction) > 2:
+        if len(fraction) > 2 and numpy.all((error > 0) & numpy.isfinite(error)):
             (_, limit), covariance = numpy.polyfit(fraction, slope, 1, w=fraction / error, cov="unscaled")
             log.info(f"  per volume fraction, extrapolated to 0: {limit:.3f} ± {covariance[1, 1] ** 0.5:.3f}; "
                      f"one capsule: {alone:.4f}")
