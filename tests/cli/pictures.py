@@ -13,7 +13,7 @@ from harness import PROGRAM, SOURCE, check, close, deck, main, package, run
 sys.path.append(str(SOURCE / "postproc"))
 import tanktread
 from tanktread import figures
-from tanktread.figures import draw, render
+from tanktread.figures import draw, register, render
 from tanktread.figures.series import unbroken
 from tanktread.interpolation import difference
 
@@ -52,6 +52,13 @@ def a_run_is_drawn():
     check("taylor_inertia" in _command("read", "results"), "tanktread-read does not list the series")
     said = _command("shape", "results", "--field", "colour", code=2)
     check("colour" in said and "load" in said, said)
+
+
+def options_are_read_as_what_they_choose_from():
+    """A number of a few is one of these numbers, and what is done by default can be switched off."""
+    of = lambda name, *words: register.parser_of(name).parse_args(["results", *words])
+    check(of("channel", "--across", "3").across == 3, "the section across a channel")
+    check(of("work").parts and not of("work", "--no-parts").parts, "the parts of the error")
 
 
 def axis_and_label_of_time_agree():
