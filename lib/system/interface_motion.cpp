@@ -89,7 +89,7 @@ Net rotated(const Vec3& rotation, const Net& y) { return -y.rowwise().cross(rota
 
 /// Returns the weight g (4.14) of an axis, divided by m. m is about 1.6 D^2, with the Taylor parameter D in the plane normal to the axis.
 double weight_of_axis(double m) {
-  constexpr double elongated = 0.06;  // D = 20 %: the mesh of such a drop turns with its shape
+  constexpr double elongated = 0.02;  // m at D = 11 %: the mesh of a drop that is longer turns with its shape
   const double along = m / elongated;
   return along < 1 ? along * (3 - 2 * along) / elongated : 1 / m;
 }
