@@ -95,8 +95,8 @@ def parser_of(name, program="tanktread-figure"):
     for option in options:
         told = "" if isinstance(option.default, bool | None) else f" (default: {option.default})"
         kind = {"action": argparse.BooleanOptionalAction} if option.default is True else _parsed_as(hints[option.name])
-        parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), dest=option.name,
-                            default=option.default, help=texts.get(option.name, "") + told, **kind)
+        parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), **(
+            {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told} | kind))
     return parser
 
 
