@@ -21,8 +21,8 @@ void Options::declare(deck::Section& section) {
               "the boundary integrals at four points per element. Available for deformable particles, also together with rigid bodies, "
               "except for a registered flow whose gradient is not uniform, and for `parabolic` flow in a Domain without two plates");
   section.key("surface text", surface_text,
-              "whether the final surface is written in Bezier-extraction format to the file `surface.iga`, which Particle/file reads if it is that of "
-              "one particle");
+              "whether the final surface is written in Bezier-extraction format to the file `surface.iga`, which Particle/file reads if it is that "
+              "of one particle");
 }
 
 }  // namespace tanktread::output

@@ -94,9 +94,9 @@ def parser_of(name, program="tanktread-figure"):
                             help="a key of the deck (repeatable)")
     for option in options:
         told = "" if isinstance(option.default, bool | None) else f" (default: {option.default})"
+        kind = {"action": argparse.BooleanOptionalAction} if option.default is True else _parsed_as(hints[option.name])
         parser.add_argument("--" + option.name.replace("_", "-").removesuffix("-"), **(
-            {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told}
-            | ({"action": argparse.BooleanOptionalAction} if option.default is True else _parsed_as(hints[option.name]))))
+            {"dest": option.name, "default": option.default, "help": texts.get(option.name, "") + told} | kind))
     return parser
 
 
