@@ -62,8 +62,8 @@ class SteadyRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Computes the shape to examine: the periodic or steady shape that the deck requests, searched from the initial shape, otherwise the initial shape
-  /// itself.
+  /// Computes and records the periodic or steady shape that the deck requests, starting from the initial shape. If the deck requests neither, records
+  /// the initial shape.
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
@@ -83,15 +83,15 @@ class SteadyRun {
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
-  /// Finds the steady shape of a system by continuation from weaker flows, after the search from `start` has failed with the report `failed` and the
-  /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not reach
-  /// the full flow.
+  /// Finds the steady shape of the system `of` by continuation from weaker flows, after the search from `start` has failed with the report `failed`
+  /// and the best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not
+  /// reach the full flow.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
     if (!(of->scene.alone().front().speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;
-    std::shared_ptr<System> latest;  // system for the flow at the latest amplitude below 1
+    std::shared_ptr<System> latest;  // system for the latest flow with an amplitude below 1
     const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
       if (amplitude == 1) return {of, &*of->equations};
       Scene weaker = of->scene;
@@ -266,7 +266,7 @@ class SteadyRun {
       std::optional<motion::ReturnMap> of_parity;
       if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: a run conserves the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: time steps restore the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -290,7 +290,8 @@ class SteadyRun {
     return pairs;
   }
 
-  /// Returns the current system without symmetry reduction. Modes of another parity than the shape need the velocities of all points.
+  /// Returns the current system without symmetry reduction. Modes whose parity differs from the parity of the shape need the velocities of all
+  /// points.
   std::shared_ptr<System> whole() {
     if (system_->particle->body().symmetry.order() == 1)
       throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
