@@ -290,8 +290,7 @@ class SteadyRun {
     return pairs;
   }
 
-  /// Returns the current system without symmetry reduction. Modes whose parity differs from the parity of the shape need the velocities of all
-  /// points.
+  /// Returns the current system without symmetry reduction: if a mode has another parity than the shape, the velocities of all points are needed.
   std::shared_ptr<System> whole() {
     if (system_->particle->body().symmetry.order() == 1)
       throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");

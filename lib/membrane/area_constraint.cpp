@@ -70,8 +70,8 @@ void AreaConstraint::factor(double time) {
   system_.factorize(system);
 }
 
-/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3). y: one number per Gauss point. `time`: argument of factor(). D: gradient
-/// of the area conditions. m: mobility. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
+/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3). y: one value per Gauss point. `time`: argument of factor(). D: gradient of
+/// the area conditions, D' its transpose. m: mobility. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
 Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
   const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
   return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);

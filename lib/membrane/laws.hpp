@@ -136,7 +136,7 @@ struct AreaElasticity {
 
 /// Psi = G_s times a strain energy given by the user, with the shear modulus G_s.
 struct UserLaw {
-  double unit = 1;  ///< shear modulus G_s of the deck, the unit of the energy and its moduli
+  double unit = 1;  ///< shear modulus G_s of the deck, by which the given energy and its moduli are multiplied
   std::shared_ptr<const StrainEnergy> strain_energy;
 
   template <class Number>
@@ -203,9 +203,9 @@ struct SurfaceMetric {
   Number s, st, t;
 };
 
-/// Returns the squares of the principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the
-/// stretch tensor h in the orthonormal frame whose first axis is along X_,s. With this formula, stretches that should be equal are computed as equal
-/// to round-off.
+/// Returns the squares of the principal stretches from the unstressed surface (metric `before`) to the current surface (metric `now`), the larger
+/// first. They are the eigenvalues of the stretch tensor h in the orthonormal frame whose first axis is along X_,s, the tangent of the unstressed
+/// surface. If the two stretches are equal, this formula gives values that are equal to round-off.
 template <class Number>
 std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
   const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
@@ -224,10 +224,10 @@ struct SplitLaw {
   AreaElasticity area;
 };
 
-/// Returns Skalak's or Evans & Skalak's law as a sum of two laws; empty for all other laws.
+/// Returns Skalak's or Evans & Skalak's law as the sum of a shear law and an area elasticity; empty for all other laws.
 std::optional<SplitLaw> split(const Law& law);
 
-/// Returns the modulus by which reported tensions are divided: the shear modulus G_s, or the tension sigma of an interface. Force per length.
+/// Returns the modulus, force per length, by which reported tensions are divided: the shear modulus G_s, or the tension sigma of an interface.
 double modulus(const Law& law);
 
 /// Returns the area modulus K_s = dT/d(ln A) of an unstressed membrane (T: tension, A: area), 0 for an interface. Force per length.
@@ -269,7 +269,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points per direction for an area elasticity that is integrated separately; 0: the rule of the other terms
+  int area_order = 0;  ///< Gauss points per direction for an area elasticity that is integrated separately; 0: integrated with the other terms
 
   friend bool operator==(const Material&, const Material&) = default;
 };
