@@ -125,8 +125,8 @@ class SteadyRun {
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
   }
 
-  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening at the same point of a branch, because
-  /// refinement and coarsening could alternate forever.
+  /// Adapts the mesh to the shape. Returns whether the mesh has changed. If the mesh has been coarsened at the same point of a branch, does nothing,
+  /// because refinement and coarsening could alternate forever.
   bool adapt() {
     if (totals_.coarsenings > earlier_coarsenings_ || !system_->particle->adapt(state_, totals_)) return false;
     results_.remesh(system_->particle->body(), system_->particle->bezier());
@@ -185,8 +185,8 @@ class SteadyRun {
     results_.remesh(system_->particle->body(), system_->particle->bezier());
   }
 
-  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front. Throws
-  /// RunFailure if the deck does not allow the parameters, so that the computed points of the branch are kept.
+  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front. If the deck does
+  /// not allow the parameters, throws RunFailure instead of UserError, so that the points of the branch computed so far are kept.
   std::shared_ptr<System> system_at(const Parameters& parameters) try {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {
@@ -374,7 +374,7 @@ class SteadyRun {
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
-  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
+  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of a branch, last used first
   std::optional<output::Checkpoint> mesh_;                              // mesh of systems_; not set if it is the mesh of the deck
   Net rest_, unstressed_;                                               // resting and unstressed shapes of a branch on the mesh of the deck
   output::Entries<std::string> chosen_;

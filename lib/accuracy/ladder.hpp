@@ -35,8 +35,8 @@ struct Task {
   bool runs_in_time = true;  ///< false for searches for steady or periodic shapes, which cannot be resumed
 };
 
-/// Exit codes of runs on finer and finer levels: all requests are met; one is not met on the finest allowed level; the runs were stopped, by a signal
-/// or by the wall-clock limit, and can be resumed.
+/// Exit codes of climb(). met: all requests are met. missed: a request is not met and no finer level is allowed or would help, or an expectation is
+/// missed. stopped: the runs were stopped by a signal or by the wall-clock limit, and can be resumed.
 enum Code { met = 0, missed = 1, stopped = 4 };
 
 /// Name of the deck file in the directory of a ladder (runs of one deck on finer and finer levels).

@@ -1,5 +1,5 @@
 #pragma once
-// Named timers of the phases of a run, for the table that is printed at its end and for `seconds` of the summary.
+// Named timers of the phases of a run, for the table that is printed at the end of the run and for `seconds` in the summary.
 
 #include <chrono>
 #include <string>

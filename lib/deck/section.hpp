@@ -42,8 +42,8 @@ using Choice = std::vector<std::string>;
 /// throws UserError (path, rule, unit, given value). Document::declare also reports unknown keys, and suggests the closest key for each.
 class Section {
  public:
-  /// Declares a key with numbers. `Field`: double, int, Vec3, Mat3 (nine numbers row by row), or std::optional of one of these, of Eigen::Vector2d or
-  /// of std::vector<double> (any length).
+  /// Declares a key whose value is one number or several. `Field`: double, int, Vec3, Mat3 (nine numbers row by row) or std::optional of one of these
+  /// types; also std::optional of Eigen::Vector2d or std::vector<double> (any length).
   template <class Field>
   void key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning);
 

@@ -36,8 +36,8 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
 }
 
-// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by dI2 = 2 (J_s^2 g^ab)
-// (x,a . u,b). J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
+// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by 2 J_s^2 g^ab x_,a . u_,b,
+// where J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
 AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
   Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
   std::vector<Eigen::Triplet<double>> entries;

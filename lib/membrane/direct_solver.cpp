@@ -132,7 +132,7 @@ struct DirectSolver::Impl {
       for (auto column : all.colwise()) column = iterative->solve(column);
     } else if (inverse.size() == 0) {
       all = substituted(all);
-    } else if (all.cols() <= 3) {  // a loop over rows, because Eigen's product with few columns would copy the inverse first
+    } else if (all.cols() <= 3) {  // column by column, because Eigen's product with few columns would copy the inverse first
       for (auto column : all.colwise()) column = Eigen::VectorXd(inverse * column);
     } else {
       all = inverse * all;

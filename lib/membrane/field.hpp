@@ -69,8 +69,8 @@ class Field {
   /// Returns the gradient, with respect to the coefficients q, of a weighted sum of q that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns the values, at the state set last, of the columns of the time series that are registered with the field. snapshot() returns the fields
-  /// that are written to snapshots.
+  /// Returns, for the state set last, the values of the columns of the time series that are registered with the field. snapshot() returns the
+  /// quantities that the field writes to snapshots.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 
