@@ -129,8 +129,8 @@ bool portable(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') 
 
 std::string stem(const std::string& path) { return std::filesystem::path(path).stem(); }
 
-/// Returns the default name of the results directory: `<deck>_<overlay>_<key>=<value>`, with file names without extension and keys without their
-/// section. `_` replaces all characters except letters, digits and `.-=`. A name longer than 100 characters is cut and ends with a checksum of the
+/// Returns the default name of the results directory: `<deck>_<overlay>_<key>=<value>`, from file names without extensions and keys without their
+/// sections. `_` replaces all characters except letters, digits and `.-=`. A name longer than 100 characters is cut and ends with a checksum of the
 /// decks and settings.
 std::string default_name(const std::vector<std::string>& decks, const std::vector<std::string>& settings) {
   constexpr std::size_t longest = 100;
@@ -152,7 +152,7 @@ std::string default_name(const std::vector<std::string>& decks, const std::vecto
   return name.substr(0, longest - end.size()) + end;
 }
 
-/// Reads the deck of the checkpoint, `stored`, into `scene`. Throws UserError if the deck `now` changes a key that may not change on resumption.
+/// Reads `stored`, the deck of the checkpoint, into `scene`. Throws UserError if the deck `now` changes a key that may not change on resumption.
 void check_changes(const std::string& stored, const deck::Document& now, Scene& scene) {
   deck::Document before = deck::read_text(stored, "The stored deck");
   before.declare(scene);
@@ -163,8 +163,8 @@ void check_changes(const std::string& stored, const deck::Document& now, Scene& 
                       ", and now is " + value + ".");
 }
 
-/// Returns the path of a file or directory that a deck names. Tries the copy `kept` in the directory of a resumed run or in the folder `level_0` of a
-/// resumed ladder (Accuracy), the path relative to the working directory, and the path relative to each deck. If none exists, returns `name`.
+/// Returns the path of a file or directory that a deck names, or `name` if it does not exist. Looks for the copy `kept` in the directory of a resumed
+/// run (or in its folder `level_0`, if several Accuracy levels are resumed), then in the working directory, then in the directory of each deck.
 std::string found(const std::string& name, const std::filesystem::path& kept, const Arguments& arguments) {
   const std::filesystem::path path(name);
   std::vector<std::filesystem::path> places;
@@ -183,7 +183,7 @@ void find(std::string& file, const std::string& kept, const Arguments& arguments
   scene.files.emplace_back(file, kept);
 }
 
-/// Finds the files that the section of a particle names (shapes, positions of copies), and reads the shape.
+/// Finds the files (shapes, positions of copies) that the deck names in the section of a particle, and reads the shape.
 void find_shapes(ParticleKind& kind, const Arguments& arguments, Scene& scene) {
   surface::ParticleShape& shape = kind.particle.shape;
   if (kind.copies.file) find(*kind.copies.file, kept_places(kind), arguments, scene);
@@ -213,7 +213,7 @@ void prepare(deck::Document& deck, const Arguments& arguments, Scene& scene) {
   scene.check();
 }
 
-/// Reads and checks the scene of a deck given as text, with other values of keys (`settings`). Also reads the files that the deck names.
+/// Reads and checks the scene of a deck given as text, in which `settings` replace the values of keys. Also reads the files that the deck names.
 Scene scene_of(const std::string& text, const std::vector<std::string>& settings, const Arguments& arguments, const Registry& registry) {
   deck::Document deck = deck::read({}, settings, text);
   Scene scene(registry);
@@ -265,13 +265,13 @@ int climb(const Scene& scene, const deck::Document& deck, Arguments arguments, c
   return done;
 }
 
-/// Returns the deck with which a run in a directory began. Collective.
+/// Returns the deck with which the run in this directory was started. Collective.
 std::string deck_of_run(const std::string& directory) {
   const std::optional<std::string> ladder = accuracy::ladder_deck(directory);
   return ladder ? *ladder : stored_deck(directory);
 }
 
-/// Returns the text that the command-line options ask for independently of a deck, or nothing if they ask for none.
+/// Returns the text to print for an option that needs no deck (--reference, --schema, --new, ...), or nothing if no such option is given.
 std::optional<std::string> text_without_deck(const Arguments& arguments, const Registry& registry) {
   if (arguments.reference)
     return "# Every key of a deck\n\nPrinted by `tanktread --reference`. A path such as Flow/shear rate names the key `shear rate` of the "
@@ -338,7 +338,7 @@ std::string one_line(std::string text) {
   return deck::shortened(text, 1000);
 }
 
-/// Runs the program on one rank, and returns the exit code. Prints only if `speaks`, which is true on the first rank. `message` receives the error.
+/// Runs the program on one rank, and returns the exit code. Prints only if `speaks` is true, as on the first rank. `message` receives the error.
 int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::string& message) {
   const auto report = [speaks, &message](const char* text, int code) {
     message = one_line(text);
@@ -377,7 +377,7 @@ int guarded(int argc, char** argv, const Registry& registry, bool speaks, std::s
   }
 }
 
-/// Keeps freed memory for later steps and snapshots. If it were returned to the system, the system would clear it at the next allocation.
+/// Keeps freed memory for later steps and snapshots. Memory that returns to the operating system is cleared when it is allocated again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 25);

@@ -13,13 +13,14 @@ void catch_signals();
 /// Returns whether this process has received a stop signal.
 bool told_to_stop();
 
-/// Throws motion::Stopped on every rank if any rank has received a stop signal or is `too_late`. Collective.
+/// Throws motion::Stopped on every rank if any rank has received a stop signal or passes `too_late` = true (wall-clock limit exceeded). Collective.
 void stop_where_told(bool too_late = false);
 
 /// Reasons for which a run is stopped, as written to `status` of the summary.
 inline const std::string by_signal = "stopped: by a signal", by_clock = "stopped: at the wall-clock limit";
 
-/// Returns the reason for which all ranks have thrown motion::Stopped: the wall-clock limit if no rank has received a stop signal. Collective.
+/// Returns the reason why all ranks have thrown motion::Stopped: `by_signal` if any rank has received a stop signal, otherwise `by_clock`.
+/// Collective.
 std::string reason_of_stop();
 
 /// Returns a status without its colon, for use within a message.

@@ -27,8 +27,8 @@ namespace tanktread {
 
 namespace {
 
-/// Further values of `status` in the summary, if a run ends before its final time: `steady` because the shape is steady, `past` because all particles
-/// have passed the position `Time/end when past`.
+/// Values of `status` in the summary of a run that ends before its final time: `steady` if the shape has become steady, `past` if all particles have
+/// passed the position `Time/end when past`.
 const std::string steady = "steady", past = "past";
 
 /// Returns the options of the time integration. If steps do not end at snapshot times, they are at most as long as the time between two snapshots, so
@@ -121,7 +121,7 @@ class Run {
   }
 
   /// Makes one step and records its row. Returns the reason to end the run early, or an empty text. If a stop signal arrives within the step or the
-  /// step fails, discards the step. Throws RunFailure if it fails.
+  /// step fails, discards the step. Throws RunFailure if the step fails.
   std::string step() {
     const motion::State before = state_;
     const RunTotals totals = totals_;
@@ -146,7 +146,7 @@ class Run {
     return by_signal;
   }
 
-  /// Runs `act`. Returns the message if it fails on any rank, or an empty text if it succeeds or a stop signal interrupts it.
+  /// Runs `act`. Returns the error message if `act` fails on any rank, or an empty text if `act` succeeds or a stop signal interrupts it.
   std::string error_of(const std::function<void()>& act) {
     return coupling::failure_of_any([&] {
       try {
@@ -178,7 +178,7 @@ class Run {
     record();
   }
 
-  /// Adapts the mesh if the rule requires it. Then computes the velocity again, because the loads on the new mesh differ: steps that continued with
+  /// Adapts the mesh if the adaptation criterion requires it. Then computes the velocity again: the loads on the new mesh differ, and steps that used
   /// the velocity of the old mesh were ten times shorter.
   void adapt() {
     if (!particle_->adapt(state_, totals_)) return;
@@ -188,8 +188,8 @@ class Run {
     motion::begin(motion, state_);
   }
 
-  /// Makes a step of the time scheme, at most up to `limit`. If the step begins at a time where the motion is not smooth (a kink), the scheme starts
-  /// again there, and `before` becomes the state after the kink.
+  /// Makes a step of the time scheme that ends at the time `limit` or earlier. If the motion is not smooth at the start of the step (a kink), the
+  /// scheme restarts there, and `before` becomes the state after the kink.
   void integrate(double limit, motion::State& before) {
     motion::GuardedDynamics motion(particle_->dynamics(), told_to_stop);
     try {
@@ -217,7 +217,7 @@ class Run {
       Net frozen = std::move(state_.frozen);
       const double frozen_time = state_.frozen_time;
       state_ = before;
-      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // they belong to the old operator
+      if (state_.frozen.rows() != frozen.rows() || state_.frozen != frozen) state_.secants = {};  // the secants belong to the old operator
       state_.frozen = std::move(frozen), state_.frozen_time = frozen_time;
       state_.step = report_.step / 2;
     }
@@ -296,7 +296,7 @@ class Run {
     particle_->forget_recycled();
   }
 
-  /// Returns the snapshot that is due, at the end of the last step or at a time within it.
+  /// Evaluates and returns the snapshot that is due, at the end of the last step or at a time within the step.
   Results::Sampled sample() {
     const motion::State& pictured = pictured_ ? pictured_->state : state_;
     particle_->dynamics().at(pictured.time, began_);
@@ -308,7 +308,8 @@ class Run {
     if (!error.empty()) fail(error);
   }
 
-  /// Throws RunFailure if a particle is closer to the wall than `contact_gap`. `list` is the section of the wall in the deck.
+  /// Throws RunFailure if the gap between a particle and the wall is smaller than `contact_gap` times the least particle radius. `list` is the
+  /// section of the wall in the deck.
   void end_at_wall(const std::string& list, double contact_gap) {
     const double gap = row_.value("gap"), least = contact_gap * scene_.least_radius();
     if (gap >= least) return;
@@ -361,7 +362,7 @@ class Run {
   const Clock::time_point start_ = Clock::now();
   double earlier_wall_seconds_ = 0;  // wall time of the earlier parts of a resumed run
   Phases phases_ = started();
-  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // phase `set-up`: the time outside of all other phases
+  std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};  // timer of the phase `set-up`, later of `time stepping`
   coupling::Ranks ranks_;
   std::unique_ptr<ParticleSystem> particle_;
   Results results_;
@@ -372,7 +373,7 @@ class Run {
   RunTotals totals_;
   Columns row_;
   bool snapshot_due_ = false;
-  bool adapting_ = false;     // true if the latest step has begun to adapt the mesh, which must then be undone if the step fails
+  bool adapting_ = false;     // true if the latest step has begun to adapt the mesh. If the step fails, the adaptation is undone
   bool interrupted_ = false;  // true if a step was interrupted and discarded
   stokes::Evaluations earlier_kernel_;        // kernel evaluations of the earlier parts of a resumed run
   output::Entries<double> earlier_seconds_;

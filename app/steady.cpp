@@ -62,8 +62,8 @@ class SteadyRun {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Computes the shape to examine: the periodic or steady shape that the deck requests, searched from the initial shape, otherwise the initial shape
-  /// itself.
+  /// Computes and records the periodic or steady shape that the deck requests, starting from the initial shape. If the deck requests neither, records
+  /// the initial shape.
   void look() {
     if (scene_.periodic.present) return shoot();
     if (!scene_.steady.present) {
@@ -83,15 +83,15 @@ class SteadyRun {
       throw RunFailure(formatted("the steady shape was not found: after %d iterations the correction is %.2g", found.iterations, found.rest));
   }
 
-  /// Finds the steady shape of a system by continuation from weaker flows, after the search from `start` has failed with the report `failed` and the
-  /// best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not reach
-  /// the full flow.
+  /// Finds the steady shape of the system `of` by continuation from weaker flows, after the search from `start` has failed with the report `failed`
+  /// and the best iterate x. Returns `failed` and leaves x unchanged if the flow is zero or has a prescribed history, or if the continuation does not
+  /// reach the full flow.
   motion::SteadyReport approach(const std::shared_ptr<System>& of, const Net& start, Net& x, const motion::SteadyReport& failed) {
     if (!(of->scene.alone().front().speed() > 0) || of->scene.flow.history) return failed;
     output::Checkpoint mesh;
     of->particle->store(mesh);
     Net reached = start;
-    std::shared_ptr<System> latest;  // system for the flow at the latest amplitude below 1
+    std::shared_ptr<System> latest;  // system for the latest flow with an amplitude below 1
     const motion::Approach way = motion::approach_steady([&](double amplitude) -> std::shared_ptr<motion::SteadyEquations> {
       if (amplitude == 1) return {of, &*of->equations};
       Scene weaker = of->scene;
@@ -125,8 +125,8 @@ class SteadyRun {
       throw RunFailure(formatted("no periodic motion was found: after %d periods the residual is %.2g", found.iterations, found.rest));
   }
 
-  /// Adapts the mesh to the shape. Returns whether the mesh has changed. Does nothing after a coarsening at the same point of a branch, because
-  /// refinement and coarsening could alternate forever.
+  /// Adapts the mesh to the shape. Returns whether the mesh has changed. If the mesh has been coarsened at the same point of a branch, does nothing,
+  /// because refinement and coarsening could alternate forever.
   bool adapt() {
     if (totals_.coarsenings > earlier_coarsenings_ || !system_->particle->adapt(state_, totals_)) return false;
     results_.remesh(system_->particle->body(), system_->particle->bezier());
@@ -185,8 +185,8 @@ class SteadyRun {
     results_.remesh(system_->particle->body(), system_->particle->bezier());
   }
 
-  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front. Throws
-  /// RunFailure if the deck does not allow the parameters, so that the computed points of the branch are kept.
+  /// Returns the system for these parameters. Keeps the three systems used last in `systems_`, with the returned system in front. If the deck does
+  /// not allow the parameters, throws RunFailure instead of UserError, so that the points of the branch computed so far are kept.
   std::shared_ptr<System> system_at(const Parameters& parameters) try {
     const auto known = std::ranges::find(systems_, parameters, &std::pair<Parameters, std::shared_ptr<System>>::first);
     if (known != systems_.end()) {
@@ -266,7 +266,7 @@ class SteadyRun {
       std::optional<motion::ReturnMap> of_parity;
       if (system != system_) of_parity.emplace(*system->motion, time_, scene_.solvers.nox, scene_.periodic, state_.x);
       motion::ReturnMap& returns = of_parity ? *of_parity : *returns_;
-      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: a run conserves the volume
+      found_.modes = motion::recognised(*system->motion, shapes, state_.x, {}, exponents(returns, shapes));  // {}: time steps restore the volume
     } else {
       shapes.follow(*system->motion, state_.x);
       if (!options.shift) options.shift = system_->scene.rate();
@@ -290,7 +290,7 @@ class SteadyRun {
     return pairs;
   }
 
-  /// Returns the current system without symmetry reduction. Modes of another parity than the shape need the velocities of all points.
+  /// Returns the current system without symmetry reduction: if a mode has another parity than the shape, the velocities of all points are needed.
   std::shared_ptr<System> whole() {
     if (system_->particle->body().symmetry.order() == 1)
       throw UserError("Spectrum/parity needs a symmetric scene, and this one has no symmetry: remove the key.");
@@ -374,7 +374,7 @@ class SteadyRun {
   std::optional<Phases::Scope> clock_{std::in_place, phases_, "set-up"};
   coupling::Ranks ranks_;
   std::shared_ptr<System> system_;
-  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // systems of a branch by parameters, latest first
+  std::deque<std::pair<Parameters, std::shared_ptr<System>>> systems_;  // parameters and systems of a branch, last used first
   std::optional<output::Checkpoint> mesh_;                              // mesh of systems_; not set if it is the mesh of the deck
   Net rest_, unstressed_;                                               // resting and unstressed shapes of a branch on the mesh of the deck
   output::Entries<std::string> chosen_;

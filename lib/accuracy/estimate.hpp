@@ -6,13 +6,13 @@
 
 namespace tanktread::accuracy {
 
-/// An estimated error. Let d_l be the difference between the levels l and l - 1, and E_l the expected size of the error of level l up to a factor C
-/// that depends on the series, so that d_l is about C (E_(l-1) - E_l). The error of the finest level is
+/// Estimated error of a series on the finest level l. Let E_l be the expected error of level l up to a factor C that depends on the series. The
+/// difference d_l between the levels l and l - 1 is then about C (E_(l-1) - E_l), and the error of the finest level is
 ///
 ///   e_l = C_l E_l,   C_l = d_l/(E_(l-1) - E_l)                                                                      (9.1)
 ///
-/// Two alternatives are less accurate: the largest or the mean C of several levels in place of C_l, and e_l = d_l/(r - 1) with a ratio r fitted to
-/// the differences, because a difference may be small by chance.
+/// Two alternatives are less accurate: the largest or the mean C of several levels in place of C_l; and e_l = d_l/(r - 1) with a ratio r fitted to
+/// the differences, because a difference that is small by chance is taken for fast convergence.
 struct Estimate {
   double error = 0;       ///< estimated error of the finest level; NaN if it cannot be estimated
   double ratio = 0;       ///< observed ratio of the errors of the last two levels, (C_(l-1) E_(l-1))/(C_l E_l) with C and E of (9.1); NaN if it is
@@ -30,9 +30,9 @@ constexpr double round_off = 1e-10;
 /// Smallest and largest `Estimate::ratio` with which an estimate is trusted.
 constexpr double least_ratio = 1.5, most_ratio = 10;
 
-/// Returns the estimate. `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected size of the error of
-/// each level; it has one entry more than `differences`. `scale`: magnitude of the values; differences below `round_off` times `scale` count as
-/// round-off.
+/// Returns the estimated error (9.1). `differences`: differences between all pairs of successive levels, coarse to fine. `expected`: expected error
+/// E_l of each level up to a common factor; it has one entry more than `differences`. `scale`: magnitude of the values; differences below `round_off`
+/// times `scale` count as round-off.
 Estimate estimated(const std::vector<double>& differences, double scale, const std::vector<double>& expected);
 
 /// A quantity as a function of time, or of another abscissa. Abscissas ascend.
@@ -40,8 +40,9 @@ struct Curve {
   std::vector<double> at, values;
 };
 
-/// Returns |a - b| at the abscissas that both curves have (up to 1e-9 of their range). If these are fewer than 5 and the curves have more points,
-/// returns |a - b| at all abscissas of `a` within the range of `b`, where b is interpolated by cubics. The result is NaN where a or b is NaN.
+/// Returns |a - b| at the abscissas that both curves have, up to 1e-9 of the largest abscissa. If these are fewer than 5 although both curves have
+/// more points, returns |a - b| at all abscissas of `a` within the range of `b`, where b is interpolated by cubics. The result is NaN where a or b is
+/// NaN.
 Curve difference(const Curve& a, const Curve& b);
 
 /// Returns the largest value that is not NaN; NaN if there is none.
@@ -54,9 +55,8 @@ double mean(const Curve& curve);
 /// the curve has fewer than 32 points.
 double statistical_error(const Curve& curve);
 
-/// Returns an upper envelope of a curve at the abscissas `at`: at each abscissa, the largest of the values at the two nearest points of the curve on
-/// each side. A difference between two levels that crosses zero at an abscissa is therefore not taken for an error of zero there. NaN values are
-/// skipped.
+/// Returns an upper envelope of a curve at the abscissas `at`: at each abscissa, the largest value of the two nearest points of the curve on each
+/// side. A difference between two levels that crosses zero at an abscissa is therefore not mistaken for a zero error. NaN values are skipped.
 std::vector<double> envelope(const Curve& curve, const std::vector<double>& at);
 
 }  // namespace tanktread::accuracy

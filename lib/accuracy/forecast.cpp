@@ -33,8 +33,8 @@ class Temporary {
   fs::path path;
 };
 
-/// Returns the lowest level, at least 2, at which the predicted error is at most answer.allowed. `difference`: difference of the result between
-/// levels 0 and 1, from which the error is extrapolated.
+/// Returns the lowest level from 2 to `levels` - 1 at which the predicted error times `margin` is at most answer.allowed, or `levels` if there is
+/// none. `difference`: difference of the result between levels 0 and 1, from which the error is extrapolated.
 int needed(const Answer& answer, double difference, int levels) {
   const double factor = difference / (expected_error({}) - expected_error({1, 1, 1}));
   int level = 2;

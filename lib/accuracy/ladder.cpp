@@ -23,11 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// State of the directory of a level: finished, failed with the same deck, to be resumed, or to be run anew.
+/// Decision about a level: it is finished, it failed with the same deck and is not run again, it is resumed, or it is run anew.
 enum class Start { finished, failed, resume, anew };
 
-/// File in the directory of a level whose search for steady shapes failed. It holds the level's deck and the reason, so that a resumed ladder does
-/// not search again. Time-dependent runs that failed are continued from their checkpoint instead.
+/// File in the directory of a level whose search for a steady or periodic shape failed. It holds the deck of the level and the reason, so that a
+/// resumed ladder (runs on finer and finer levels) does not search again. Time-dependent runs that failed are continued from their checkpoint
+/// instead.
 constexpr const char* failure_file = "failure.txt";
 constexpr const char* before_reason = "\n--- failed: ";
 
@@ -79,8 +80,8 @@ class Ladder {
     output::write_whole(task_.directory / ladder_file, task_.deck);
   }
 
-  /// Returns whether level k was finished, or its failure was recorded, before this ladder was resumed. The level then probably need not be run
-  /// again. The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
+  /// Returns whether the directory of level k in a resumed ladder holds results or a recorded failure. Such a level probably need not be run again.
+  /// The deck of the earlier run is not compared, because it depends on shares of the error that are measured later.
   bool is_over(int k) const {
     return coupling::decided([&] {
       std::error_code absent;
@@ -131,9 +132,9 @@ class Ladder {
     })[0] != 0;
   }
 
-  /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. Runs level 2 again with a looser
-  /// time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met and whose series
-  /// do not vanish. Returns `stopped` if a run was interrupted and can be resumed, otherwise 0.
+  /// Measures which shares of the error are due to time integration and to quadrature, and stores them in shares_. For this, runs level 2 again with
+  /// a looser time tolerance, and again with a looser quadrature tolerance. Each share is the largest among all requests that are not met and whose
+  /// series do not vanish (Answer::vanishes). Returns `stopped` if a run was interrupted and can be resumed, otherwise 0.
   int balance() {
     balanced_ = true;
     std::optional<Outcome> quadrature;
@@ -196,7 +197,8 @@ class Ladder {
     return 0;
   }
 
-  /// Runs a deck. If a search fails, stores the reason. Returns `stopped` if the run was interrupted and can be resumed, or 0 if it ended or failed.
+  /// Runs a deck. If a search for a steady or periodic shape fails, stores the reason in `failure_file`. Returns `stopped` if the run was interrupted
+  /// and can be resumed, or 0 if it ended or failed.
   int run(const std::string& name, const std::string& deck, bool resume, std::optional<double> limit) {
     try {
       if (program_.run(deck, directory(name), resume, limit) == stopped) return stopped;
@@ -246,13 +248,13 @@ class Ladder {
     return Start::anew;
   }
 
-  /// Answers all requests from the finished levels, on the first rank.
+  /// Estimates the error for each request from the finished levels. Called only on the first rank.
   void answer_all() {
     answers_.clear();
     for (const Request& request : task_.options.requests) answers_.push_back(answer(request, levels_, looser_));
   }
 
-  /// Estimates the errors of the finest level k and prints them next to the requests. Returns whether all requests are met.
+  /// Estimates the errors of the finest level k for all requests and prints one line per request. Returns whether all requests are met.
   bool judge(int k) {
     const auto all_met = coupling::decided([&] {
       answer_all();
@@ -307,15 +309,16 @@ class Ladder {
   const Program& program_;
   const Clock::time_point start_ = Clock::now();
   coupling::Ranks ranks_;
-  std::unique_ptr<output::Occupation> occupation_;  // on the first rank
+  std::unique_ptr<output::Occupation> occupation_;  // lock of the results directory, on the first rank
   std::vector<Outcome> levels_;                     // finished levels, on the first rank
   std::optional<Outcome> looser_;                   // result of level 2 with a looser time tolerance, on the first rank
-  std::vector<Answer> answers_;                     // on the first rank
+  std::vector<Answer> answers_;                     // estimated errors for the requests, on the first rank
   int count_ = 0;                                   // number of finished levels
-  double seconds_ = 0;                              // wall seconds of all runs, on the first rank; for a finished run, also before it was resumed
-  bool balanced_ = false;                           // true if `shares_` is measured
+  double seconds_ = 0;                              // wall seconds of all runs, on the first rank. Finished runs include the time before they
+                                                    // were resumed
+  bool balanced_ = false;                           // true if balance() has been called, which measures `shares_`
   std::vector<double> shares_{0.25, 0.25};          // shares of time integration and quadrature in the error at level 2
-  bool resuming_ = false;                           // whether the latest run resumes an earlier one
+  bool resuming_ = false;                           // true if the latest run resumes an earlier one
   std::string failure_, failure_of_last_;           // failure_: message of the latest failed run. failure_of_last_: message of the latest run if it
                                                     // failed, otherwise empty
 };

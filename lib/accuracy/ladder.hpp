@@ -18,8 +18,9 @@ struct Program {
   /// Returns the effective deck with the keys in `settings` (`Section/key=value`) changed, and without the sections Accuracy and Expect.
   std::function<std::string(const std::vector<std::string>& settings)> deck;
 
-  /// Runs this deck into a directory, or resumes the run there, and stops after `limit` seconds if given. Returns the exit code: 0, or `stopped` if
-  /// the run can be resumed. Throws RunFailure, and motion::Stopped if the run is stopped before it can be resumed.
+  /// Runs this deck with results in `directory`, or resumes the run there if `resume`. The run stops after `limit` seconds if given. Returns the exit
+  /// code: 0, or `stopped` if the run can be resumed. Throws RunFailure if the run fails, and motion::Stopped if it is stopped before it can be
+  /// resumed.
   std::function<int(const std::string& deck, const std::filesystem::path& directory, bool resume, std::optional<double> limit)> run;
 };
 
@@ -34,8 +35,8 @@ struct Task {
   bool runs_in_time = true;  ///< false for searches for steady or periodic shapes, which cannot be resumed
 };
 
-/// Exit codes of runs on finer and finer levels: all requests are met; one is not met on the finest allowed level; the runs were stopped, by a signal
-/// or by the wall-clock limit, and can be resumed.
+/// Exit codes of climb(). met: all requests are met. missed: a request is not met and no finer level is allowed or would help, or an expectation is
+/// missed. stopped: the runs were stopped by a signal or by the wall-clock limit, and can be resumed.
 enum Code { met = 0, missed = 1, stopped = 4 };
 
 /// Name of the deck file in the directory of a ladder (runs of one deck on finer and finer levels).
@@ -51,12 +52,12 @@ std::optional<std::string> ladder_deck(const std::filesystem::path& directory);
 /// Collective.
 int climb(const Task& task, const Program& program);
 
-/// Runs the two lowest levels in a temporary directory. Returns lines of text: for each request, the level that is predicted to meet it, and in the
-/// last line the predicted seconds. All ranks return the lines of the first rank. Collective.
+/// Runs the levels 0 and 1 in a temporary directory. Returns lines of text: for each request, the lowest level that is predicted to meet it, and in
+/// the last line the predicted seconds of all levels. All ranks return the lines of the first rank. Collective.
 std::vector<std::string> forecast(const Task& task, const Program& program);
 
-/// Returns the predicted seconds of the next level. `seconds`: seconds of all previous levels, coarse to fine. The growth from level to level is the
-/// ratio of the last two values, limited to 1.5 ... 5, or 2.5 if there is only one value.
+/// Returns the predicted wall seconds of the next level. `seconds`: wall seconds of all previous levels, coarse to fine. The last value is multiplied
+/// by a growth factor: the ratio of the last two values, limited to 1.5 ... 5, or 2.5 if there is only one value.
 double predicted_seconds(const std::vector<double>& seconds);
 
 }  // namespace tanktread::accuracy

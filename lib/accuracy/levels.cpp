@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<int, last_level + 1> sides{3, 4, 5, 7, 9, 12, 16, 21, 28, 37, 50, 66};
 constexpr double order = 4.25;             // order of the errors of a mesh: 4 for bicubic surfaces, a little more on coarse meshes
-constexpr double least_quadrature = 1e-6;  // smallest error that single-precision far sums and near-panel rules reach
+constexpr double least_quadrature = 1e-6;  // smallest error of far-field sums in single precision and near-singular quadrature
 
 /// Collects the settings `Section/key=value` of a level in `all`, computed from the values of the deck.
 class Setter {
@@ -58,7 +58,7 @@ class Setter {
   const Values& deck_;
 };
 
-/// Returns the prefixes of the particles' sections: empty for a single particle, otherwise `Particles/<name>/`.
+/// Returns the prefixes of the keys of all particles: empty for a single particle, otherwise `Particles/<name>/`.
 std::vector<std::string> particles(const Values& deck) {
   std::vector<std::string> prefixes;
   for (const auto& [path, value] : deck)
@@ -138,7 +138,7 @@ void set_time(Setter& to, const Level& level) {
   to.lower("Time/iteration tolerance", most / 10);
   if (to.has_section("Continuation"))
     to.lower("Steady/tolerance", most / 100);  // not raised, because on a branch corrections of thirty times the tolerance count as converged
-  else if (to.has("Steady/tolerance"))  // not smaller: errors of the quadrature prevent smaller corrections
+  else if (to.has("Steady/tolerance"))  // not smaller, because quadrature errors prevent smaller corrections
     to.set("Steady/tolerance", std::max(most, quadrature_tolerance(level.quadrature)) / 100);
   to.lower("Periodic/tolerance", std::clamp(10 * most, 1e-10, 1e-2));
   to.lower("Continuation/fold tolerance", std::clamp(most / 100, 1e-12, 1e-2));

@@ -10,8 +10,8 @@ namespace tanktread::accuracy {
 /// Values of the keys of a deck, including defaults, as texts by the path of the key (deck::Document::values).
 using Values = std::map<std::string, std::string>;
 
-/// Level of refinement of each part of the discretisation: mesh, time integration, quadrature. Usually the three are equal. Two levels that differ
-/// only in one part measure the error of this part.
+/// Levels of refinement of the three parts of the discretisation: mesh, time integration and quadrature. Usually they are equal. The error of one
+/// part is measured by two runs whose levels differ only in this part.
 struct Level {
   int mesh = 0, time = 0, quadrature = 0;
 
@@ -27,34 +27,35 @@ int elements_per_side(int level);
 /// Returns Time/tolerance at a level, 2e-3/4^level.
 double tolerance(int level);
 
-/// Returns the expected error of a level divided by the error of level 0. It is taken to be the error of the mesh, (n/n_0)^-4.25 with n elements per
-/// side. A looser time integration or quadrature is assumed to contribute little. The exponent was fitted to 222 differences between levels in 28
-/// scenes.
+/// Returns the expected error of a level divided by the error of level 0. It is approximated by the error of the mesh, (n/n_0)^-4.25, with n elements
+/// per side on this level and n_0 on level 0. The errors of time integration and quadrature are assumed to be small in comparison. The exponent was
+/// fitted to 222 differences between levels in 28 scenes.
 double expected_error(const Level& level);
 
 /// Factors by which one level reduces the errors of time integration and of quadrature. The time tolerance limits the local error of a step and falls
 /// by a factor of 4 per level; the error at a given time falls by less.
 constexpr double time_ratio = 2.5, quadrature_ratio = 4;
 
-/// Returns the Level with mesh level k whose time and quadrature levels keep these two errors small compared with the mesh error. `time`,
-/// `quadrature`: shares of the time and the quadrature error in the error at level 2. Each of the two levels is the lowest from max(2, k - 2) to k +
-/// 2 at which the corresponding error is at most a quarter of the expected error of level k; k + 2 if there is none. Levels below 2 are not used:
-/// their larger error could undo a request that was met at level 2. Example: for k = 2 and shares of 0.25, both levels are 2.
+/// Returns the Level with mesh level k whose time and quadrature levels keep the errors of time integration and quadrature small compared with the
+/// mesh error. `time`, `quadrature`: shares of these two errors in the error at level 2. Each of the two levels is the lowest from max(2, k - 2) to k
+/// + 2 at which the corresponding error is at most a quarter of the expected error of level k, or k + 2 if there is none. Levels below 2 are not
+/// used, because a request that was met at level 2 could then be missed. Example: for k = 2 and shares of 0.25, both levels are 2.
 Level balanced(int k, double time, double quadrature);
 
-/// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level:
+/// Returns the settings `Section/key=value` of a level. They depend only on the deck and the level (n: elements per side of the level):
 /// - `elements per side` is n. A polar mesh has 2n elements from pole to pole; the number of elements around the pole axis keeps its ratio to 2n. If
-///   there are several particles, n belongs to the finest mesh, and the ratios between the meshes are kept.
+///   there are several particles, the finest mesh has n, and the ratios between the meshes are kept.
 /// - In the section Adaptation, tolerances are multiplied by r^4 and lengths by r, where r is the deck's number of elements per side divided by n.
 /// - Walls have 4n azimuthal elements if the deck has the default number, 24, and otherwise proportionally more or fewer.
 /// - `Time/tolerance` is 2e-3/4^level; a fixed step is halved per level, so that an error of second order also falls by a factor of 4.
 /// - `Quadrature/tolerance` equals `Time/tolerance`, but is at least 1e-6; rules with a fixed number of points have 2 more points per level.
-/// - `Steady/tolerance` is a hundredth of the larger of these two tolerances, even if the deck has a smaller value. On branches it is lowered to a
-///   hundredth of `Time/tolerance` if it is larger.
+/// - `Steady/tolerance` is a hundredth of the larger of these two tolerances, even if the deck has a smaller value. On branches it is not raised: it
+///   is lowered to a hundredth of `Time/tolerance` if the deck has a larger value.
 /// - Other tolerances of solvers and searches are lowered if they are too large for these two tolerances.
 std::vector<std::string> settings(const Values& deck, const Level& level);
 
-/// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh.
+/// Throws UserError if the deck gives an initial shape on one mesh, because every level has another mesh. Also throws UserError if a Domain has
+/// plates and `Wall/elements per period`, from which the levels compute the meshes of the plates, is missing.
 void check_levels(const Values& deck);
 
 /// Returns the effective deck without this section.

@@ -13,7 +13,7 @@ namespace tanktread::accuracy {
 
 namespace {
 
-/// Returns the summary of a run; empty if there is none.
+/// Returns the text of the summary of a run; empty if there is none.
 std::string summary_of(const std::filesystem::path& directory) {
   const std::filesystem::path path = directory / "summary.yaml";
   if (std::error_code absent; !std::filesystem::exists(path, absent)) return {};
@@ -58,9 +58,9 @@ std::vector<double> norms(const std::vector<Curve>& differences) {
   return found;
 }
 
-/// Returns the expected sizes of the errors of the levels, for `estimated`. By default these are expected_error() of each level. If level 2 was also
-/// computed with a looser time tolerance (`looser`), the share of time integration in the error is measured. This share is then assumed to decrease
-/// with the time tolerance, and the remaining share like expected_error().
+/// Returns the expected errors of the levels, up to a common factor, for `estimated`. By default these are expected_error() of each level. If there
+/// are at least 4 levels and level 2 was also computed with a looser time tolerance (`looser`), the share of time integration in the error is
+/// measured. This share is then assumed to decrease with the time tolerance, and the rest of the error like expected_error().
 std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Request& request, double scale,
                                     const std::optional<Outcome>& looser) {
   std::vector<double> sizes;
@@ -77,8 +77,8 @@ std::vector<double> expected_errors(const std::vector<Outcome>& levels, const Re
 }
 
 /// Returns the largest magnitude of all series with the unit of `series`. Differences that are tiny compared with it are round-off. The magnitude of
-/// a single series is not suitable, because a component may vanish by symmetry. Other series that are undefined at some times are left out, because
-/// they may be arbitrarily large at times next to these.
+/// `series` itself is not suitable, because a component may vanish by symmetry. Other series that are undefined (NaN) at some times are left out,
+/// because they may be arbitrarily large shortly before and after these times.
 double scale_of(const output::RunRecord& record, const std::string& series) {
   const auto one = std::ranges::find(record.series(), series, &output::Series::name);
   double most = 0;
@@ -89,8 +89,8 @@ double scale_of(const output::RunRecord& record, const std::string& series) {
   return most;
 }
 
-/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. The magnitude of an oscillation does
-/// not, even if the oscillations on different levels are out of phase.
+/// Returns whether the magnitude of a series changes by more than a factor of 1.5 among the last three levels. An oscillation keeps its magnitude,
+/// even if the oscillations on different levels are out of phase.
 bool is_noise(const std::vector<Outcome>& levels, const std::string& series) {
   std::vector<double> sizes;
   for (std::size_t k = levels.size() - 3; k < levels.size(); ++k) sizes.push_back(magnitude(curve(levels[k].record, series)));

@@ -29,7 +29,7 @@ bool resumes(const std::string& one, const std::string& other);
 /// Returns the finished run in a directory; nothing if the directory has no run, its run has not reached its end, or its deck is not `deck`.
 std::optional<Outcome> finished(const std::filesystem::path& directory, const Level& level, const std::string& deck);
 
-/// Returns whether a run is a branch of steady shapes. Only its folds and its last point correspond to points of other levels.
+/// Returns whether a run is a branch of steady shapes. Of such a run, only the folds and the last point can be compared with other levels.
 bool is_branch(const output::RunRecord& record);
 
 /// Returns a series as a function of time. For a branch of steady shapes, returns the values at its folds and its last point as a function of their
@@ -48,8 +48,8 @@ struct Answer {
                                                                   ///< `estimate`; NaN if unknown
 };
 
-/// Returns the answer to a request from the levels finished so far, coarse to fine. `looser`: result of level 2 with a looser time tolerance, if it
-/// was computed; it shows which share of the errors is due to the time integration.
+/// Returns the estimated error for a request, and whether it meets the request, from the levels finished so far, coarse to fine. `looser`: result of
+/// level 2 with a looser time tolerance, if it was computed; it shows which share of the error is due to the time integration.
 Answer answer(const Request& request, const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {});
 
 /// Returns the part of the error of `level` that is due to one part of the discretisation (time integration or quadrature), for a request. `looser`:
@@ -70,7 +70,8 @@ struct SeriesError {
 };
 
 /// Returns the estimated errors of the finest level, one for each series with an error (`has_error`), in the order of the record. `looser`: result of
-/// level 2 with a looser time tolerance, if it was computed. `answers`: estimates of the requests, which are taken for their series.
+/// level 2 with a looser time tolerance, if it was computed. `answers`: estimates for the requests. If a request limits the largest error of a series
+/// over the run, its estimate is used for this series.
 std::vector<SeriesError> errors(const std::vector<Outcome>& levels, const std::optional<Outcome>& looser = {},
                                 const std::vector<Answer>& answers = {});
 

@@ -19,7 +19,7 @@ using output::StoredSurface;
 
 constexpr int most_degree = 7;
 
-/// Values and derivatives at x in [0, 1] of the Lagrange polynomials of the nodes k/p.
+/// Values and derivatives at x in [0, 1] of the Lagrange polynomials of degree p on the equidistant nodes k/p, k = 0 ... p.
 struct Lagrange {
   std::array<double, most_degree + 1> value, slope;
 
@@ -37,7 +37,7 @@ struct Lagrange {
   }
 };
 
-/// Returns (i, j) of the nodes of a cell of degree p, see output::node_order.
+/// Returns the grid indices (i, j) of the nodes of a cell of degree p, in the order of the stored nodes (output::node_order).
 const std::vector<std::array<int, 2>>& order_of(int p) {
   static std::array<std::vector<std::array<int, 2>>, most_degree + 1> orders;
   auto& order = orders.at(static_cast<std::size_t>(p));
@@ -45,7 +45,7 @@ const std::vector<std::array<int, 2>>& order_of(int p) {
   return order;
 }
 
-/// Returns the position on a cell and its two derivatives.
+/// Returns the position on a cell at the parameters (s, t) in [0, 1], and its derivatives by s and t.
 std::array<Vec3, 3> evaluated(const StoredSurface& surface, const std::vector<int>& cell, double s, double t) {
   const int p = static_cast<int>(std::lround(std::sqrt(static_cast<double>(cell.size())))) - 1;
   const Lagrange a(p, s), b(p, t);
@@ -59,7 +59,7 @@ std::array<Vec3, 3> evaluated(const StoredSurface& surface, const std::vector<in
   return found;
 }
 
-/// Distance of a position from a cell. `inside`: the nearest point is not at the edge of the cell.
+/// Distance of a position from a cell. `inside`: true if the nearest point of the cell is not on its edge.
 struct FromCell {
   double distance = std::numeric_limits<double>::infinity();
   bool inside = false;
@@ -126,7 +126,7 @@ class Cubes {
   const StoredSurface& surface_;
   std::vector<std::vector<std::size_t>> cells_of_;  // cells that contain a node
   std::map<std::array<long, 3>, std::vector<int>> nodes_;
-  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes of space: the largest diameter of a cell
+  double size_ = std::numeric_limits<double>::min();  // edge length of the cubes: largest distance of a node from the first node of its cell
 };
 
 }  // namespace

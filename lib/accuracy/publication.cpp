@@ -34,7 +34,7 @@ void link_files(const fs::path& from, const fs::path& to) {
   }
 }
 
-/// Returns the estimated error of the series of each expectation, at its time.
+/// Returns, for each expectation, the estimated error of its series at the time of the expectation; NaN if none is estimated.
 std::vector<double> estimates(const deck::Expectations& expect, const std::vector<SeriesError>& errors, const std::vector<double>& times) {
   std::vector<double> all;
   for (const deck::Expectation& one : expect.all) {
@@ -71,7 +71,7 @@ std::string accuracy_text(const Task& task, const std::vector<Outcome>& levels, 
   return text;
 }
 
-/// Returns the summary of a run without the section `estimated errors`. The sections about all levels replace it.
+/// Returns the summary of a run without the section `estimated errors`, because the sections `error` and `accuracy` replace it.
 std::string without_statement(std::string summary) {
   const std::size_t begin = summary.find("\nestimated errors:\n");
   if (begin == std::string::npos) return summary;

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 36> without_error{
                   "; a request is [<particle>/]<series>[@end|@mean]=<value>[%], for example taylor_inertia=1e-3 or velocity_x1@end=0.1%.");
 }
 
-/// Returns the requests in a text in which they are separated by commas.
+/// Returns the requests in a comma-separated list.
 std::vector<Request> requests_of(const std::string& texts) {
   std::vector<Request> all;
   for (std::size_t at = 0; at <= texts.size();) {

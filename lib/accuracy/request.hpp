@@ -9,7 +9,8 @@
 
 namespace tanktread::accuracy {
 
-/// Error of a series that a request limits: the largest error over the run, the error of the last value, or the error of the time average.
+/// Choice of the error of a series that a request limits: the largest error over the run, the error of the last value, or the error of the time
+/// average.
 enum class Of { run, end, mean };
 
 /// A request: `[<particle>/]<series>=<value>[%]`; `\@end` or `\@mean` may follow the series.
@@ -40,12 +41,12 @@ struct Options {
 /// Returns the setting `Accuracy/requests=...` that is equivalent to the requests `texts` of the command line. `texts` is not empty.
 std::string setting_of(const std::vector<std::string>& texts);
 
-/// Throws UserError, with the name that was probably meant, if a requested series is not among `names`, or has no error to estimate (see
+/// Throws UserError if a requested series is not among `names` (the message suggests the closest name), or if no error is estimated for it (see
 /// `has_error`).
 void check_series(const std::vector<Request>& requests, const std::vector<std::string>& names);
 
-/// Returns whether an error of the series is estimated. There is none for series that describe the work of a run (for example `wall_seconds`), for
-/// the time, for indices, and for errors themselves.
+/// Returns whether an error of the series is estimated. No error is estimated for the time, for indices, for series that are errors themselves, and
+/// for series that describe the work of a run (for example `wall_seconds`).
 bool has_error(const std::string& series);
 
 }  // namespace tanktread::accuracy

@@ -1,5 +1,6 @@
 #pragma once
-// Columns of the record of a run (`/series` in run.h5). Each object declares the columns that describe it, together with their values.
+// Columns of the record of a run (`/series` in run.h5). Each object (run, particle, wall, load, field) declares its columns together with their
+// values.
 
 #include <functional>
 #include <string>
@@ -15,8 +16,8 @@ struct Column {
   std::string name, unit;
   std::string description;
   std::string undefined_if = {};  ///< condition under which the value is NaN, as a clause; empty if the value is always defined
-  /// Runs that have this column, as text for the manual, which lists the kinds of runs and particles with the column. A text that begins with a
-  /// semicolon, for example `; in a tube`, is appended to this list. An empty text leaves the list unchanged. Any other text replaces it.
+  /// Text for the manual about the runs that have this column. The manual generates a list of the kinds of runs and particles that have it. An empty
+  /// text leaves the list unchanged, a text that begins with a semicolon (`; in a tube`) is appended to it, and any other text replaces it.
   std::string where = {};
 };
 
@@ -36,8 +37,8 @@ class Columns {
   /// Adds a column and its value. The clause `undefined_if` is appended to the description.
   void add(double value, Column column);
 
-  /// Adds one column per component of `values`. `components` lists the components, separated by spaces. Each is appended to the name and replaces `#`
-  /// in the description.
+  /// Adds one column per component of `values`. `components`: names of the components, separated by spaces. The name of the component is appended to
+  /// the name of the column and replaces `#` in the description.
   void add(const Eigen::Ref<const Eigen::VectorXd>& values, std::string_view components, const Column& column);
 
   /// Adds the columns of another row with `prefix` before each name: `<particle>/` if there are several particles.

@@ -1,6 +1,6 @@
 #pragma once
-// Instruction set that the kernels use. Kernels are the source files *_kernel. If the program is built for any processor of a family, each kernel is
-// compiled for several instruction sets.
+// Instruction set that the kernels use. Kernels are the functions in source files whose names end with _kernel. In a build for all processors of a
+// family, each kernel is compiled for several instruction sets.
 
 #include <string>
 

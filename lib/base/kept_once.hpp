@@ -9,11 +9,11 @@
 
 namespace tanktread {
 
-/// Start positions, in an array, of tables of numbers that are stored one after the other. The key is a hash of the content of the table.
+/// Start indices of tables of numbers that are stored one after the other in one array. The key is a hash of the content of the table.
 using Tables = std::unordered_multimap<std::size_t, std::size_t>;
 
-/// Registers the table that was appended to `all`, from index `first` to the end, and returns its start index. If an earlier table is bitwise equal,
-/// removes the appended table and returns the start index of the earlier one.
+/// Registers the table that was appended to the array `all`, from index `first` to the end, and returns its start index. If an earlier table is
+/// bitwise equal, removes the appended table and returns the start index of the earlier table.
 template <class Number>
 std::size_t kept_once(std::vector<Number>& all, std::size_t first, Tables& tables) {
   const std::size_t size = all.size() - first;

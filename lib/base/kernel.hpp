@@ -1,6 +1,7 @@
 #pragma once
 // Compilation of kernels for several instruction sets. Each kernel function is compiled once per instruction set, in a nested namespace whose name is
-// the macro INSTRUCTIONS (for example avx2). KERNEL defines the function outside of it that calls the version for the instruction set in use.
+// the macro INSTRUCTIONS (for example avx2). The macro KERNEL defines a function in the outer namespace that calls the version for the instruction
+// set in use.
 
 #include "base/instruction_set.hpp"
 #include "base/register.hpp"

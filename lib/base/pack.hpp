@@ -15,7 +15,7 @@ struct alignas(sizeof(double) * most_lanes) Pack {
 /// Returns the number of doubles in a register of the instruction set in use.
 int pack_lanes();
 
-/// Returns the components of an array of packs as doubles. Lane l of register k has index pack_lanes() k + l.
+/// Returns the components of an array of packs as doubles. Lane l of register k has the index k * pack_lanes() + l.
 inline double* numbers(Pack* packs) { return reinterpret_cast<double*>(packs); }
 inline const double* numbers(const Pack* packs) { return reinterpret_cast<const double*>(packs); }
 

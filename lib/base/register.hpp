@@ -84,8 +84,8 @@ inline FloatRegister inverse_root(const FloatRegister& a, const FloatRegister& l
 #endif
 }
 
-/// Returns the difference, exactly as written. Kernels are compiled so that the compiler may reorder sums; this function prevents it from merging the
-/// difference with other sums.
+/// Returns its argument, a difference of two numbers. Kernels are compiled so that the compiler may reorder sums; this function prevents the compiler
+/// from merging the difference with other sums.
 inline FloatRegister as_it_stands(FloatRegister difference) {
 #if defined(__x86_64__)
   asm("" : "+v"(difference));

@@ -19,7 +19,7 @@ struct Chosen {
   std::string here, any;
 };
 
-/// Collects combinations of choices that contradict each other. The functions named reject...() add combinations with their reasons.
+/// Collects combinations of choices that contradict each other. Functions of the scene named reject...() add the combinations with their reasons.
 class Rejections {
  public:
   struct Row {
@@ -30,7 +30,7 @@ class Rejections {
   /// rejected combination that the current deck contains.
   explicit Rejections(bool every = false) : every_(every) {}
 
-  /// Adds a combination if both choices are made. `why`: reason, appended to the sentence.
+  /// Adds the combination of two choices if both are made (`both`) or if all combinations are collected. `why`: reason, without a full stop.
   void pair(bool both, const Chosen& one, const Chosen& other, const std::string& why) {
     if (every_) rows_.push_back({one.any, other.any, why});
     else if (both) sentences_.push_back(contradiction(one.here, other.here, why));

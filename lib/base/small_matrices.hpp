@@ -1,5 +1,5 @@
 #pragma once
-// Functions of 3 x 3 matrices that need matrix decompositions, which are compiled only once here.
+// Functions of 3 x 3 matrices. They are not inline, so that the matrix decompositions are compiled only once.
 
 #include "base/types.hpp"
 
@@ -14,8 +14,8 @@ double largest_growth_rate(const Mat3& a);
 /// Returns the largest singular value.
 double largest_stretch(const Mat3& a);
 
-/// Returns the rotation nearest to a matrix. For the matrix sum y r^T, this is the rotation that best maps the points r to the points y in the
-/// least-squares sense (Kabsch 1976).
+/// Returns the rotation nearest to a matrix. If the matrix is the sum over all points of y r^T, this is the rotation that best maps the positions r
+/// to the positions y in the least-squares sense (Kabsch 1976).
 Mat3 nearest_rotation(const Mat3& a);
 
 }  // namespace tanktread

@@ -23,7 +23,7 @@ struct CsvRow {
 /// Returns all lines of a CSV text that are not empty. `#` begins a comment. The first row is left out if it begins with `heading`, the column names.
 std::vector<CsvRow> csv_rows(const std::string& text, const std::string& heading);
 
-/// Returns the number in a field. Throws UserError, with `where` before the sentence, if it is not a number or its magnitude is not below 1e75.
+/// Returns the number in a field. Throws UserError, with `where` before the sentence, if the field is not a number of magnitude below 1e75.
 double csv_number(const std::string& field, const std::string& where);
 
 }  // namespace tanktread

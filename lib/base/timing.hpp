@@ -1,5 +1,5 @@
 #pragma once
-// Named timers of the phases of a run, for the table that is printed at its end and for `seconds` of the summary.
+// Named timers of the phases of a run, for the table that is printed at the end of the run and for `seconds` in the summary.
 
 #include <chrono>
 #include <string>
@@ -10,8 +10,8 @@ namespace tanktread {
 
 /// Seconds and calls of the phases of a run, in the order in which they were first entered.
 ///
-/// A scope that opens inside another one pauses the outer one. So no time is counted twice, and the sum over the phases is the time spent in any
-/// scope. All scopes must be in one thread and close in the reverse order of opening.
+/// A scope that opens inside another scope pauses the outer one. Therefore no time is counted twice, and the sum over the phases is the total time in
+/// which any scope was open. All scopes must be in one thread and close in the reverse order of opening.
 class Phases {
  public:
   struct Phase {
@@ -40,7 +40,7 @@ class Phases {
   Scope time(std::string_view name) { return Scope(*this, name); }
 
   const std::vector<Phase>& all() const { return phases_; }
-  double seconds(std::string_view name) const;  ///< seconds of a phase; 0 if it never ran; if it is running, up to its last pause
+  double seconds(std::string_view name) const;  ///< wall seconds of a phase up to its last end or pause; 0 if it never ran
   double total() const;                         ///< returns the sum over the phases
 
  private:

@@ -29,7 +29,7 @@ const Teuchos::ParameterList* sublist(const Teuchos::ParameterList* list, const 
   return list && list->isSublist(name) ? &list->sublist(name) : nullptr;
 }
 
-/// Appends to `changes` the path of each key of `over` that `base` does not have or has with another value. Skips Output and Expect.
+/// Appends to `changes` the path of each key of `over` that `base` does not have or that has another value in `base`. Skips Output and Expect.
 void add_changes(const Teuchos::ParameterList* base, const Teuchos::ParameterList& over, const std::string& path,
                  std::vector<std::string>& changes) {
   for (const auto& item : over) {

@@ -14,7 +14,7 @@ namespace tanktread::deck {
 /// A merged deck. Fills options structs by calling their function `declare`, and records the keys that they declare.
 ///
 ///   Document deck = read({"deck.yaml", "overlay.yaml"}, {"Time/final time=3"});
-///   deck.declare(scene);                  // throws UserErrors with all wrong values, and unknown keys if all were read
+///   deck.declare(scene);                  // throws UserErrors that lists all wrong values, and unknown keys if every section was read
 ///   std::cout << deck.effective();        // YAML with the value of every key; read again, it gives the same scene bit for bit
 class Document {
  public:
@@ -22,14 +22,14 @@ class Document {
   ~Document();
   Document(Document&&) noexcept;
 
-  /// Reads every key that `options.declare` declares, from the deck into `options`. Call it once per document.
+  /// Reads the value of every key that `options.declare` declares from the deck into `options`. Call it once per document.
   template <class Options>
   void declare(Options& options) {
     Section root = begin();
     try {
       options.declare(root);
     } catch (const UserError&) {
-      refuse_wrong_values();  // if values were refused, throws their errors instead: their keys keep the defaults, which may have caused this error
+      refuse_wrong_values();  // throws the errors of refused values, if any: their keys keep the defaults, which may have caused this error
       throw;
     }
     finish();
@@ -47,7 +47,7 @@ class Document {
   /// Returns a JSON schema (draft 7) of decks, for editors: types, choices, bounds and descriptions.
   std::string schema() const;
 
-  /// Returns the given deck as YAML, with the description of each key in a comment above it.
+  /// Returns the given keys of the deck as YAML, with the description of each key in a comment above it.
   std::string commented() const;
 
  private:

@@ -101,7 +101,7 @@ double interpolated(const std::vector<double>& times, const std::vector<double>&
   const std::size_t rows = times.size();
   const auto above = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
   if (above < rows && times[above] == t) return values[above];
-  std::size_t begin = above, end = above;  // rows next to the time t, up to four on each side, none of them NaN
+  std::size_t begin = above, end = above;  // rows next to the time t: up to four on each side, without NaN
   while (begin > 0 && above - begin < 4 && !std::isnan(values[begin - 1])) --begin;
   while (end < rows && end - above < 4 && !std::isnan(values[end])) ++end;
   if (begin == above || end == above) return std::numeric_limits<double>::quiet_NaN();

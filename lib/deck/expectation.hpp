@@ -40,11 +40,11 @@ std::vector<std::string> too_late(const std::vector<Expectation>& expectations, 
 /// Result of the comparison of one expectation with the results.
 struct Verdict {
   std::string name;
-  double value = 0;  ///< value of the series in the results; NaN if it has none
+  double value = 0;  ///< value of the series in the results; NaN if there is none
   double expected = 0;
   double error = 0;  ///< |value - expected|, divided by |expected| if the kind is relative
   bool passed = false;
-  std::string reason = {};       ///< reason of the failure: no value, or the value and the expected value; empty if passed
+  std::string reason = {};       ///< message about the failure, with the value and the expected value; empty if passed
   std::string not_binding = {};  ///< `not_binding` of the expectation
 };
 
@@ -63,7 +63,7 @@ std::vector<Verdict> verdicts(const std::vector<Expectation>& expectations, cons
 std::string missed(const std::vector<Verdict>& verdicts, const std::function<void(const std::string&)>& warn);
 
 /// Returns the value at the time t of the polynomial of degree <= 3 through the points nearest to t, at most four. `times` ascend and t is in their
-/// range. A NaN value separates the points: only points on the same side of it as t are used. The result is NaN if a value next to t is NaN.
+/// range. Points beyond a NaN value, seen from t, are not used. The result is NaN if a value next to t is NaN.
 double interpolated(const std::vector<double>& times, const std::vector<double>& values, double t);
 
 }  // namespace tanktread::deck

@@ -16,8 +16,8 @@ namespace tanktread::deck {
 template <class Signature>
 class Parts;
 
-/// Registered parts of one kind, for example loads. A function makes a part (type `Made`) from arguments `On...`, for example the surface on which a
-/// load acts. A deck that uses a part has a section with the name of the part, which holds the keys of the part.
+/// Registered parts of one kind, for example loads. A registered function makes a part (type `Made`) from arguments `On...`, for example the surface
+/// on which a load acts. If a deck uses a part, it has a section with the name of the part, which holds the keys of the part.
 template <class Made, class... On>
 class Parts<Made(On...)> {
  public:
@@ -75,7 +75,7 @@ class Parts<Made(On...)> {
     return chosen;
   }
 
-  /// Returns the registered parts that the deck uses: those with a section in the section `name` of `outer`. Declares the section `name` only if
+  /// Returns the registered parts that the deck uses: the parts with a section in the section `name` of `outer`. Declares the section `name` only if
   /// parts are registered.
   std::vector<Chosen> read(Section& outer, const char* name, const char* meaning) const {
     struct List {
@@ -87,8 +87,8 @@ class Parts<Made(On...)> {
     return std::move(list.chosen);
   }
 
-  /// Returns the function that makes the part of this name, with the options that the deck sets in the part's section, which may be missing. Returns
-  /// an empty function if no part has this name.
+  /// Returns the function that makes the part of this name, with the options that the deck sets in the section of the part, or with default options
+  /// if this section is missing. Returns an empty function if no part has this name.
   Maker read(Section& section, const std::string& name) const {
     const auto part = std::ranges::find(all_, name, &Part::name);
     if (part == all_.end()) return {};

@@ -47,7 +47,7 @@ std::string unknown_key(const List& list, const List& root, const std::string& k
 }
 
 /// Appends the messages about all sections inside `list` to `all`. `sentences`: function that returns the messages about one section (mistakes or
-/// unknown keys). If the sections can inherit keys from each other, leaves out a message that differs from an earlier one only by the path.
+/// unknown keys). If the sections can inherit keys from each other, leaves out each message that differs from an earlier message only in the path.
 template <class Sentences>
 void add_inner(const List& list, const Sentences& sentences, std::vector<std::string>& all) {
   std::set<std::string> told;

@@ -1,5 +1,5 @@
 #pragma once
-// Tree of all declared keys and sections of a deck. Section fills it; the effective deck, the manual and the schema are written from it.
+// Tree of all declared keys and sections of a deck. Section fills the tree; the effective deck, the manual and the schema are written from it.
 
 #include <memory>
 #include <string>
@@ -24,7 +24,7 @@ struct List {
   std::string name;
   std::string path;  ///< path of the section, `Flow` or `Expect/volume`; empty for the root
   std::string meaning;
-  const Teuchos::ParameterList* given = nullptr;   ///< points to `merged` if that is set, otherwise to the section in the deck; null if none
+  const Teuchos::ParameterList* given = nullptr;   ///< `merged` if it is set, otherwise the section in the deck; null if there is none
   const Teuchos::ParameterList* itself = nullptr;  ///< the section in the deck, without keys inherited through the key `like` or from `defaults`
   std::shared_ptr<Teuchos::ParameterList> merged;  ///< the section in the deck, with keys inherited through the key `like` or from `defaults`
   std::vector<Entry> entries;
@@ -37,19 +37,20 @@ struct List {
   std::string path_of(std::string_view key) const { return path.empty() ? std::string(key) : path + "/" + std::string(key); }
 };
 
-/// State of a Section: the record that it fills, whether the manual is being made, and the units of the deck (null if the deck defines none). In the
-/// manual, sections whose names the user chooses are declared once, as `<name>`.
+/// State of a Section: the record that it fills, whether the manual is being written (`documenting`), and the units of the deck (null if the deck
+/// defines none). In the manual, sections whose names the user chooses are declared once, as `<name>`.
 struct Section::State {
   List* list;
   bool documenting;
   std::shared_ptr<const Units> units = {};
 };
 
-/// Returns the mistakes of a section, then those of its inner sections. A mistake in keys that several sections share is reported once.
+/// Returns the mistakes in a section, followed by the mistakes in its inner sections. A mistake in a key that several sections inherit is reported
+/// once.
 std::vector<std::string> mistakes(const List& list);
 
-/// Returns a sentence for each given key that is not declared, with the key that was probably meant, which may be in another section of `root`.
-/// An unknown key that several sections share is reported once.
+/// Returns a sentence for each key in a section or its inner sections that is given but not declared. The sentence suggests the closest key, which
+/// may be in another section of `root`. An unknown key that several sections inherit is reported once.
 std::vector<std::string> unknown_keys(const List& list, const List& root);
 
 /// Returns the values of a section and its inner sections as YAML, indented by `depth` steps.

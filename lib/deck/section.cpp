@@ -26,7 +26,7 @@ namespace {
 /// Returns whether the number is 0, or finite and of moderate size, so that its powers do not overflow or underflow.
 bool computable(double number) { return std::isfinite(number) && (number == 0 || (std::abs(number) > 1e-75 && std::abs(number) < 1e75)); }
 
-/// Returns the description of a number with its rule, `a number, positive`, or if `several`, `three numbers, each positive`.
+/// Returns the description of numbers with their rule: `a number, positive`, or if `several`, `three numbers, each positive`.
 std::string with_rule(const std::string& numbers, const Rule& rule, bool several) {
   return rule.text == any().text ? numbers : numbers + (several ? ", each " : ", ") + rule.text;
 }
@@ -55,8 +55,8 @@ bool has_unit(const std::string& text) {
   return error == std::errc() && rest != text.data() + text.size();
 }
 
-/// Returns the numbers of an entry, converted to the deck's units, if at least one of its texts has a unit; otherwise none. Throws UserError if a
-/// unit is wrong or the deck has no section Units.
+/// Returns the numbers of an entry, converted to the deck's units, if at least one of them has a unit; otherwise an empty vector. Throws UserError if
+/// a unit is wrong or the deck has no section Units.
 std::vector<double> numbers_with_units(const std::string& path, const Teuchos::ParameterEntry& entry, std::string_view unit, const Units* units) {
   const std::vector<std::string> texts = as_texts(entry);
   if (std::ranges::none_of(texts, has_unit)) return {};
@@ -134,8 +134,8 @@ void state(List& list, std::string_view name, Field& field, const std::string& v
   list.entries.push_back(std::move(entry));
 }
 
-/// Returns the section of this name, completed by keys of another section: the section that its key `like` names, or without `like` the section
-/// `defaults` if there is one. `above`: names of the sections whose `like` led to this section, to detect a cycle.
+/// Returns the section of this name, completed by the keys of the section that its key `like` names. Without the key `like`, it is completed by the
+/// keys of the section `defaults`, if there is one. `above`: names of the sections whose `like` led to this section, to detect a cycle.
 std::shared_ptr<Teuchos::ParameterList> with_shared(const List& all, const std::string& name, std::vector<std::string> above) {
   const std::string path = all.path_of(name);
   const auto* entry = all.given->getEntryPtr(name);

@@ -1,6 +1,6 @@
 #pragma once
-// Declaration of deck keys: name, default, rule, unit and description. The struct that uses a parameter declares it, and nothing else does.
-// Reading, checking, the effective deck and the manual (`--reference`) all use this declaration.
+// Declaration of deck keys: name, default, rule, unit and description. Each parameter is declared only once, by the struct that uses it. Reading,
+// checking, the effective deck and the manual (`--reference`) all use this declaration.
 
 #include <algorithm>
 #include <functional>
@@ -38,12 +38,12 @@ using Choice = std::vector<std::string>;
 ///     s.key("rule", rule, deck::Choice{"adaptive", "fixed"}, "how element integrals are taken");
 ///   }
 ///
-/// The value of the field before the call is the default. If the given value is wrong, the field keeps its default, and Document::declare throws
-/// UserError (path, rule, unit, given value). This function also reports unknown keys, with the key that was probably meant.
+/// The value of the field before the call is the default. If the given value is wrong, the field keeps its default, and Document::declare later
+/// throws UserError (path, rule, unit, given value). Document::declare also reports unknown keys, and suggests the closest key for each.
 class Section {
  public:
-  /// Declares a key with numbers. `Field`: double, int, Vec3, Mat3 (nine numbers row by row), or std::optional of one of these, of Eigen::Vector2d or
-  /// of std::vector<double> (any length).
+  /// Declares a key whose value is one number or several. `Field`: double, int, Vec3, Mat3 (nine numbers row by row) or std::optional of one of these
+  /// types; also std::optional of Eigen::Vector2d or std::vector<double> (any length).
   template <class Field>
   void key(std::string_view name, Field& field, const Rule& rule, std::string_view unit, std::string_view meaning);
 
@@ -82,15 +82,15 @@ class Section {
   /// Declares a section that is passed to another library (Belos, Amesos2, NOX) without checks. The given keys override the defaults in `field`.
   void foreign(std::string_view name, std::shared_ptr<Teuchos::ParameterList>& field, std::string_view meaning);
 
-  /// Sets the units of the deck. Afterwards, values in this section and in the sections declared inside it may have units.
+  /// Sets the units of the deck. Afterwards, values in this section and in sections that are later declared inside it may have units.
   void take(std::shared_ptr<const Units> units);
 
-  /// Marks a name as allowed in this section although it is not declared. Messages about unknown keys list it.
+  /// Allows a name in this section that is not declared. Messages about unknown keys list this name among the allowed names.
   void mention(std::string_view list);
 
-  /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, these sections may
-  /// share keys: keys that a section does not set are taken from the section named by its key `like`. A section without the key `like` takes them
-  /// from the section `defaults`. `use` is not called for `defaults`.
+  /// Declares sections whose names the user chooses (Expect/<name>), by calling `use` with each name and its section. If `alike`, keys that a section
+  /// does not set are taken from the section named by its key `like`, or from the section `defaults` if it has no key `like`. `use` is not called for
+  /// `defaults`. If `alike` is false, the sections do not share keys.
   void each(std::string_view meaning, const std::function<void(const std::string& name, Section&)>& use, bool alike = false);
 
   /// Returns whether the user gave this key. Used to detect keys that contradict each other.

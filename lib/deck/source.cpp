@@ -13,7 +13,7 @@ namespace tanktread::deck {
 
 namespace {
 
-/// Returns the nesting depth of the XML elements. It must be limited because the reader of Teuchos calls itself once per level.
+/// Returns the nesting depth of the XML elements. The depth must be limited, because the XML reader of Teuchos calls itself once per level.
 int levels_of_xml(const std::string& text) {
   int level = 0, most = 0;
   for (std::size_t at = text.find('<'); at != std::string::npos && at + 1 < text.size(); at = text.find('<', at + 1)) {

@@ -18,7 +18,8 @@ std::shared_ptr<Teuchos::ParameterList> file_list(const std::string& file);
 /// Returns the root list of a deck in the XML format of Teuchos. `origin` is the name of the deck in messages.
 std::shared_ptr<Teuchos::ParameterList> xml_list(const std::string& text, const std::string& origin);
 
-/// Returns the list named `Tanktread` of a deck. Throws UserError if it is missing or not the only outermost list.
+/// Returns the list `Tanktread` inside `whole`, which was read from a deck. Throws UserError if it is missing or not the only list there. `origin` is
+/// the name of the deck in messages.
 std::shared_ptr<Teuchos::ParameterList> root_list(const Teuchos::ParameterList& whole, const std::string& origin);
 
 /// Returns the root list of a deck in YAML 1.2. `origin` is the name of the deck in messages. A word without quotes is true or false (also yes, no),

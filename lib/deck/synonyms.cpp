@@ -61,7 +61,7 @@ constexpr std::array<Meaning, 31> synonyms{{
     {"|elasticity number|", "Interface/surfactant/elasticity number"},
 }};
 
-/// Features that the program does not have. They are found by the full path of a key or section, or by its name without the path.
+/// Features that the program does not have. A key or section is looked up by its full path, or by its name without the path.
 constexpr std::array<Meaning, 8> features{{
     {"|re|reynolds|reynolds number|inertia|", "inertia is not available; the program computes Stokes flow, at Reynolds number 0"},
     {"|order|degree|polynomial degree|polynomial order|spline order|spline degree|p|",

@@ -70,7 +70,7 @@ Units::Units(const UnitOptions& options) : options_(options) {
 std::string Units::scaled(std::string_view kind) const {
   return replaced(kind, {{" x ", " "}, {"Flow/gravity", "length/time^2"}, {"viscosity", "stress time"}, {"stress", "force/length^2"},
                          {"pressure", "force/length^2"}, {"time", "(" + options_.time + ")"}, {"length", "(" + options_.length + ")"},
-                         {"force", "(" + options_.force + ")"}});  // "time" before "length", because a length may contain "time": centimeter
+                         {"force", "(" + options_.force + ")"}});  // "time" before "length", because a unit of length may contain "time": centimeter
 }
 
 double Units::number(const std::string& text, std::string_view kind) const {

@@ -17,17 +17,19 @@ struct UnitOptions {
   void declare(Section& section);
 };
 
-/// Converts between named units and the units of the deck. A `kind` is the unit of a key or of a series in the words of the deck: `force/length`.
+/// Converts between named units and the units of the deck. A `kind` is the unit of a key or a series in terms of the units of the deck, for example
+/// `force/length`.
 class Units {
  public:
-  /// Throws UserError if the option for the unit of length, time or force does not have this dimension, or if UDUNITS finds no table of units.
+  /// Throws UserError if the option `length`, `time` or `force` is not a quantity of this dimension, or if UDUNITS finds no table of units.
   explicit Units(const UnitOptions& options);
 
-  /// Returns the value of `text`, a number with or without a unit, in the deck's units. Throws std::invalid_argument if the unit is not of this kind;
-  /// the message completes a sentence that begins with `text`.
+  /// Returns the value of `text`, a number with or without a unit, in the deck's units. Throws std::invalid_argument if `text` is not a number or the
+  /// unit is not of this kind; the message completes a sentence that begins with `text`.
   double number(const std::string& text, std::string_view kind) const;
 
-  /// Returns a quantity of this kind in SI units, `1e-06 N/m`. `number`: its value in the deck's units. Empty if the kind is dimensionless.
+  /// Returns a quantity of this kind as text in SI units, for example `1e-06 N/m`. `number`: value in the deck's units. The text is empty if the kind
+  /// is dimensionless.
   std::string in_si(std::string_view kind, double number = 1) const;
 
   /// Returns the units of the deck in SI units, for the plan.

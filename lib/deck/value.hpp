@@ -19,7 +19,7 @@ std::optional<std::vector<double>> as_numbers(const Teuchos::ParameterEntry& ent
 /// Returns whether both entries have the same value. A whole number equals the same number of type double.
 bool same_value(const Teuchos::ParameterEntry& a, const Teuchos::ParameterEntry& b);
 
-/// Returns the value that was given, as text for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
+/// Returns the value of an entry as text for a message: `-1`, `"one"` (text), `[1, 2]`, a list of keys.
 std::string description(const Teuchos::ParameterEntry& entry);
 
 /// Returns a parameter list as YAML, indented by `depth` steps.
@@ -29,7 +29,7 @@ std::string yaml_text(const Teuchos::ParameterList& list, int depth);
 void overlay(Teuchos::ParameterList& base, const Teuchos::ParameterList& over);
 
 /// Checks a section for another library against the parameters that this library accepts (its getValidParameters()). Throws UserError at the first
-/// parameter that is unknown, with the name that was probably meant, or that has another type (number, whole number, truth value, text).
+/// parameter that is unknown (the message suggests the closest name) or has another type (number, whole number, truth value, text).
 void check_foreign(const std::string& path, const Teuchos::ParameterList& given, const Teuchos::ParameterList& valid);
 
 }  // namespace tanktread::deck

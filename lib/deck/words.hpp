@@ -15,7 +15,8 @@ std::string real_text(double value);
 /// Returns the text in double quotes. Escapes `"`, `\` and control characters.
 std::string in_quotes(const std::string& text);
 
-/// Returns whether YAML reads the text without quotes as the same text: it is no number and no truth value, and has no punctuation except - and _.
+/// Returns whether the text certainly needs no quotes in YAML: it begins with a letter, is no truth value and no special number (nan, inf), and has
+/// no punctuation except - and _.
 bool is_plain(const std::string& text);
 
 /// Returns the text with ASCII letters in lower case.
@@ -30,13 +31,13 @@ std::string alternatives(const std::vector<std::string>& words);
 std::string joined(const std::vector<std::string>& words, const std::string& last_link);
 
 /// Returns the candidate with the smallest edit distance from `given` (insert, delete, replace, swap of neighbours), without regard to case. Returns
-/// an empty text if the distance is larger than a third of the length of `given`, and larger than 1.
+/// an empty text if this distance is larger than both 1 and a third of the length of `given`.
 std::string guess(const std::string& given, const std::vector<std::string>& candidates);
 
-/// Returns the path of the key that is probably meant by an unknown name, for example `Time/final time` for `tend`; empty if no key is similar.
+/// Returns the path of the key that a user probably means by an unknown name, for example `Time/final time` for `tend`; empty if no key is similar.
 std::string synonym(const std::string& name);
 
-/// Returns the reason why there is no key at this path: a sentence, without its full stop, that names the feature that this program lacks. Returns an
+/// Returns the reason why there is no key at this path: a sentence, without full stop, about a feature that the program does not have. Returns an
 /// empty text if no reason is known.
 std::string missing_feature(const std::string& path);
 

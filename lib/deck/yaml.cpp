@@ -43,7 +43,7 @@ bool reads(const std::string& text, Number& number) {
   return error == std::errc() && last == end;
 }
 
-/// Converts a word to an entry, of the first of these types that fits it: truth value, whole number, number, text. A word in quotes is text.
+/// Converts a word to an entry of the first of these types that fits: truth value, whole number, number, text. A word in quotes is text.
 Teuchos::ParameterEntry typed(const YAML::Node& node) {
   const std::string& text = node.Scalar();
   const bool plain = node.Tag() == "?" || node.Tag().empty();
@@ -67,7 +67,7 @@ Teuchos::ParameterEntry row(const std::vector<Teuchos::ParameterEntry>& entries)
   return Teuchos::ParameterEntry(values);
 }
 
-/// Converts a row of words to an entry, of the first of these types that fits all words: whole numbers, numbers, texts.
+/// Converts a row of words to an entry of the first of these types that fits all words: whole numbers, numbers, texts.
 Teuchos::ParameterEntry typed_row(const std::vector<YAML::Node>& nodes) {
   std::vector<Teuchos::ParameterEntry> entries;
   for (const YAML::Node& node : nodes) entries.push_back(typed(node));
@@ -168,7 +168,7 @@ void check_lines(const std::vector<std::string>& lines, const std::string& origi
   }
 }
 
-/// Throws UserError with the line at which yaml-cpp stopped, or with the last line before it that is not blank.
+/// Throws UserError with the line at which yaml-cpp stopped, or if this line is blank, with the last line before it that is not blank.
 [[noreturn]] void refuse_yaml(const std::vector<std::string>& lines, const std::string& origin, const YAML::Mark& mark,
                               const std::string& reason) {
   std::size_t number = std::min(static_cast<std::size_t>(std::max(mark.line, 0)), lines.size() - 1);

@@ -36,8 +36,8 @@ AreaConstraint::AreaConstraint(const Membrane& membrane, const Eigen::VectorXd& 
   for (Eigen::Index i = 0; i < mobility_.size(); ++i) mobility_[i] = mobility[i / 3];
 }
 
-// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by dI2 = 2 (J_s^2 g^ab)
-// (x,a . u,b). J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
+// Returns the conditions t and their scaled gradient D (4.25) at the shape x. A displacement u changes the invariant I2 by 2 J_s^2 g^ab x_,a . u_,b,
+// where J_s^2 g^ab is the cofactor matrix of g_ab divided by |G|.
 AreaConstraint::Rows AreaConstraint::rows(const Net& x) const {
   Rows result{{static_cast<Eigen::Index>(points_.size()), 3 * x.rows()}, Eigen::VectorXd(points_.size())};
   std::vector<Eigen::Triplet<double>> entries;
@@ -70,8 +70,8 @@ void AreaConstraint::factor(double time) {
   system_.factorize(system);
 }
 
-/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3). y: one number per Gauss point. `time`: argument of factor(). D: gradient
-/// of the area conditions. m: mobility. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
+/// Returns the displacement time m D'(1 + time D m D')^-1 y, shape (N, 3). y: one value per Gauss point. `time`: argument of factor(). D: gradient of
+/// the area conditions, D' its transpose. m: mobility. If y = D r, this is the part of the displacement r that the operator P (4.25) removes.
 Net AreaConstraint::taken(const Eigen::VectorXd& at_points) const {
   const Eigen::VectorXd all = time_ * mobility_.cwiseProduct(now_.d.transpose() * system_.solve(at_points));
   return Eigen::Map<const Net>(all.data(), all.size() / 3, 3);

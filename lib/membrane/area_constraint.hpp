@@ -10,12 +10,13 @@
 namespace tanktread::membrane {
 
 /// Elastic resistance to area changes, integrated by a separate quadrature (3.13). It is written as one area condition per Gauss point; t is the
-/// vector of these conditions. With D the scaled gradient of t, the gradient of this energy is D't, and the stiff part of its second derivative is
-/// D'D. With the mobility m_A of control point A (velocity per force), the operator
+/// vector of these conditions. With D the scaled gradient of t and D' its transpose, the gradient of the elastic area energy is D't, and the stiff
+/// part of its second derivative is D'D. With the mobility m_A of control point A (velocity per force) and the step factor `time` of an implicit
+/// scheme, the operator
 ///
 ///   P = (1 + time m D'D)^-1 = 1 - time m D'(1 + time D m D')^-1 D                                                                 (4.25)
 ///
-/// removes from a displacement the part that changes these areas. The stiffer the membrane is, the more of this part is removed. In the stiff
+/// removes from a displacement the part that changes the areas. The stiffer the membrane is, the more of this part is removed. In the stiff
 /// directions, P approximates the inverse of the matrix of an implicit step. P is also used to move a shape until its conditions t have the values of
 /// another shape.
 class AreaConstraint {
@@ -30,14 +31,15 @@ class AreaConstraint {
   void place(const Net& x) { now_ = rows(x), time_ = 0; }
 
   /// Factors the matrix 1 + time D m D' of the operator P (4.25). D: gradient of the area conditions at the shape set by place(). m: mobility.
+  /// `time`: step factor of the implicit scheme.
   void factor(double time);
 
   /// Returns P r, with the operator P of (4.25).
   Net apply(const Net& r) const { return r - taken(now_.d * Eigen::Map<const Eigen::VectorXd>(r.data(), r.size())); }
 
   /// Moves the shape x so that the area at every Gauss point nearly equals the area in the shape `like`. Takes two steps with the operator P (4.25),
-  /// in which `time` is a parameter. The remaining area error is of second order in the initial error. Afterwards, t and D are evaluated at the new
-  /// x, as by place(x).
+  /// for which `time` is the argument of factor(). The remaining area error is of second order in the initial error. Afterwards, t and D are
+  /// evaluated at the new x, as by place(x).
   void bring(Net& x, const Net& like, double time);
 
  private:
@@ -58,7 +60,7 @@ class AreaConstraint {
   std::vector<Point> points_;
   Eigen::VectorXd mobility_;  // mobility of each control point, three times in succession (once per component)
   Rows now_;
-  double time_ = 0;  // 0: not factored
+  double time_ = 0;  // argument of the last factor(); 0 if not factored
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> system_;
 };
 

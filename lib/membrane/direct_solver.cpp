@@ -31,8 +31,8 @@ constexpr double residual_allowed = 1e-8, residual_of_iteration = 1e-12;
 // an Amesos2 solve (maps, import of several columns). The limit was chosen from solve times of the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_inverting = 256;
 
-// Number of rows above which an iterative solver is as fast as substitution with LU factors, and its setup takes a small part of the time. The limit
-// was chosen from solve times of the mass and collocation matrices of spheres.
+// Number of rows from which an iterative solver is as fast as substitution with LU factors, and its setup takes only a small part of the time of the
+// LU factorization. The limit was chosen from solve times of the mass and collocation matrices of spheres.
 constexpr Eigen::Index worth_iterating = 5000;
 
 /// Returns the first row of each diagonal block of a block-diagonal matrix, followed by the number of rows.
@@ -96,7 +96,7 @@ struct DirectSolver::Impl {
   Eigen::MatrixXd inverse;                            // inverse of a small matrix, otherwise empty
   std::optional<spline::IncompleteSolver> iterative;  // iterative solver with incomplete LU factors, used instead of `solver`
 
-  /// A set of equal blocks: the first row of each, and one solver for all of them.
+  /// Equal diagonal blocks: the first row of each block, the number of rows per block, and one solver for all of them.
   struct Kind {
     std::vector<Eigen::Index> starts;
     Eigen::Index size;
@@ -104,7 +104,8 @@ struct DirectSolver::Impl {
   };
   std::vector<Kind> kinds;  // solvers of equal diagonal blocks; if not empty, used instead of `inverse`, `iterative` and `solver`
 
-  /// Factors one diagonal block of each kind, if at least half of the blocks are equal to earlier blocks. Otherwise does nothing and returns false.
+  /// Factors one diagonal block of each kind and returns true, if at least half of the blocks are equal to earlier blocks. Otherwise does nothing and
+  /// returns false.
   bool factor_equal_blocks() {
     kinds.clear();
     const std::vector<Eigen::Index> starts = block_starts(a);
@@ -131,7 +132,7 @@ struct DirectSolver::Impl {
       for (auto column : all.colwise()) column = iterative->solve(column);
     } else if (inverse.size() == 0) {
       all = substituted(all);
-    } else if (all.cols() <= 3) {  // a loop over rows, because Eigen's product with few columns would copy the inverse first
+    } else if (all.cols() <= 3) {  // column by column, because Eigen's product with few columns would copy the inverse first
       for (auto column : all.colwise()) column = Eigen::VectorXd(inverse * column);
     } else {
       all = inverse * all;

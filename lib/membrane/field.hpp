@@ -39,37 +39,38 @@ class Field {
   /// stored data.
   virtual void linearise(const Net& slip) = 0;
 
-  /// Returns the change of the values of the field (concentration or strain) for the change dx of the shape and dq of the coefficients.
+  /// Returns the change of the values of the field (concentration or strain) if the shape changes by dx and the coefficients by dq.
   virtual Eigen::VectorXd value_change(const Net& dx, const Eigen::VectorXd& dq) const = 0;
   virtual Net load_change(const Net& dx, const Eigen::VectorXd& value_change) const = 0;
   virtual Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& value_change, const Net& slip_change) const = 0;
 
-  /// Stores the shape x for solve(); the state stored by linearise() is kept. Afterwards set_state() may have to be called again.
+  /// Stores the shape x for solve(); the state stored by linearise() is kept. May overwrite the state set by set_state(), which must then be called
+  /// again.
   virtual void freeze(const Net& /*x*/) {}
 
   /// Returns an approximation of (1 - shift A)^-1 r, with the Jacobian A = d(rate)/dq.
   virtual Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const = 0;
 
-  /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the field.
+  /// Returns whether the field follows the shape with a short relaxation time. Implicit solvers then eliminate the coefficients of the field.
   virtual bool follows_shape() const { return false; }
 
-  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq, for fields with a conserved weighted sum of coefficients (see
-  /// conserved()). After the correction, the weighted sums of dq and of r are equal to round-off.
+  /// Corrects the approximate solution dq of (1 - shift A) dq = r, A = d(rate)/dq, if the motion conserves a weighted sum of the coefficients of the
+  /// field (see conserved()). After the correction, the weighted sums of dq and of r are equal to round-off.
   virtual void conserve(const Eigen::VectorXd& /*r*/, Eigen::VectorXd& /*dq*/) const {}
 
   /// Returns dq/dt, at the state set last, if the control points slide along the surface with this velocity while the material is at rest.
   virtual Eigen::VectorXd relabelled(const Net& mesh_velocity) const = 0;
 
-  /// Returns the coefficients q on this space, for the surface with the shape x, transferred from the field `from` of the same kind on another mesh
-  /// of the same surface. The state of `from` must be set. `site` maps a parametric point of this space to the parametric point at the same position
-  /// in the other space.
+  /// Returns the coefficients q of this field for the surface with the shape x, transferred from the field `from` of the same kind on another mesh of
+  /// the same surface. The state of `from` must be set. `site` maps a parametric point of this mesh to the parametric point at the same position on
+  /// the mesh of `from`.
   virtual Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const = 0;
 
   /// Returns the gradient, with respect to the coefficients q, of a weighted sum of q that the motion conserves; empty if there is none.
   virtual Eigen::VectorXd conserved() const { return {}; }
 
-  /// Returns the values, at the state set last, of the columns of the time series that are registered with the field. snapshot() returns the fields
-  /// that are written to snapshots.
+  /// Returns, for the state set last, the values of the columns of the time series that are registered with the field. snapshot() returns the
+  /// quantities that the field writes to snapshots.
   virtual std::vector<double> values() const { return {}; }
   virtual std::vector<SurfaceValues> snapshot() const { return {}; }
 

@@ -66,8 +66,8 @@ int MaxwellElement::order(std::size_t element) const {
   return static_cast<int>(std::lround(std::sqrt(static_cast<double>(end - first_[element]))));
 }
 
-/// Gauss points are permuted with their element. If the parameters are swapped, the components 11 and 22 are swapped. If one parameter is reversed,
-/// component 12 changes sign.
+/// Returns the image of each coefficient and its sign. Gauss points are permuted with their element. If the image swaps the two parameters, the
+/// components 11 and 22 are swapped. If the image reverses only one parameter, component 12 changes sign.
 std::vector<std::pair<int, double>> MaxwellElement::images(const surface::Image& image) const {
   std::vector<std::pair<int, double>> all;
   for (std::size_t e = 0; e < first_.size(); ++e) {

@@ -65,8 +65,8 @@ struct Skalak {
   friend bool operator==(const Skalak&, const Skalak&) = default;
 };
 
-/// Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)), with the shear modulus G_s: a thin sheet of incompressible
-/// Mooney-Rivlin rubber. m = 1 is the neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
+/// Law of a thin sheet of incompressible Mooney-Rivlin rubber, Psi = G_s/2 (m (I1 - 1 + 1/(I2 + 1)) + (1 - m) ((I1 + 2)/(I2 + 1) + I2 - 2)), with the
+/// shear modulus G_s. m = 1 is the neo-Hookean law. Barthes-Biesel, Diaz & Dhenin, J. Fluid Mech. 460, 2002.
 struct MooneyRivlin {
   double shear_modulus = 1;
   double share = 1;  ///< fraction m of the neo-Hookean term
@@ -87,8 +87,8 @@ struct MooneyRivlin {
   friend bool operator==(const MooneyRivlin&, const MooneyRivlin&) = default;
 };
 
-/// Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2: shear at constant area, with the modulus G_s, and dilatation, with the modulus K_s, are
-/// independent. Evans & Skalak, *Mechanics and Thermodynamics of Biomembranes*, 1980.
+/// Law of Evans & Skalak, Psi = G_s/2 ((I1 + 2)/J_s - 2) + K_s/2 (J_s - 1)^2. Shear at constant area, with the modulus G_s, and dilatation, with the
+/// modulus K_s, are independent. Evans & Skalak, *Mechanics and Thermodynamics of Biomembranes*, 1980.
 struct EvansSkalak {
   double shear_modulus = 1;
   double area_dilatation = 1;  ///< area dilatation C: the area modulus is K_s = (1 + 2 C) G_s, as in Skalak's law at small strains
@@ -134,9 +134,9 @@ struct AreaElasticity {
   friend bool operator==(const AreaElasticity&, const AreaElasticity&) = default;
 };
 
-/// Psi = G_s times a strain energy given by the user, with the shear modulus G_s.
+/// User-defined law: Psi is the shear modulus G_s times a strain energy given by the user.
 struct UserLaw {
-  double unit = 1;  ///< shear modulus G_s of the deck, the unit of the energy and its moduli
+  double unit = 1;  ///< shear modulus G_s of the deck, by which the given energy and its moduli are multiplied
   std::shared_ptr<const StrainEnergy> strain_energy;
 
   template <class Number>
@@ -176,8 +176,8 @@ struct MaxwellSpring {
   friend bool operator==(const MaxwellSpring&, const MaxwellSpring&) = default;
 };
 
-/// Interface with the surface tension sigma, Psi = sigma sqrt(1 + I2) = sigma J_s, so that the energy is sigma times the current area: tau^ab = sigma
-/// g^ab. (3.4)
+/// Law of an interface with the surface tension sigma, Psi = sigma sqrt(1 + I2) = sigma J_s. The energy is therefore sigma times the current area,
+/// and the tension is tau^ab = sigma g^ab. (3.4)
 struct SurfaceTension {
   double tension = 1;  ///< sigma, force per length
 
@@ -197,15 +197,15 @@ struct SurfaceTension {
   friend bool operator==(const SurfaceTension&, const SurfaceTension&) = default;
 };
 
-/// Metric of a surface: x_,s.x_,s, x_,s.x_,t and x_,t.x_,t.
+/// Metric of a surface: the scalar products x_,s . x_,s, x_,s . x_,t and x_,t . x_,t of the derivatives of the position x.
 template <class Number>
 struct SurfaceMetric {
   Number s, st, t;
 };
 
-/// Returns the squares of the principal stretches from the unstressed to the current surface, the larger first. They are the eigenvalues of the
-/// stretch tensor h in the orthonormal frame whose first axis is along X_,s. With this formula, stretches that should be equal are computed as equal
-/// to round-off.
+/// Returns the squares of the principal stretches from the unstressed surface (metric `before`) to the current surface (metric `now`), the larger
+/// first. They are the eigenvalues of the stretch tensor h in the orthonormal frame whose first axis is along X_,s, the tangent of the unstressed
+/// surface. If the two stretches are equal, this formula gives values that are equal to round-off.
 template <class Number>
 std::array<Number, 2> squared_stretches(const SurfaceMetric<Number>& before, const SurfaceMetric<Number>& now) {
   const Number det = before.s * before.t - before.st * before.st, turn = before.st / before.s;
@@ -224,10 +224,10 @@ struct SplitLaw {
   AreaElasticity area;
 };
 
-/// Returns Skalak's or Evans & Skalak's law as a sum of two laws; empty for all other laws.
+/// Returns Skalak's or Evans & Skalak's law as the sum of a shear law and an area elasticity; empty for all other laws.
 std::optional<SplitLaw> split(const Law& law);
 
-/// Returns the modulus by which reported tensions are divided: the shear modulus G_s, or the tension sigma of an interface. Force per length.
+/// Returns the modulus, force per length, by which reported tensions are divided: the shear modulus G_s, or the tension sigma of an interface.
 double modulus(const Law& law);
 
 /// Returns the area modulus K_s = dT/d(ln A) of an unstressed membrane (T: tension, A: area), 0 for an interface. Force per length.
@@ -236,13 +236,13 @@ double area_modulus(const Law& law);
 /// Returns the strain energy Psi per unstressed area at the principal stretches l1 and l2.
 double energy(const Law& law, double stretch1, double stretch2);
 
-/// Returns the principal tensions (force per current length) at the principal stretches l1 and l2:
+/// Returns the principal tensions (force per current length) at the principal stretches l1 and l2, with the derivatives Psi_k = dPsi/dI_k:
 ///
 ///   T_i = (2/J_s) Psi_1 l_i^2 + 2 J_s Psi_2,   J_s = l1 l2                            from (3.2)
 std::array<double, 2> principal_tensions(const Law& law, double stretch1, double stretch2);
 
-/// Helfrich's bending energy E_b/2 int (2 chi - c0)^2 dGamma, chi = 1/2 div n, in the weak form. It needs a surface that is geometrically C1 across
-/// every element side. The Gaussian curvature term is constant on a closed surface and is left out.
+/// Helfrich's bending energy: the surface integral of E_b/2 (2 chi - c0)^2, with the mean curvature chi = 1/2 div n and the normal n. Its weak form
+/// needs a surface that is geometrically C1 across every element side. The Gaussian curvature term is constant on a closed surface and is left out.
 struct Bending {
   double modulus = 0;               ///< bending modulus E_b, force x length; 0: no bending
   /// if true, the spontaneous curvature c0 is twice the mean curvature chi of the unstressed surface at each material point
@@ -252,7 +252,7 @@ struct Bending {
   friend bool operator==(const Bending&, const Bending&) = default;
 };
 
-/// Surface viscosity of a Kelvin-Voigt membrane. This viscous stress, with d the rate of strain of the surface, is added to the elastic stress:
+/// Surface viscosity of a Kelvin-Voigt membrane. The following viscous stress is added to the elastic stress; d is the rate of strain of the surface:
 ///
 ///   tau^ab = 2 eta_s (d^ab - g^ab d^c_c/2) + kappa_s g^ab d^c_c,   d_ab = (v,a.g_b + g_a.v,b)/2                            (3.10)
 ///
@@ -269,7 +269,7 @@ struct Material {
   Law law;
   Bending bending;
   SurfaceViscosity viscosity{};
-  int area_order = 0;  ///< Gauss points per direction for an area elasticity that is integrated separately; 0: the rule of the other terms
+  int area_order = 0;  ///< Gauss points per direction for an area elasticity that is integrated separately; 0: integrated with the other terms
 
   friend bool operator==(const Material&, const Material&) = default;
 };

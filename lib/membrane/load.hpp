@@ -15,7 +15,7 @@
 
 namespace tanktread::membrane {
 
-/// Surface of a particle, from which loads and fields are created. It must outlive them.
+/// Surface of a particle, from which loads and fields are created. The surface must outlive the loads and fields.
 struct ParticleSurface {
   const spline::Space& space;
   const Net& unstressed;  ///< control net of the unstressed surface, shape (N, 3), length
@@ -38,18 +38,20 @@ using RigidConditions = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 /// shape (N, 3).
 ///
 /// dE/dx and the product (d2E/dx2) dx are evaluated in two phases. In the local phase, each rank adds the contributions of its elements to their
-/// control points. In the global phase, every rank adds the same terms to all points. Between the phases, the caller sums over ranks and, if the
-/// scene is symmetric, over images. A load may need further nets in the global phase, for example the gradient of the total area. The caller sums
-/// these nets too. Uses no MPI.
+/// control points (add_work(), add_tangent()). Then the caller sums the result over ranks and, if the scene is symmetric, over images. In the global
+/// phase, every rank adds the same terms to all points (add_global_work(), add_global_tangent()). A load may need further
+/// nets in the global phase, for example the gradient of the total area. The local phase adds to these nets, and the caller sums them in the same
+/// way. Uses no MPI.
 class Load {
  public:
   virtual ~Load() = default;
 
   virtual std::size_t n_sums() const { return 0; }  ///< number of further nets that the caller sums over ranks, in addition to `work`
 
-  /// Adds the contributions of these elements to dE/dx (`work`), and to the nets that the global phase needs (`sums`). Each net has the shape (N, 3).
+  /// Adds the contributions of these elements to dE/dx (`work`), and to the nets `sums`, which add_global_work() receives summed over all elements.
+  /// Each net has the shape (N, 3).
   virtual void add_work(const Net& /*x*/, std::span<const int> /*elements*/, Net& /*work*/, std::span<Net> /*sums*/) const {}
-  /// Adds the terms of dE/dx that depend on the sums over all ranks (global phase, explained at Load).
+  /// Adds to `work` the terms of dE/dx that depend on `sums`, the nets of add_work() summed over all elements. Every rank adds the same terms.
   virtual void add_global_work(const Net& /*x*/, std::span<const Net> /*sums*/, Net& /*work*/) const {}
 
   /// Returns whether the membrane stores the energy. An external force stores none.
@@ -57,7 +59,7 @@ class Load {
   /// Returns the energy that the membrane stores at x, force x length. `sums`: the nets of add_work(), summed over all elements.
   virtual double energy(const Net& /*x*/, std::span<const Net> /*sums*/) const { return 0; }
 
-  /// Stores at x the data that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
+  /// Stores the data at the shape x that add_tangent() and add_global_tangent() need. Implicit schemes call it once per tangent.
   virtual void linearise(const Net& /*x*/, std::span<const int> /*elements*/, std::span<const Net> /*sums*/) {}
   /// Adds the product (d2E/dx2) dx to `change`, for the elements given to linearise(). Terms that are not stiff may be left out.
   virtual void add_tangent(const Net& /*dx*/, Net& /*change*/) const {}
@@ -74,8 +76,8 @@ class Load {
   /// Returns whether the load changes if material points slide along the surface at constant shape.
   virtual bool depends_on_labels() const { return true; }
 
-  /// Returns the values, at x, of the columns of the time series that are registered with the load. snapshot() returns the fields that the load
-  /// writes to snapshots.
+  /// Returns, at the shape x, the values of the columns of the time series that are registered with the load. snapshot() returns the quantities that
+  /// the load writes to snapshots.
   virtual std::vector<double> values(const Net& /*x*/) const { return {}; }
   virtual std::vector<SurfaceValues> snapshot(const Net& /*x*/) const { return {}; }
 };
