@@ -26,8 +26,8 @@ struct Stage {
   double rate_or_assumed() const { return rate > 0 ? rate : 0.5; }
 };
 
-/// Solves a stage by quasi-Newton iteration. The approximate Jacobian is the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in
-/// every iteration, with the secants (4.13). Adds one pair to the secants. With d_k the correction of iteration k,
+/// Solves a stage by quasi-Newton iteration. The approximate Jacobian is the frozen-geometry Jacobian (4.3), improved by the secants (4.13); its
+/// membrane tangent H is updated in every iteration. A second iteration adds one pair to the secants. With d_k the correction of iteration k,
 ///
 ///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
 ///

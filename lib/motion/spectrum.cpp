@@ -158,8 +158,8 @@ class Recognition {
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
-/// Returns by how much a mode d changes a conserved quantity with the gradient b = `kept`: b.d/(|b| |d|). It is zero for all modes of nonzero rate,
-/// because conservation implies rate x b.d = 0.
+/// Returns the relative change b.d/(|b| |d|) of a conserved quantity with the gradient b = `kept` due to a mode d. The change is zero for all modes
+/// of nonzero rate, because conservation implies rate x b.d = 0.
 double gain(const Net& kept, const Mode& mode) {
   const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
   return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
@@ -183,7 +183,7 @@ namespace {
 
 using Pairs = std::vector<coupling::Eigenpair>;
 
-/// Computes all eigenpairs of the Jacobian J of the velocity in shape coordinates, which is assembled column by column.
+/// Assembles the Jacobian J of the velocity in shape coordinates, column by column, and computes all its eigenpairs.
 Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
             const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();

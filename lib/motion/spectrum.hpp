@@ -57,7 +57,7 @@ struct Mode {
 /// Adds the columns of a spectrum; modes are numbered from 1. `all_rigid`: no particle deforms, so the modes are rotations.
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 
-/// Computes J y, with y the coordinates of a displacement d of x, by a central difference of velocities:
+/// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
 ///
