@@ -11,7 +11,7 @@ namespace {
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
-/// Returns a sparse matrix that stores a zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
+/// Returns a sparse matrix that stores an explicit zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
   std::vector<spline::LocalMatrix> local;

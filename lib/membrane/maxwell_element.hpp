@@ -43,7 +43,8 @@ class MaxwellElement : public Field {
   Eigen::VectorXd value_change(const Net&, const Eigen::VectorXd& dq) const override { return dq; }
   Net load_change(const Net& dx, const Eigen::VectorXd& dq) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dq, const Net&) const override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< exact: one 3 x 3 system per Gauss point
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< solves (I - shift d(rate)/dq) dq = r exactly, by a 3 x 3 system
+                                                                                 ///< per Gauss point
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;

@@ -55,7 +55,7 @@ class Membrane {
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
-  /// Returns the smallest principal tension over all Gauss points, and the area under compression.
+  /// Returns the smallest principal tension, the fraction of the area under compression, and the largest area change over all Gauss points.
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 

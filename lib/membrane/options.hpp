@@ -37,6 +37,7 @@ struct Options {
   std::optional<double> bending_modulus;   ///< bending modulus E_b, force x length; no bending if neither E_b nor bending_number is given
   std::optional<double> bending_number;    ///< E_b/(G_s R_C^2), or E_b/(sigma R_C^2)
   std::string bending_reference = "unstressed";  ///< surface without bending moment: `unstressed` (curved as the unstressed surface) or `flat`
+                                                 ///< (curvature c0 everywhere)
   std::optional<double> spontaneous_curvature;   ///< spontaneous curvature c0 if the bending reference is flat, 1/length
   SurfaceViscosity viscosity;                            ///< eta_s, kappa_s (3.10)
   std::optional<double> relaxation_time;                 ///< relaxation time T of a Maxwell element (3.23), whose viscosities are `viscosity`
@@ -46,7 +47,7 @@ struct Options {
 
   /// Throws UserError, with a one-sentence message, if keys contradict each other.
   void check() const;
-  void reject(Rejections& to) const;  ///< adds the combinations of keys that are rejected
+  void reject(Rejections& to) const;  ///< adds the combinations of keys that are not allowed to the list `to`
 
   std::shared_ptr<const StrainEnergy> strain_energy() const;  ///< energy of the law `expression`, otherwise null; throws UserError if it is invalid
 

@@ -22,8 +22,8 @@ struct Batch {
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin; the id for function A in lane l is A *
                                       ///< pack_lanes() + l entries further
-  /// index in Group::extraction at which the batch's matrices begin; function A and Bernstein polynomial b: A * (p + 1)^2 + b entries further. Equal
-  /// matrices are stored once
+  /// index in Group::extraction at which the batch's matrices begin; the entry for function A and Bernstein polynomial b is A * (p + 1)^2 + b
+  /// further, with the degree p. Equal matrices are stored once
   std::size_t extraction = 0;
 };
 
@@ -32,7 +32,7 @@ struct Group {
   int degree = 3, order = 4;
   int material = 0;                        ///< material of its elements
   std::vector<double> value, slope, bend;  ///< values, first and second derivatives of the 1-D Bernstein polynomials i at the Gauss nodes q, at index
-                                           ///< q * (p + 1) + i
+                                           ///< q * (p + 1) + i with the degree p
   std::vector<double> weight;              ///< tensor-product weights, at index q_t * order + q_s
   std::vector<Batch> batches;
   std::vector<int> points;
@@ -42,8 +42,9 @@ struct Group {
   int n_bernstein() const { return (degree + 1) * (degree + 1); }
 };
 
-/// Packs the given elements (any order, no repetition) into one group per material and degree, both ascending. The rule of a group has `order` points
-/// per direction up to degree 3, and one more for each degree above 3. `material`: material of each element of the space; if empty, all are 0.
+/// Packs the given elements (any order, no repetition) into one group per material and degree, sorted by material, then by degree. The rule of a
+/// group has `order` points per direction up to degree 3, and one more for each degree above 3. `material`: material of each element of the space; if
+/// empty, all are 0.
 std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 
 /// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.

@@ -38,8 +38,8 @@ void reference_points(int n, int used, const Pack* a, const double* weight, Refe
 /// Computes the strain energy int Psi dGamma_0 of each element of a batch, one element per lane.
 void energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* energy);
 
-/// Computes p = dE/da, the derivative of the strain energy E with respect to the tangents a, at every Gauss point, in the layout of a. With Psi_1,
-/// Psi_2 the derivatives of Psi with respect to I1, I2, and J_s the current divided by the unstressed area, p_a = S^ab a_b,
+/// Computes p = dE/da, the derivative of the strain energy E with respect to the tangents a, at every Gauss point, in the layout of a. Psi_1 and
+/// Psi_2 are the derivatives of Psi with respect to I1 and I2, and J_s is the ratio of current to unstressed area: p_a = S^ab a_b,
 ///
 ///   S^ab = 2 area (Psi_1 G^ab + Psi_2 J_s^2 g^ab) = area J_s tau^ab                    (3.2), (3.6)
 void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* p);

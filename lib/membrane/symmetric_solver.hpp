@@ -12,9 +12,9 @@
 
 namespace tanktread::membrane {
 
-/// Solves A x = b for symmetric fields with a scalar matrix A of a symmetric space (a mass matrix, the collocation matrix), A_{ga,gb} = A_ab for
-/// every image g. Component c of a symmetric field is determined by its values x_bc at the fundamental points b. For each fundamental point a, they
-/// satisfy
+/// Solves A x = b for symmetric fields with a matrix A of a symmetric space that acts on each component alike (a mass matrix or the collocation
+/// matrix), A_{ga,gb} = A_ab for every image g. Component c of a symmetric field is determined by its values x_bc at the fundamental points b. For
+/// each fundamental point a, they satisfy
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///

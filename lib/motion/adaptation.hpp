@@ -25,7 +25,7 @@ struct AdaptationOptions {
   std::optional<double> load_tolerance;                    ///< tolerance of the estimated load error (1.5), force/length^2; if empty, not used
   /// L_ref, reference length of an element; this and the next five members are set only if the indicator is `variation`
   std::optional<double> reference_length;
-  /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: the curvature is not used
+  /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: no refinement by curvature
   std::optional<double> reference_curvature_variation;
   std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction (force per current area), force/length^3
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double stable = 2.3;       // largest step dt times stiffness rho for BS3; less than the stability limit 2.51, because the measured rho is a
                                      // lower bound
-constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5 with 218 and 866 control points
+constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5, on meshes of 218 and 866
+                                     // control points
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 

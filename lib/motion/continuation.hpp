@@ -32,8 +32,7 @@ struct ContinuationOptions {
 
   void declare(deck::Section& section);
   std::string remark(const BranchPoint& point) const;   ///< returns a warning if the error of a fold is above its tolerance, otherwise ""
-  std::string text(double value, double second) const;  ///< returns a text with the names of the parameter and of the second parameter and these
-                                                        ///< values
+  std::string text(double value, double second) const;  ///< returns the name and value of the parameter and, if set, of the second parameter
 };
 
 /// A steady shape on a branch.
@@ -78,7 +77,7 @@ class Branch {
          double parameter, double second, Net x);
 
   /// Alternative search for the first point, called if the first search fails. x: best iterate of the failed search, replaced by the result.
-  /// `failed`: report of the failed search. Returns its own report. Collective.
+  /// `failed`: report of the failed search. Returns the report of the new search. Collective.
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 

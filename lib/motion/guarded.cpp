@@ -9,7 +9,7 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of one rank; the largest of all ranks is the common outcome
+enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes on one rank, from best to worst; the worst on any rank is the common outcome
 
 }  // namespace
 

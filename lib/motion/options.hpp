@@ -33,7 +33,7 @@ struct TimeOptions {
   double linear_tolerance = 0.05;          ///< allowed relative residual of the linear solves of a stage
   double contraction_limit = 0.3;          ///< contraction rate of the quasi-Newton iteration above which the frozen layer operator is assembled
                                            ///< again
-  double largest_operator = 32;             ///< memory of the frozen layer operator above which `auto` uses rkc2, in GB on all ranks together
+  double largest_operator = 32;             ///< memory of the frozen layer operator above which `auto` uses rkc2, GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2
 

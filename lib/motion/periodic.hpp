@@ -87,8 +87,8 @@ struct Multiplier {
 
 /// Returns the `number` largest eigenvalues of the derivative of the return map P (`map`) at its fixed point x, by central differences and Arnoldi's
 /// method started from the displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted`: removes from a displacement
-/// the parts that break the symmetry of `start`. Eigenvalues smaller than the noise of a run divided by the option `difference` are not significant.
-/// Collective.
+/// the parts that break the symmetry of `start`. Eigenvalues smaller than the numerical noise of a run divided by the option `difference` are not
+/// significant. Collective.
 std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number);
 
 }  // namespace tanktread::motion

@@ -40,7 +40,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
 /// Decision on an attempted step.
 struct Verdict {
   bool accepted = false;
-  double factor = 0.5;  ///< size of the next attempt divided by the size of this one
+  double factor = 0.5;  ///< size of the next attempt divided by the size of this attempt
 };
 
 /// Decides on an attempted step that ended with the stage `last`. `error`: local error of the step divided by the tolerance; it is proportional to

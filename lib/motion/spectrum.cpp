@@ -81,7 +81,8 @@ Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordi
     for (Eigen::Index k = 0; k < by_y.size(); ++k)
       by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
     by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
-    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // the modes have another parity, or the quantity belongs to a mirror image
+    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // modes of this parity do not change the quantity, or the quantity is a mirror image of an
+                                                          // earlier one
     kept_.col(n++) = by_y.normalized();
   }
   kept_.conservativeResize(Eigen::NoChange, n);

@@ -17,10 +17,10 @@ struct GaussRule {
 /// and stored; the reference stays valid for the whole run.
 const GaussRule& gauss(int n);
 
-/// Returns the number of Gauss points that integrates polynomials of this degree exactly.
+/// Returns the smallest number of Gauss points that integrates polynomials of this degree exactly.
 constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
 
-/// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i is the pair of node i (of n_s) in s and node j in t.
+/// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i consists of node i (of n_s) in s and node j in t.
 struct TensorRule {
   Eigen::VectorXd s, t, weights;
   int size() const { return static_cast<int>(weights.size()); }
