@@ -25,7 +25,7 @@ struct Part {
   std::vector<int> elements;
   std::vector<Material> materials;  ///< materials of the surface. split_material() appends one material for each area elasticity that has its own
                                     ///< Gauss rule; an appended material has only this area elasticity
-  std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It also has the terms that split_material()
+  std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It includes the terms that split_material()
                                     ///< moves to another material
   std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at its Gauss points. False for the shear part of a split law:
                                     ///< the Gauss points of its area part are used instead

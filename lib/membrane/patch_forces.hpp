@@ -41,7 +41,7 @@ struct PatchForces {
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
 };
 
-/// Patch forces as a load. Their virtual work does not depend on the shape.
+/// Load of all patch forces on a membrane. Their virtual work per displacement does not depend on the shape.
 class PatchLoad : public Load {
  public:
   PatchLoad(const PatchForces& forces, const spline::Space& space, const Net& unstressed)

@@ -102,7 +102,7 @@ class Surfactant : public Field {
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
-  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface; concentration_: control values of c
+  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface, per function A. concentration_: control values of c
   Eigen::VectorXd q_;                                     // coefficients set last
   Net x_, known_x_;                                       // x_: shape set last. known_x_: shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation

@@ -40,7 +40,7 @@ struct AdaptationOptions {
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
   double coarsening_margin = 0.7;                          ///< merged elements must stay below this fraction of every refinement limit
-  double coarsening_tolerance = 1e-4;  ///< largest displacement of the current or the unstressed surface by one coarsening, length
+  double coarsening_tolerance = 1e-4;  ///< largest allowed displacement of the current or unstressed surface by one coarsening, length
 
   void declare(deck::Section& section);
 

@@ -53,10 +53,10 @@ struct BranchPoint {
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
 /// G(x, p) = 0 are the equations (4.17) of a steady shape, and (x^, p^) is the predicted point, one step further along the branch. This is the method
-/// `arclength`; with `natural`, the second equation is p = p^. Both equations are solved like (4.17), with G linearised in p. In each iteration, p is
-/// changed such that the iterate lies on the plane of the second equation. The solution is repeated, with G linearised at the p just found, until p
-/// no longer changes. A fold is the vertex of the parabola p(arclength) through three points. The point of the branch at the vertex is computed, and
-/// replaces one of the three points, until the p of the vertex no longer changes.
+/// `arclength`; with `natural`, the second equation is p = p^. The two equations are solved by the method for (4.17), with G linearised in p. In each
+/// iteration, p is changed such that the iterate lies on the plane of the second equation. The solution is repeated, with G linearised at the p just
+/// found, until p no longer changes. A fold is the vertex of the parabola p(arclength) through three points. The point of the branch at the vertex is
+/// computed, and replaces one of the three points, until the p of the vertex no longer changes.
 ///
 /// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
 /// if the values were evenly spaced. Equation (4.20) then gives one point at the prediction, one before and one after it, where t is the direction of

@@ -50,8 +50,8 @@ void freeze(coupling::Dynamics& dynamics, State& state, double time);
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
 /// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
-/// and frozen operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the state has
-/// the slope before the kink.
+/// and frozen layer operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the
+/// state has the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.

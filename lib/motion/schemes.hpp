@@ -178,7 +178,8 @@ class Bdf3 : public Scheme {
   TrBdf2 starter_;
 };
 
-/// Chooses the scheme of each step from the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
+/// Chooses the scheme of each step from the stiffness rho (4.7). With the frozen operator (4.3), measuring rho costs less than one velocity
+/// evaluation.
 ///
 /// If the frozen operator would be larger than `Time/largest operator`, every step uses RKC2, which needs no frozen operator. If the velocity is the
 /// solution of a linear system but the residual of a stage is computed without a solve (3.14), every step uses TR-BDF2. Otherwise:
