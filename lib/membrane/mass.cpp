@@ -11,7 +11,7 @@ namespace {
 
 int pairs(const Batch& batch) { return batch.functions * (batch.functions + 1) / 2; }
 
-/// Returns a sparse matrix that stores a zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
+/// Returns a sparse matrix that stores an explicit zero for every pair of functions that share an element: the sparsity pattern of the mass matrix.
 Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   const Eigen::MatrixXd zeros = Eigen::MatrixXd::Zero(max_functions, max_functions);
   std::vector<spline::LocalMatrix> local;
@@ -19,7 +19,7 @@ Eigen::SparseMatrix<double> pattern(const spline::Space& space) {
   return spline::assemble(space.n_points, local);
 }
 
-/// Returns the index at which the function values of a batch begin in the array of its group.
+/// Returns the index at which the basis-function values of a batch begin in the array values_[k] of its group k.
 std::size_t values_of(const Group& g, const Batch& batch) {
   return batch.extraction / static_cast<std::size_t>(g.n_bernstein()) * static_cast<std::size_t>(g.n_gauss());
 }
@@ -42,8 +42,8 @@ std::vector<Pack> values_at_gauss_points(const Group& g) {
   return values;
 }
 
-/// Returns the positions of the entries (a, b) and (b, a) in the array of matrix entries, for the element in each lane. If an element has fewer
-/// functions than its batch, the missing ones get position 0, where they add zero.
+/// Returns the positions of the entries (a, b) and (b, a) in the value array of the sparse matrix, for each pair a, b of basis functions of the
+/// element in each SIMD lane. If an element has fewer functions than its batch, the missing pairs get position 0; their values are zero.
 std::vector<int> slots_of(const Group& g, const Eigen::SparseMatrix<double>& matrix, const spline::Space& space) {
   const int *start = matrix.outerIndexPtr(), *row = matrix.innerIndexPtr();
   const auto slot = [&](int a, int b) { return static_cast<int>(std::lower_bound(row + start[b], row + start[b + 1], a) - row); };

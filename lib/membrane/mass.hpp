@@ -12,10 +12,11 @@
 namespace tanktread::membrane {
 
 /// Mass matrix S_AB = int N_A N_B dGamma, shape (N, N), symmetric positive definite, units of area. On the current surface it is the left-hand side
-/// of (3.6); on the unstressed surface it is M0 in (3.7). The sparsity pattern is built at the first update, the entries at every update.
+/// of (3.6); on the unstressed surface it is M0 in (3.7). The sparsity pattern is built at the first update, the entries are computed at every
+/// update.
 class MassMatrix {
  public:
-  /// `order`: number of Gauss points per direction on elements of degree 3. It grows by one with each higher degree. `space` must outlive this
+  /// `order`: number of Gauss points per direction on elements up to degree 3, and one more for each degree above 3. `space` must outlive this
   /// object.
   explicit MassMatrix(const spline::Space& space, int order = 4);
 

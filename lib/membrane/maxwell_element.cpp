@@ -12,7 +12,8 @@ namespace {
 
 constexpr int most_points = max_order * max_order;
 
-/// Metric of a surface at a Gauss point: g^11, g^12, g^22, 1/|g|, and the area that the point represents (weight times sqrt|g|).
+/// Metric of a surface at a Gauss point: contravariant components g^11, g^12, g^22, 1/|g| with |g| = det g_ab, and the area that the point represents
+/// (weight times sqrt|g|).
 struct Metric {
   Eigen::Vector3d raised;
   double inverse_det, area;
@@ -20,8 +21,8 @@ struct Metric {
 
 }  // namespace
 
-/// Calls use(group, batch, first, a) for every batch. first: index of the first Gauss point of the batch in relaxed_. a: tangents of the shape x at
-/// the Gauss points of the batch.
+/// Calls use(group, batch, first, a) for every batch. first: index of the first Gauss point of the batch in relaxed_, the array of stress-free
+/// metrics. a: tangents of the shape x at the Gauss points of the batch.
 template <class Use>
 void MaxwellElement::each_batch(const Net& x, const Use& use) const {
   std::size_t first = 0;
@@ -35,7 +36,8 @@ void MaxwellElement::each_batch(const Net& x, const Use& use) const {
 }
 
 /// Calls use(first, q, lane, row, metric of x) for each Gauss point q of the element in each SIMD lane. first: index in relaxed_ of the first Gauss
-/// point of the batch. row: index of the Gauss point among all Gauss points of the surface. The area is zero in lanes without an element.
+/// point of the batch. row: index of the Gauss point among all Gauss points of the surface. The area in the metric is zero in lanes without an
+/// element.
 template <class Use>
 void MaxwellElement::each_point(const Net& x, const Use& use) const {
   each_batch(x, [&](const Group& group, const Batch& batch, std::size_t first, const Pack* a) {

@@ -14,15 +14,16 @@
 
 namespace tanktread::membrane {
 
-/// Maxwell element parallel to an elastic membrane; together they form a standard linear solid. Its springs G = eta_s/T and K = kappa_s/T lie in the
-/// surface. Their stress relaxes within the time T, because their stress-free metric C^-1 follows the metric of the surface:
+/// Maxwell element parallel to an elastic membrane; together they form a standard linear solid. Its in-plane springs have the shear modulus
+/// G = eta_s/T and the dilatation modulus K = kappa_s/T, with the surface viscosities eta_s and kappa_s. Their stress relaxes within the time T,
+/// because their stress-free metric C^-1 follows the metric g_ab of the surface (|.|: determinant):
 ///
 ///   E = int (G/2 (t/J - 2) + K/2 (J - 1)^2) dG,   t = C^ab g_ab,   J^2 = |C| |g|                                            (3.23)
 ///   T dC^ab/dt = (2 J^2/t) g^ab - (2 - 1/J) C^ab                                                                           (3.24)
 ///
-/// The power lost in the relaxation is dissipated as heat (3.25). If T is short, the element tends to the surface viscosity (3.10). The energy is the
-/// energy of the law `MaxwellSpring` on the reference surface of metric C^-1. The unknowns are the components of C at the Gauss points, scaled by the
-/// components of the contravariant metric of `initial`. Uses no MPI.
+/// The power lost in the relaxation is dissipated as heat (3.25). For T -> 0, the element becomes the surface viscosity (3.10). E is the energy of
+/// the law `MaxwellSpring` on a reference surface with the metric C^-1. The unknowns are C^11, C^12, C^22 at the Gauss points, divided by g^11,
+/// sqrt(g^11 g^22), g^22 of the shape `initial`. Uses no MPI.
 class MaxwellElement : public Field {
  public:
   /// `order`: Gauss points per direction, as for a Membrane. `space` must outlive this object. `time`: relaxation time T.
@@ -42,11 +43,12 @@ class MaxwellElement : public Field {
   Eigen::VectorXd value_change(const Net&, const Eigen::VectorXd& dq) const override { return dq; }
   Net load_change(const Net& dx, const Eigen::VectorXd& dq) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dq, const Net&) const override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< exact: one 3 x 3 system per Gauss point
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< solves (I - shift d(rate)/dq) dq = r exactly, by a 3 x 3 system
+                                                                                 ///< per Gauss point
   bool follows_shape() const override { return true; }
   Eigen::VectorXd relabelled(const Net&) const override { return Eigen::VectorXd::Zero(size()); }
   std::vector<std::pair<int, double>> images(const surface::Image& image) const override;
-  surface::FieldsAt values_at() const override;  ///< logarithm of the strain tensor C^ab x_a x_b (3.23) in space, nine components
+  surface::FieldsAt values_at() const override;  ///< logarithm of the strain tensor C^ab x_,a x_,b (3.23), nine Cartesian components
   /// Interpolates the logarithm of the strain C (3.23) in orthonormal frames of the surface, so that C stays positive definite.
   Eigen::VectorXd transferred(const Field& from, const Net& x, const std::function<spline::Site(const spline::Site&)>& site) const override;
 
@@ -69,7 +71,8 @@ class MaxwellElement : public Field {
   double time_;
   std::vector<Group> groups_;
   std::vector<Eigen::Index> first_;                     // for each element, index of the first row of `unit_` with its Gauss points
-  // g^11, sqrt(g^11 g^22), g^22 of the shape `initial`, one row per Gauss point; each coefficient is a component of C (3.23) divided by one
+  // g^11, sqrt(g^11 g^22), g^22 of the shape `initial`, one row per Gauss point; each coefficient is a component of C (3.23) divided by the
+  // corresponding entry
   Net unit_;
   Net x_;
   std::vector<ReferencePoint> relaxed_;                 // stress-free surface at the Gauss points, batch after batch

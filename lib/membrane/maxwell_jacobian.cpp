@@ -18,7 +18,8 @@ using Symmetric = Vector<Changing>;  // components 11, 12, 22
 
 Changing determinant(const Symmetric& a) { return a[0] * a[2] - a[1] * a[1]; }
 
-/// Returns the vector of packs[first .. first + 2] in the register lane `lane`, as dual numbers whose directional derivatives are in `changes`.
+/// Returns the vector with the components packs[first .. first + 2] in the register lane `lane`, as dual numbers. Their directional derivatives are
+/// taken from `changes`.
 Vector<Changing> vector_of(const Pack* packs, const Pack* changes, int first, int lane) {
   const int lanes = pack_lanes();
   const auto number = [&](int k) { return Changing{numbers(packs)[(first + k) * lanes + lane], numbers(changes)[(first + k) * lanes + lane]}; };

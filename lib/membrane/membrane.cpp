@@ -23,9 +23,9 @@ constexpr int max_gauss = max_order * max_order;
 /// A set of elements, sorted into batches for the packed kernels (one element per register lane), with the unstressed surface at the Gauss points.
 struct Part {
   std::vector<int> elements;
-  std::vector<Material> materials;  ///< materials of the surface, followed by one material for each area elasticity that has another Gauss rule. An
-                                    ///< added material has only this area elasticity
-  std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It also has the terms that split_material()
+  std::vector<Material> materials;  ///< materials of the surface. split_material() appends one material for each area elasticity that has its own
+                                    ///< Gauss rule; an appended material has only this area elasticity
+  std::vector<Law> whole;           ///< per material: complete law, from which tensions are computed. It includes the terms that split_material()
                                     ///< moves to another material
   std::vector<bool> sampled;        ///< per material: true if tensions are evaluated at its Gauss points. False for the shear part of a split law:
                                     ///< the Gauss points of its area part are used instead
@@ -91,7 +91,7 @@ Part::Part(const spline::Space& space, const Net& unstressed, std::span<const in
   }
 }
 
-/// Moves the area elasticity of material m to separate groups of elements with another Gauss rule (3.13).
+/// Moves the area elasticity of material m to a new material, whose groups of elements have another Gauss rule (3.13).
 void Part::split_material(const spline::Space& space, const Materials& of_surface, std::size_t m) {
   const Material& material = of_surface.all[m];
   const auto parts = split(material.law);

@@ -21,20 +21,20 @@ struct TensionSummary {
   double smallest = 0, compressed_area = 0, area_change = 0;
 };
 
-/// Parts of a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of the space its area and the
-/// area with negative tension. Both areas are zero for elements that are not given.
+/// Contributions of some elements to a TensionSummary: the smallest tension and the largest |J - 1| on the given elements, and for each element of
+/// the space its area and its area under compression. Both areas are zero for elements that are not given.
 struct ElementTensions {
   double smallest = 0, area_change = 0;
   std::vector<double> area, compressed;
 };
 
-/// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. `elements` are the elements to evaluate, in ascending
-/// order. The summation order of each row of a load does not depend on how the elements are distributed over callers.
+/// A membrane: a spline space, its unstressed net X, a law and a Gauss rule. Uses no MPI. The argument `elements` lists the elements to evaluate, in
+/// ascending order. Each row of a load is summed in the same order, however the elements are distributed over the ranks of the calling program.
 ///
 /// Not thread-safe, because the packed elements of the latest calls are cached.
 class Membrane {
  public:
-  /// `order`: number of Gauss points per direction on elements of degree 3, from 2 to 10. It grows by one with each higher degree. `space` must
+  /// `order`: number of Gauss points per direction on elements up to degree 3, from 2 to 10, and one more for each degree above 3. `space` must
   /// outlive the membrane.
   Membrane(const spline::Space& space, const Net& unstressed, const Law& law, int order = 4, const Bending& bending = {})
       : Membrane(space, unstressed, Materials{{{law, bending}}, {}}, order) {}
@@ -42,7 +42,8 @@ class Membrane {
   /// Creates a membrane of several materials.
   Membrane(const spline::Space& space, const Net& unstressed, const Materials& materials, int order = 4);
 
-  /// Returns E = int Psi dGamma_0 plus the bending energy, over all or the given elements. Units force x length.
+  /// Returns E = int Psi dGamma_0 plus the bending energy, over all or the given elements, with the strain energy Psi per unstressed area. Units
+  /// force x length.
   double energy(const Net& x) const;
   double energy(const Net& x, std::span<const int> elements) const;
 
@@ -54,7 +55,7 @@ class Membrane {
   void load(const Net& x, std::span<const int> elements, Net& d) const;
   Net load(const Net& x) const;
 
-  /// Returns the smallest principal tension over all Gauss points, and the area under compression.
+  /// Returns the smallest principal tension, the fraction of the area under compression, and the largest area change over all Gauss points.
   TensionSummary tension_summary(const Net& x) const;
   ElementTensions element_tensions(const Net& x, std::span<const int> elements) const;
 

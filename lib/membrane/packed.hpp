@@ -18,11 +18,12 @@ constexpr int max_functions = 64;  ///< largest number of functions on one eleme
 /// A batch: up to pack_lanes() elements of one degree, one per register lane. Idle lanes repeat the last element with the weight 0.
 struct Batch {
   int used = 0;                       ///< number of lanes that are not idle
-  int functions = 0;                  ///< m, largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
+  int functions = 0;                  ///< largest number of basis functions of an element of the batch; elements with fewer are padded with zeros
   std::array<int, most_lanes> elements{};  ///< ids in the space
   std::size_t points = 0;             ///< index in Group::points at which the batch's control-point ids begin; the id for function A in lane l is A *
                                       ///< pack_lanes() + l entries further
-  /// index in Group::extraction at which the batch's matrices begin; entry (A, b) follows A * (p + 1)^2 + b later. Batches share equal matrices
+  /// index in Group::extraction at which the batch's matrices begin; the entry for function A and Bernstein polynomial b is A * (p + 1)^2 + b
+  /// further, with the degree p. Equal matrices are stored once
   std::size_t extraction = 0;
 };
 
@@ -31,7 +32,7 @@ struct Group {
   int degree = 3, order = 4;
   int material = 0;                        ///< material of its elements
   std::vector<double> value, slope, bend;  ///< values, first and second derivatives of the 1-D Bernstein polynomials i at the Gauss nodes q, at index
-                                           ///< q * (p + 1) + i
+                                           ///< q * (p + 1) + i with the degree p
   std::vector<double> weight;              ///< tensor-product weights, at index q_t * order + q_s
   std::vector<Batch> batches;
   std::vector<int> points;
@@ -41,8 +42,9 @@ struct Group {
   int n_bernstein() const { return (degree + 1) * (degree + 1); }
 };
 
-/// Packs the given elements (any order, no repetition) into one group per material and degree, both ascending. The rule of a group has `order` points
-/// per direction at degree 3 and one more for each higher degree. `material`: material of each element of the space; if empty, all are 0.
+/// Packs the given elements (any order, no repetition) into one group per material and degree, sorted by material, then by degree. The rule of a
+/// group has `order` points per direction up to degree 3, and one more for each degree above 3. `material`: material of each element of the space; if
+/// empty, all are 0.
 std::vector<Group> pack(const spline::Space& space, std::span<const int> elements, int order, std::span<const int> material = {});
 
 /// Evaluates the tangents of a net at the Gauss points of a batch: a[6 q + c] is component c of x_,s, and a[6 q + 3 + c] is component c of x_,t.
@@ -52,8 +54,8 @@ void tangents(const Group& group, const Batch& batch, const Net& net, Pack* a);
 /// p[6 q .. 6 q + 2], and p_t is p[6 q + 3 .. 6 q + 5]. The elements are added one after another, in the order of their lanes.
 void add_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 
-/// Evaluates first and second derivatives of a net at the Gauss points of a batch: j[15 q + 3 k + c] is component c of x_,s x_,t x_,ss x_,st x_,tt
-/// for k = 0 .. 4. add_jet_transpose applies the transpose.
+/// Evaluates first and second derivatives of a net at the Gauss points of a batch: j[15 q + 3 k + c] is component c of derivative k = 0 .. 4 at point
+/// q, in the order x_,s x_,t x_,ss x_,st x_,tt. add_jet_transpose applies the transpose of `jets` and adds the result to `sum`.
 void jets(const Group& group, const Batch& batch, const Net& net, Pack* j);
 void add_jet_transpose(const Group& group, const Batch& batch, const Pack* p, Net& sum);
 

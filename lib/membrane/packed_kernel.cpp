@@ -11,7 +11,8 @@ namespace {
 
 constexpr int max_bernstein = (max_degree + 1) * (max_degree + 1);
 
-// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = first .. first + Width - 1.
+// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r * across_r + k * across_k] for k = first .. first + Width - 1 and the
+// components c = 0, 1, 2.
 template <int Width>
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int first, Register* out) {
   Register sum[Width][3] = {};
@@ -24,7 +25,8 @@ void extract(const Register* e, int across_r, int across_k, const Register* x, i
     for (int c = 0; c < 3; ++c) out[3 * (first + k) + c] = sum[k][c];
 }
 
-// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r across_r + k across_k] for k = 0 .. n_k - 1, four values of k at a time.
+// Computes the small matrix product out[3 k + c] = sum_r x[3 r + c] e[r * across_r + k * across_k] for k = 0 .. n_k - 1 and the components c = 0, 1,
+// 2, for four values of k at a time.
 void extract(const Register* e, int across_r, int across_k, const Register* x, int n_r, int n_k, Register* out) {
   int k = 0;
   for (; k + 4 <= n_k; k += 4) extract<4>(e, across_r, across_k, x, n_r, k, out);
@@ -51,7 +53,7 @@ void scatter(const Group& g, const Batch& batch, const Register* f, Net& sum) {
     }
 }
 
-// Number of derivatives with respect to s and to t in each of x_,s x_,t x_,ss x_,st x_,tt.
+// Orders of the five derivatives x_,s x_,t x_,ss x_,st x_,tt with respect to s and with respect to t.
 constexpr int times_s[] = {1, 0, 2, 1, 0}, times_t[] = {0, 1, 0, 1, 2};
 
 // Tensor-product Gauss rule. The degree of the elements and the number of points are template arguments for the usual combinations, and 0 if they are
@@ -64,8 +66,8 @@ struct Rule {
   explicit Rule(const Group& g)
       : p(Degree ? Degree : g.degree), q(Order ? Order : g.order), bernstein{g.value.data(), g.slope.data(), g.bend.data()} {}
 
-  // Evaluates the first n of the derivatives x_,s x_,t x_,ss x_,st x_,tt at all nodes, a[3 (n node + derivative) + c], from Bezier points. Sums over
-  // s first, then over t.
+  // Evaluates the first n of the derivatives x_,s x_,t x_,ss x_,st x_,tt at all Gauss nodes from Bezier points. Stores component c of a derivative in
+  // a[3 (n * node + derivative) + c]. Sums over the Bezier points along s first, then along t.
   template <int n>
   void evaluate(const Register* bezier, Register* a) const {
     constexpr int m = n == 2 ? 2 : 3;

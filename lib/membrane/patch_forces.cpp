@@ -59,8 +59,9 @@ namespace {
 /// most_parts per direction.
 constexpr int order = 6, most_parts = 32;
 
-/// Returns the number of parts per direction into which the patch quadrature divides an element; 0 if the element is farther from the patch than its
-/// own length, so that it cannot overlap the patch.
+/// Returns the number of parts per direction into which the patch quadrature divides an element. Returns 0 if the element is farther from the patch
+/// than half its own size, so that it cannot overlap the patch. `places`: 3 x 3 points of the element, relative to the centroid. `ray`: unit vector
+/// from the centroid to the patch.
 int parts(const std::array<Vec3, 9>& places, const Vec3& ray, double radius) {
   double longest = 0, nearest = INFINITY;
   for (const Vec3& x : places) {

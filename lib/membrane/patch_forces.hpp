@@ -12,9 +12,9 @@
 
 namespace tanktread::membrane {
 
-/// A force on a patch of a membrane, `Membrane/forces/<name>`. A cylinder cuts the patch out of the unstressed surface. Its axis is the ray from the
-/// centroid in the given direction. The force stays on the same material points and keeps its direction. Its density per unstressed area is
-/// proportional to (1 - d^2/radius^2)^2, with d the distance from the ray.
+/// A force on a patch of a membrane, `Membrane/forces/<name>`. The patch is the part of the unstressed surface inside a cylinder of the given radius
+/// around the ray from the centroid in the given direction. The force stays on the same material points and keeps its direction. Its density per
+/// unstressed area is proportional to (1 - d^2/radius^2)^2, with d the distance from the ray.
 struct PatchForce {
   std::string name;
   Vec3 direction = Vec3::Zero();  ///< direction of the ray, of any length
@@ -41,7 +41,7 @@ struct PatchForces {
   Net virtual_work(const spline::Space& space, const Net& unstressed) const;
 };
 
-/// Patch forces as a load. Their virtual work does not depend on the shape.
+/// Load of all patch forces on a membrane. Their virtual work per displacement does not depend on the shape.
 class PatchLoad : public Load {
  public:
   PatchLoad(const PatchForces& forces, const spline::Space& space, const Net& unstressed)

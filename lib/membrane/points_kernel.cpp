@@ -35,7 +35,7 @@ void visit_points(const Law& law, int n, const ReferencePoint* points, const Pac
 // Twice the mean curvature, 2 chi = -M/J^3 with N = x_,s x x_,t, J = |N| and M = (g22 x_,ss - 2 g12 x_,st + g11 x_,tt) . N.
 template <class Number>
 struct Curved {
-  Vector<Number> s, t, ss, st, tt, normal, turned;  // turned: the bracket of M
+  Vector<Number> s, t, ss, st, tt, normal, turned;  // turned: the sum in parentheses in M
   Number g11, g12, g22, j, curvature;
 
   explicit Curved(const Vector<Number>* jet) : s(jet[0]), t(jet[1]), ss(jet[2]), st(jet[3]), tt(jet[4]), normal(cross(s, t)) {
@@ -46,8 +46,8 @@ struct Curved {
     curvature = -(dot(turned, normal) / (square * j));
   }
 
-  // Computes p, the gradient of the bending energy density with respect to the five vectors of the jet, by the product rule
-  // d[Eb/2 (2 chi - c0)^2 J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ.
+  // Computes p, the gradient of the bending energy density with respect to the five vectors of the jet, by the product rule d[Eb/2 (2 chi - c0)^2
+  // J] = Eb (2 chi - c0) J d(2 chi) + Eb/2 (2 chi - c0)^2 dJ. Eb: `modulus`, chi: mean curvature, J = |x_,s x x_,t|.
   void gradient(double modulus, const Register& c0, Vector<Number>* p) const {
     const Number excess = curvature - c0, inverse = 1.0 / j;
     const Number by_m = -modulus * (excess * inverse * inverse);                                              // derivative by M
@@ -123,8 +123,9 @@ void smaller_tensions(const Law& law, int n, const ReferencePoint* reference, co
 }
 
 // If the strain changes by e_ab (half the change of the metric), the invariants change by dI1 = 2 G.e and dI2 = 2 K.e, with e = (e11, 2 e12, e22),
-// G = (G^11, G^12, G^22) and K = J_s^2 (g^11, g^12, g^22). The stress is S = 2 area (Psi_1 G + Psi_2 K), with Psi_1 and Psi_2 the derivatives of
-// the energy with respect to I1 and I2.
+// G = (G^11, G^12, G^22) of the unstressed surface and K = J_s^2 (g^11, g^12, g^22) of the current surface. J_s is the ratio of current to unstressed
+// area. The stress is S = 2 area (Psi_1 G + Psi_2 K), with the unstressed area of the Gauss point, and with Psi_1 and Psi_2 the derivatives of the
+// energy with respect to I1 and I2.
 void tangent_points(const Law& law, int n, const ReferencePoint* reference, const Pack* tangents, TangentPoint* points) {
   const Register* const a = registers(tangents);
   auto* const tangent = reinterpret_cast<TangentPointOf<Register>*>(points);
@@ -136,8 +137,8 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
     const auto c = [&](int i, int j) {
       return 2.0 * scale * (psi.psi11 * g[i] * g[j] + psi.psi12 * (g[i] * k[j] + k[i] * g[j]) + psi.psi22 * k[i] * k[j]);
     };
-    const Register turn = scale * psi.psi2 * r.inverse_det;  // contribution to the moduli c13 and c22: K = J_s^2 (g^11, g^12, g^22) changes with
-                                                             // the metric
+    const Register turn = scale * psi.psi2 * r.inverse_det;  // contribution to the moduli c13 and c22, because K = J_s^2 (g^11, g^12, g^22) depends
+                                                             // on the metric
     auto& t = tangent[q];
     for (int i = 0; i < 3; ++i) t.a1[i] = a[6 * q + i], t.a2[i] = a[6 * q + 3 + i];
     t.s11 = scale * (psi.psi1 * g[0] + psi.psi2 * k[0]);

@@ -21,8 +21,8 @@ using ReferencePoint = ReferencePointOf<Pack>;
 inline const double* numbers(const ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 inline double* numbers(ReferencePoint* batch, int q, int field) { return numbers(&batch->g11) + (5 * q + field) * pack_lanes(); }
 
-/// The linearised stress at a Gauss point with the tangents a1, a2. Displacement gradients u1, u2 cause the strain e = (a1.u1, a1.u2 + a2.u1, a2.u2)
-/// and the change dS = C e of the stress.
+/// The linearised stress at a Gauss point with the tangents a1, a2. The derivatives u1 = u_,s and u2 = u_,t of a displacement u cause the strain
+/// e = (a1.u1, a1.u2 + a2.u1, a2.u2) and the change dS = C e of the stress.
 template <class Number>
 struct TangentPointOf {
   Number a1[3], a2[3];                  ///< tangents at the linearisation
@@ -32,13 +32,14 @@ struct TangentPointOf {
 using TangentPoint = TangentPointOf<Pack>;
 
 /// Computes the metric and area (ReferencePoint) of the unstressed surface at n Gauss points from its tangents a. The first `used` lanes hold
-/// elements.
+/// elements; the area is 0 in the other lanes.
 void reference_points(int n, int used, const Pack* a, const double* weight, ReferencePoint* reference);
 
-/// Computes int Psi over the elements of a batch, lane by lane.
+/// Computes the strain energy int Psi dGamma_0 of each element of a batch, one element per lane.
 void energy(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* energy);
 
-/// Computes p = dE/da at every Gauss point, in the layout of a:  p_a = S^ab a_b,
+/// Computes p = dE/da, the derivative of the strain energy E with respect to the tangents a, at every Gauss point, in the layout of a. Psi_1 and
+/// Psi_2 are the derivatives of Psi with respect to I1 and I2, and J_s is the ratio of current to unstressed area: p_a = S^ab a_b,
 ///
 ///   S^ab = 2 area (Psi_1 G^ab + Psi_2 J_s^2 g^ab) = area J_s tau^ab                    (3.2), (3.6)
 void stresses(const Law& law, int n, const ReferencePoint* reference, const Pack* a, Pack* p);
@@ -52,24 +53,25 @@ void tangent_points(const Law& law, int n, const ReferencePoint* reference, cons
 /// a_b from the velocity gradients, where J is the current area that the Gauss point represents.
 void viscous_points(const SurfaceViscosity& viscosity, int n, const ReferencePoint* reference, const Pack* a, TangentPoint* tangent);
 
-/// Computes p = (d^2E/da^2) u, where a are the tangents x_,s and x_,t of the shape. u: derivatives u_,s and u_,t of a displacement. u and p have the
-/// layout of tangents (packed.hpp).
+/// Computes p = (d^2E/da^2) u, where a are the tangents x_,s and x_,t of the shape. `u` holds the derivatives of a displacement with respect to s and
+/// t. u and p have the layout of tangents (packed.hpp).
 void apply(int n, const TangentPoint* tangent, const Pack* u, Pack* p);
 
-/// Computes 2 chi = div n at every Gauss point: twice the mean curvature, 2/R on a sphere.
+/// Computes 2 chi = div n at every Gauss point: twice the mean curvature, 2/R on a sphere of radius R. n: outward unit normal.
 void curvatures(int n, const Pack* jets, Pack* curvature);
 
-/// Computes the bending energy Eb/2 int (2 chi - c0)^2 dGamma over the elements of a batch, lane by lane. chi is the mean curvature; the spontaneous
-/// curvature c0 is given at every point.
+/// Computes the bending energy Eb/2 int (2 chi - c0)^2 dGamma of each element of a batch, one element per lane. chi is the mean curvature; the
+/// spontaneous curvature c0 is given at every point.
 void bending_energy(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* energy);
 
 /// Computes p, the gradient of the bending energy with respect to the jets.
 void bending_stresses(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, Pack* p);
 
-/// Computes p = H u, where H is the Hessian of the bending energy at `jets`.
+/// Computes p = H u, where H is the Hessian of the bending energy at `jets` and u holds the jets of a displacement.
 void bending_apply(double modulus, int n, const double* weight, const Pack* c0, const Pack* jets, const Pack* u, Pack* p);
 
-/// Computes entries[pair] = sum_q weight_q N_A N_B for all A, B <= A in the order (0,0), (1,0), (1,1), (2,0), …; n: number of Gauss points.
+/// Computes entries[pair] = sum_q weight_q N_A N_B for all pairs (A, B) of basis functions with B <= A, in the order (0,0), (1,0), (1,1), (2,0), …;
+/// n: number of Gauss points.
 void mass_entries(int functions, int n, const Pack* values, const Pack* weight, Pack* entries);
 
 /// Computes the Gauss weights times J = |x_,s x x_,t|.

@@ -170,8 +170,8 @@ StrainEnergy::StrainEnergy(const std::string& what, const std::string& text, con
   check(what);
 }
 
-/// Throws UserError if the expression is not a possible energy of a membrane, which must be finite at small strains, stress-free when unstretched,
-/// and stable.
+/// Throws UserError if the expression is not a possible energy of a membrane: the energy must be finite at small strains, and the unstretched
+/// membrane must be stress-free and stable.
 void StrainEnergy::check(const std::string& what) const {
   for (const double one : {1.0, 0.95, 1.05})
     for (const double other : {1.0, 0.95, 1.05}) {

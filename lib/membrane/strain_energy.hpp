@@ -41,8 +41,8 @@ struct Taylor {
 };
 
 /// Strain energy Psi(I1, I2) from a text with numbers, named constants, I1, I2, J = sqrt(I2 + 1), + - * / ^, exp, log, sqrt and parentheses.
-/// Exponents must be constants. The constructor throws UserError if the text is not the energy of a membrane. The message starts with `what`, the key
-/// that has the text.
+/// Exponents must be constants. The constructor throws UserError if the text is not the energy of a membrane. The message starts with `what`, the
+/// name of the deck key with the text.
 class StrainEnergy {
  public:
   StrainEnergy(const std::string& what, const std::string& text, const std::map<std::string, double>& constants);

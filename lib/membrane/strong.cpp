@@ -13,7 +13,8 @@ using Number = Dual<double>;
 using Tangents = std::array<Vector<Number>, 2>;
 Vector<Number> with_slope(const Vec3& v, const Vec3& d) { return {Number{v[0], d[0]}, Number{v[1], d[1]}, Number{v[2], d[2]}}; }
 
-// Returns row `row` of the stress flux sqrt(g) tau^{ab} g_b, from the tangents X_,s X_,t in `r` and x_,s x_,t in `a`.
+// Returns the vector sqrt(g) tau^ab g_b for a = `row` (0: s, 1: t), from the tangents X_,s X_,t of the unstressed surface in `r` and the tangents
+// x_,s x_,t of the current surface in `a`.
 template <class AnyLaw>
 Vector<Number> flux(const AnyLaw& law, const Tangents& r, const Tangents& a, int row) {
   const Number r11 = dot(r[0], r[0]), r12 = dot(r[0], r[1]), r22 = dot(r[1], r[1]), inverse = 1.0 / (r11 * r22 - r12 * r12);

@@ -43,7 +43,7 @@ Surfactant::Surfactant(const spline::Space& space, const Net& initial, const Sur
   share_ = mass * Eigen::VectorXd::Ones(initial.rows());
 }
 
-/// Returns the contravariant components at Gauss point q of a vector with these covariant components.
+/// Returns the contravariant components, at Gauss point q, of the vector with the covariant components along_s and along_t.
 std::array<double, 2> Surfactant::ElementPoints::raised(int q, double along_s, double along_t) const {
   const double *g11 = &metric[static_cast<std::size_t>(q)], *g12 = g11 + n, *g22 = g12 + n;
   return {*g11 * along_s + *g12 * along_t, *g12 * along_s + *g22 * along_t};
@@ -95,7 +95,8 @@ Net Surfactant::load() const {
 
 Eigen::VectorXd Surfactant::rate(const Net& slip) const { return transport(slip, diffusivity_); }
 
-/// In a fluid at rest, control points that slide with velocity u have the slip -u (fluid minus control-point velocity).
+/// Returns the rate of the coefficients when the control points slide with `mesh_velocity` over a fluid at rest, without diffusion. Their slip (fluid
+/// minus control-point velocity) is then -mesh_velocity.
 Eigen::VectorXd Surfactant::relabelled(const Net& mesh_velocity) const { return transport(-mesh_velocity, 0); }
 
 /// Returns the rates dm_A/dt of (3.17) with the given diffusivity, divided by int N_A dG on the initial surface, which gives dq_A/dt.

@@ -17,8 +17,8 @@
 
 namespace tanktread::membrane {
 
-/// A concentration c on a moving surface x with the shape functions N_A. The conserved quantities are m_A = int c N_A dG. Their sum is the total
-/// mass:
+/// The concentration c of a surfactant on a moving surface x, interpolated by the shape functions N_A. The conserved quantities are m_A = int c N_A
+/// dG. Their sum is the total mass:
 ///
 ///   dm_A/dt = int (c (v - u).grad_s N_A - D_s grad_s c.grad_s N_A) dG,   sum_A dm_A/dt = 0                              (3.17)
 ///
@@ -54,8 +54,9 @@ class Surfactant : public Field {
   Net load_change(const Net& dx, const Eigen::VectorXd& dc) const override;
   Eigen::VectorXd rate_change(const Net& dx, const Eigen::VectorXd& dc, const Net& slip_change) const override;
   void freeze(const Net& x) override;
-  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes only diffusion: solves (M + shift D K) c = m with
-                                                                                 ///< the matrices M and K of the shape stored by freeze()
+  Eigen::VectorXd solve(double shift, const Eigen::VectorXd& r) const override;  ///< includes only diffusion: solves (M + shift D K) c = m with the
+                                                                                 ///< mass matrix M, the stiffness matrix K (both of the shape stored
+                                                                                 ///< by freeze()) and the diffusivity D
   void conserve(const Eigen::VectorXd& r, Eigen::VectorXd& dq) const override;
   Eigen::VectorXd relabelled(const Net& mesh_velocity) const override;
   Eigen::VectorXd conserved() const override { return share_; }
@@ -101,7 +102,7 @@ class Surfactant : public Field {
   std::vector<ElementPoints> elements_;
   mutable MassMatrix mass_;
   mutable MassSolver solver_;
-  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface; concentration_: control values of c
+  Eigen::VectorXd share_, concentration_;  // share_: int N_A dG on the initial surface, per function A. concentration_: control values of c
   Eigen::VectorXd q_;                                     // coefficients set last
   Net x_, known_x_;                                       // x_: shape set last. known_x_: shape stored by linearise()
   std::vector<ElementPoints> known_;                      // elements_ at the linearisation

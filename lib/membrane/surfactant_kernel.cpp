@@ -9,7 +9,7 @@ namespace tanktread::membrane {
 namespace INSTRUCTIONS {
 namespace {
 
-/// Evaluates k fields at Gauss point q (Lanes = double), or at the Gauss points from q on that fill one register.
+/// Evaluates k fields at Gauss point q (Lanes = double), or at the Gauss points q, q + 1, ... that fill one register (Lanes = Register).
 template <int k, class Lanes>
 void sampled(int q, int n, int functions, const double* table, const double* control_values, double* fields) {
   Lanes sums[k] = {};

@@ -12,14 +12,15 @@
 
 namespace tanktread::membrane {
 
-/// Solves A x = b for symmetric fields with a scalar matrix A of a symmetric space (a mass matrix, the collocation matrix), A_{ga,gb} = A_ab for
-/// every image g. Component c of a symmetric field is determined by its values at the fundamental points a, b, which satisfy
+/// Solves A x = b for symmetric fields with a matrix A of a symmetric space that acts on each component alike (a mass matrix or the collocation
+/// matrix), A_{ga,gb} = A_ab for every image g. Component c of a symmetric field is determined by its values x_bc at the fundamental points b. For
+/// each fundamental point a, they satisfy
 ///
 ///   sum_b A^c_ab x_bc = m_a b_ac,   A^c_ab = m_a sum over images gb of b of s_c(g) A_{a,gb}                                  (4.12)
 ///
-/// Here m_a is the number of points in the orbit of a, and s_c(g) is the sign by which the image g multiplies component c. With the factor m_a, A^c
-/// is symmetric if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the system has no unknown for it.
-/// Components with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
+/// Here b_ac is the right-hand side, m_a is the number of points in the orbit of a, and s_c(g) is the sign by which the image g multiplies component
+/// c. With the factor m_a, A^c is symmetric if A is. If an image maps a point onto itself and s_c = -1, component c is zero at this point, and the
+/// system has no unknown for it. Components with equal signs have the same matrix, which is factored once. Without symmetry this is DirectSolver.
 class SymmetricSolver {
  public:
   /// Throws as DirectSolver does.
@@ -39,7 +40,7 @@ class SymmetricSolver {
   Net solve(const Net& b, std::span<const int> components) const;
 
  private:
-  /// Components that share a factor.
+  /// Components whose systems have the same matrix.
   struct Part {
     std::vector<int> components, points;  // components that share LU factors; fundamental points at which these components may be nonzero
     std::vector<int> unknown;             // for each point of the surface: index of the unknown of its fundamental point; -1 if it has none

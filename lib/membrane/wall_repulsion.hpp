@@ -18,7 +18,8 @@ struct Repulsion {
   double stress = 0, range = 1;
 };
 
-/// The repulsion as a load on a membrane. Its tangent contains only the stiff part, along the normals of the wall.
+/// Load of the wall repulsion (3.22) on a membrane. Its tangent contains only the stiff part, the change of the force with the gap g, and neglects
+/// the change of the wall's normal.
 class WallRepulsion : public Load {
  public:
   /// `space` must outlive this object.
@@ -45,7 +46,7 @@ class WallRepulsion : public Load {
 
   const spline::Space& space_;
   Repulsion repulsion_;
-  // per element: values of its functions, one row per Gauss point
+  // per element: values of its basis functions, one row per Gauss point
   std::vector<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> value_;
   std::vector<Eigen::VectorXd> area_;  // per element: unstressed area that each Gauss point represents
   std::vector<Place> latest_;                                                                  // points at the linearisation

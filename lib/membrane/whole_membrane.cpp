@@ -15,8 +15,8 @@ WholeMembrane::WholeMembrane(const spline::Space& space, const Net& unstressed, 
   const double area0 = area(unstressed, area.gradient_at(unstressed, all)), of_sphere = 4 * std::sqrt(std::numbers::pi * area0);
   area.stiffness = stiffness.area / area0, area.relaxed = area0;
   if (stiffness.leaves > 0) {
-    // Computes N = int 2 chi dGamma, with the mean curvature chi, as the difference of two bending energies with spontaneous curvatures -1/R and 1/R,
-    // because (2 chi + 1/R)^2 - (2 chi - 1/R)^2 = 8 chi/R.
+    // Computes N = int 2 chi dGamma, with the mean curvature chi, as the difference of two bending energies with spontaneous curvatures -1/R and 1/R
+    // (R = `radius`), because (2 chi + 1/R)^2 - (2 chi - 1/R)^2 = 8 chi/R.
     for (const double sign : {-1.0, 1.0})
       difference.parts.emplace_back(-sign, Membrane(space, unstressed, SurfaceTension{0}, 4, {radius / 2, false, sign / radius}));
     difference.stiffness = std::numbers::pi * stiffness.leaves / area0;

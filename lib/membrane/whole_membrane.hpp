@@ -15,7 +15,7 @@ namespace tanktread::membrane {
 
 /// Stiffnesses of the global elasticity; a stiffness of 0 means that the term is absent.
 struct WholeStiffness {
-  double area = 0;                        ///< K, modulus of the total area (3.26), force/length
+  double area = 0;                        ///< K, modulus that resists changes of the total area (3.26), force/length
   double leaves = 0;                      ///< kbar, modulus of the area difference of the leaflets (3.27), force x length
   /// reference area difference Q0 divided by the area difference of a sphere of equal area; if not given, Q0 is taken from the unstressed shape X
   std::optional<double> leaf_difference;
@@ -43,8 +43,8 @@ class WholeMembrane : public Load {
   bool stores() const override { return true; }
   double energy(const Net& x, std::span<const Net> sums) const override;
   void linearise(const Net& x, std::span<const int> elements, std::span<const Net> sums) override;
-  void add_tangent(const Net& dx, Net& change) const override;         ///< k (Q - Q0) dq/dx dx
-  void add_global_tangent(const Net& dx, Net& change) const override;  ///< k q (q.dx)
+  void add_tangent(const Net& dx, Net& change) const override;         ///< adds k (Q - Q0) (dq/dx) dx, the part of the tangent due to the change of q
+  void add_global_tangent(const Net& dx, Net& change) const override;  ///< adds k q (q.dx), the part of the tangent due to the change of Q
   bool admits(const surface::Image&) const override { return true; }
   RigidConditions rigid_conditions() const override { return RigidConditions(0, 6); }
   bool depends_on_labels() const override { return false; }

@@ -21,17 +21,17 @@ struct AdaptationOptions {
   double radius = 1;                                       ///< particle radius R_C; not a key of the deck
   bool enabled = false;
   std::string indicator = "error";                         ///< `error` (1.5) or `variation` (P-37)
-  double surface_tolerance = 4e-4;                         ///< tolerance of the surface error e(x), length
-  std::optional<double> load_tolerance;                    ///< tolerance of the load error e(phi), force/length^2; if empty, this error is not used
+  double surface_tolerance = 4e-4;                         ///< tolerance of the estimated error of the surface position (1.5), length
+  std::optional<double> load_tolerance;                    ///< tolerance of the estimated load error (1.5), force/length^2; if empty, not used
   /// L_ref, reference length of an element; this and the next five members are set only if the indicator is `variation`
   std::optional<double> reference_length;
-  /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: the curvature is not used
+  /// chi_ref, reference variation of the mean curvature, 1/length^2; empty: no refinement by curvature
   std::optional<double> reference_curvature_variation;
   std::optional<double> reference_traction_variation;      ///< T_ref, reference variation of the traction (force per current area), force/length^3
   std::optional<double> reference_velocity_variation;      ///< V_ref, 1/time
   std::optional<double> limit_aspect_ratio;                ///< D_ref, largest aspect ratio of an element
   std::optional<double> order;                             ///< kappa, exponent of the ratio of variations in (P-37)
-  /// largest allowed length of an element next to a film, divided by sqrt(film width x R_C); set if there are films
+  /// largest allowed length of an element next to a thin film of fluid, divided by sqrt(film width x R_C); set if there are films
   std::optional<double> film_resolution;
   static constexpr double default_film_resolution = 0.7;   ///< default of film_resolution; 0.5 for rigid bodies among several particles
   double minimum_length = 0.035;                           ///< L_min: shorter elements are not refined
@@ -39,8 +39,8 @@ struct AdaptationOptions {
   int levels = 4;                                          ///< largest number of bisections of an element of the initial mesh in one direction
   int largest_number_of_points = 4000;                     ///< upper limit for every mesh
   bool coarsen = false;
-  double coarsening_margin = 0.7;                          ///< merged elements must stay below this fraction of every limit on elements
-  double coarsening_tolerance = 1e-4;  ///< largest displacement of the current or the unstressed surface by one coarsening, length
+  double coarsening_margin = 0.7;                          ///< merged elements must stay below this fraction of every refinement limit
+  double coarsening_tolerance = 1e-4;  ///< largest allowed displacement of the current or unstressed surface by one coarsening, length
 
   void declare(deck::Section& section);
 
@@ -76,8 +76,8 @@ void keep_films(const std::vector<std::array<double, 2>>& lengths, const std::ve
                 std::vector<spline::Merge>& merges);
 
 /// Return the elements and directions to refine (marks) and to coarsen (merges), from estimated errors (1.5). An element is refined along a direction
-/// if its length along it is greater than L_min and one of its errors exceeds the tolerance of this error. It is merged into an element of twice the
-/// length if all errors of that element are below `coarsening margin` times their tolerances.
+/// if its length along this direction is greater than L_min and one of its errors exceeds the tolerance of this error. It is merged into an element
+/// of twice the length if all errors of that element are below `coarsening margin` times their tolerances.
 std::vector<spline::Mark> marks(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 std::vector<spline::Merge> merges(const std::vector<std::array<surface::Resolution, 2>>& resolution, const AdaptationOptions& options);
 

@@ -7,8 +7,10 @@ namespace tanktread::motion {
 
 namespace {
 
-constexpr double stable = 2.3;       // largest dt rho for BS3; less than the stability limit 2.51, because the measured rho is a lower bound
-constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5 with 218 and 866 control points
+constexpr double stable = 2.3;       // largest step dt times stiffness rho for BS3; less than the stability limit 2.51, because the measured rho is a
+                                     // lower bound
+constexpr double solve_share = 0.5;  // assumed work of a linear solve, in velocity evaluations; measured: 0.4 to 1.5, on meshes of 218 and 866
+                                     // control points
 constexpr double memory_of_work = 0.8;
 constexpr int measured_every = 10, trial = 10, tried_again_after = 50;  // steps
 
@@ -22,7 +24,7 @@ struct Automatic::Choice {
   double stiffness = 0;
   double age = 0;         ///< steps since the stiffness was measured
   double points = 0;      ///< number of control points when the stiffness was measured; 0: not measured yet
-  double work = 0;        ///< work of TR-BDF2 per unit of time, in evaluations; 0: not tried yet
+  double work = 0;        ///< work of TR-BDF2 per unit of time, in velocity evaluations; 0: TR-BDF2 was not tried yet
   double since = 0;       ///< steps since the last change of scheme
   double then = 0;        ///< stiffness at the last change of scheme
 };

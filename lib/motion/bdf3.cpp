@@ -12,8 +12,8 @@ constexpr std::size_t places = 3;  // number of positions, earlier than the curr
 constexpr double growth = 1.5;     // largest ratio of a step to the previous one
 constexpr int patience = 3;        // number of failed attempts at a step after which the scheme starts again with TR-BDF2 steps
 
-/// Coefficients of the backward differentiation (4.9) for a step of size dt: the shift gamma dt, by which the Jacobian is multiplied, and a_0, a_1,
-/// a_2 for the positions at times[0 … 2].
+/// Coefficients of the backward differentiation (4.9) for a step of size dt: the shift gamma dt, by which the Jacobian is multiplied, and the weights
+/// a_0, a_1, a_2 of the positions at times[0 … 2]. All times are relative to the start of the step.
 struct Differentiation {
   double shift;
   std::array<double, places> a;

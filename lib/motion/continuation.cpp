@@ -84,7 +84,8 @@ std::optional<Branch::Solved> Branch::at_parameter(double parameter, const Net& 
   return Solved{{std::move(found), parameter / unit_}, 0, report.iterations, report.rest};
 }
 
-/// Finds the intersection of the branch with the plane through the point `predicted` that has this normal. `tolerance`: size of the last correction.
+/// Finds the intersection of the branch with the plane through the point `predicted` with the normal vector `normal`. `tolerance`: largest allowed
+/// norm of the last correction.
 std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Place& normal, double tolerance) {
   constexpr int most_rounds = 8, most_iterations = 80;
   constexpr double far = 4;  // largest distance of the solution from the predicted point, divided by the step
@@ -124,8 +125,8 @@ std::optional<Branch::Solved> Branch::on_plane(const Place& predicted, const Pla
     solved.place = {best.topRows(from.x.rows()), from.q + best(from.x.rows(), 0)};
     if (length(solved.place - predicted) > far * std::max(step_, options_.largest_change)) return {};  // another branch, or no branch
     const double moved = length(solved.place - from), turned = std::abs(solved.place.q - from.q);
-    solved.rest = moved * turned;  // estimated error due to dG/dp, which is evaluated at `from`: the norm of the change of (x, p) from `from`, times
-                                   // the change of p
+    solved.rest = moved * turned;  // estimated error, because dG/dp is evaluated at `from` instead of the solution: distance of the solution from
+                                   // `from`, times the change of the scaled parameter
     if (solved.rest < tolerance) return solved;
   }
   return {};
@@ -165,7 +166,7 @@ Branch::Place Branch::predicted(const Place& t) const {
   return {first * one.place.x + second * two.place.x + third * now.place.x, first * one.place.q + second * two.place.q + third * now.place.q};
 }
 
-/// Advances by one step; halves the step until it succeeds.
+/// Advances by one step along the branch. Halves the step until a point is found; returns nothing if the step becomes too small.
 std::optional<Branch::Solved> Branch::stepped() {
   constexpr double least = 1e-6;
   const Solved& now = last_.back();
@@ -191,7 +192,7 @@ std::optional<Branch::Solved> Branch::stepped() {
   return {};
 }
 
-/// Refines the mesh as long as it can be improved, and recomputes the two latest points on each new mesh.
+/// Adapts the mesh until it no longer changes, and recomputes the two latest points on each new mesh.
 void Branch::adapt() {
   constexpr int most = 6;
   for (int k = 0; k < most; ++k) {
@@ -215,7 +216,7 @@ void Branch::adapt() {
   }
 }
 
-/// Returns the next point, but computes the point after it first, because the latter may reveal a fold before the returned point.
+/// Returns the next point of the branch. Computes one more point in advance, because this point may reveal a fold that comes before the next point.
 std::optional<BranchPoint> Branch::next() {
   while (ahead_.size() < 2 && !ended_ && failure_.empty()) {
     if (count_ >= options_.points) break;
@@ -248,7 +249,8 @@ void Branch::begin() {
     x_ = solved->place.x;
   } else {
     const double change = first_->dynamics().norm(solved->place.x - x_);
-    // The shape may not depend on the parameter. The scaled parameter therefore changes by at least 0.01 largest_change over a twentieth of the way.
+    // If the shape does not depend on the parameter, `change` is 0. The parameter is therefore scaled such that it changes by at least 0.01
+    // largest_change over a twentieth of the interval.
     const double least = 0.01 * options_.largest_change * std::abs(parameter - start_) / (std::abs(way) / 20);
     unit_ = std::abs(parameter - start_) / std::max(change, least);
     last_.front().place.q = start_ / unit_, solved->place.q = parameter / unit_;

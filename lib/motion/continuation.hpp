@@ -32,7 +32,7 @@ struct ContinuationOptions {
 
   void declare(deck::Section& section);
   std::string remark(const BranchPoint& point) const;   ///< returns a warning if the error of a fold is above its tolerance, otherwise ""
-  std::string text(double value, double second) const;  ///< returns values of the parameter and of the second parameter with their names
+  std::string text(double value, double second) const;  ///< returns the name and value of the parameter and, if set, of the second parameter
 };
 
 /// A steady shape on a branch.
@@ -41,7 +41,7 @@ struct BranchPoint {
   Net x;
   bool fold = false;   ///< true if the parameter reverses its direction here
   int iterations = 0;  ///< number of NOX iterations
-  double rest = 0;     ///< estimated error of the shape; at a fold, of the parameter, see Continuation/fold tolerance
+  double rest = 0;     ///< estimated error of the shape; at a fold, relative error of the parameter, see Continuation/fold tolerance
 
   void add_columns(bool follows_fold, Columns& to) const;
 };
@@ -52,10 +52,11 @@ struct BranchPoint {
 ///
 ///   G(x, p) = 0,   t.(x - x^, p - p^) = 0                                                                           (4.20)
 ///
-/// where (x^, p^) is one step further along t (`arclength`), or p = p^ (`natural`). Both equations are solved like (4.17), with G linearised in p. In
-/// each iteration, p is changed such that the iterate lies on the plane of the second equation. The solution is repeated, with G linearised at the p
-/// just found, until p no longer changes. A fold is the vertex of the parabola p(arclength) through three points. The point of the branch at the
-/// vertex is computed, and replaces one of the three points, until the p of the vertex no longer changes.
+/// G(x, p) = 0 are the equations (4.17) of a steady shape, and (x^, p^) is the predicted point, one step further along the branch. This is the method
+/// `arclength`; with `natural`, the second equation is p = p^. The two equations are solved by the method for (4.17), with G linearised in p. In each
+/// iteration, p is changed such that the iterate lies on the plane of the second equation. The solution is repeated, with G linearised at the p just
+/// found, until p no longer changes. A fold is the vertex of the parabola p(arclength) through three points. The point of the branch at the vertex is
+/// computed, and replaces one of the three points, until the p of the vertex no longer changes.
 ///
 /// A fold can be continued in a second parameter through a sequence of values. The fold is predicted by extrapolation from the previous two folds, as
 /// if the values were evenly spaced. Equation (4.20) then gives one point at the prediction, one before and one after it, where t is the direction of
@@ -76,7 +77,7 @@ class Branch {
          double parameter, double second, Net x);
 
   /// Alternative search for the first point, called if the first search fails. x: best iterate of the failed search, replaced by the result.
-  /// `failed`: report of the failed search. Returns its own report. Collective.
+  /// `failed`: report of the failed search. Returns the report of the new search. Collective.
   using Search = std::function<SteadyReport(Net& x, const SteadyReport& failed)>;
   void search(Search other) { search_ = std::move(other); }
 

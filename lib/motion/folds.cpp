@@ -37,13 +37,14 @@ struct Parabola {
 
 /// Returns the fold near three consecutive points of the branch, or nothing if no fold is found. The fold is the vertex of the parabola through three
 /// points. One of them is replaced by a new point near the vertex until the parameter at the vertex changes by less than the tolerance. Then the
-/// branch is solved at the vertex. New points keep a distance from the others, because errors of points that are close together move the vertex.
-/// The search also ends when the distance of the outer points has shrunk by the factor `narrow`, because errors of the quadrature then dominate.
-/// Solved::rest of the fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the interval.
+/// point of the branch at the vertex is computed. New points keep a distance from the others, because errors of points that are close together move
+/// the vertex. The search also ends when the distance of the outer points has shrunk by the factor `narrow`, because errors of the quadrature then
+/// dominate. Solved::rest of the fold is the estimated error of the parameter, divided by the larger of the parameter and a twentieth of the
+/// interval.
 std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
   constexpr int most = 10;
-  constexpr double relative_misfit = 1e-2;  // largest error of the parameter at the first vertex, divided by the parameter. It falls with the third
-                                            // power of the distance of the points
+  constexpr double relative_misfit = 1e-2;  // assumed error of the parameter at the first vertex, divided by the parameter. The error falls with the
+                                            // third power of the distance between the points
   const double narrow = std::min(0.25, std::cbrt(options_.fold_tolerance / relative_misfit));
   const double first = three[2].s - three[0].s;
   double before = std::numeric_limits<double>::quiet_NaN();
@@ -64,7 +65,8 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
       return static_cast<std::size_t>(std::ranges::min_element(at, {}, [s](double one) { return std::abs(one - s); }) - at.begin());
     };
     const double reach = std::max(std::abs(left - vertex), std::abs(right - vertex)), apart = (right - left) / 8;
-    const bool flat = std::abs(parabola.coefficients[2]) * reach * reach < allowed;  // all three points have the parameter of the vertex
+    const bool flat = std::abs(parabola.coefficients[2]) * reach * reach < allowed;  // all three points have the parameter of the vertex, to the
+                                                                                     // tolerance
     const bool last = right - left < narrow * first || k + 1 == most, found = flat || last || std::abs(q - before) < allowed;
     const double change = flat || std::isnan(before) ? 0 : std::abs(q - before);
     before = q;
@@ -77,7 +79,7 @@ std::optional<Branch::Fold> Branch::fold(std::array<Solved, 3> three) {
     }
     const Place predicted = combined(parabola.weights(s));
     auto solved = on_plane(predicted, normal, std::clamp(allowed / 4, steady_.tolerance / 10, steady_.tolerance));
-    if (!solved) solved = on_plane(predicted, normal, std::max(steady_.tolerance, allowed / 4));  // errors of the quadrature may prevent more
+    if (!solved) solved = on_plane(predicted, normal, std::max(steady_.tolerance, allowed / 4));  // quadrature errors may prevent a smaller error
     if (!solved) return {};
     solved->s = middle + s;
     const double error = std::max(change, std::abs(solved->place.q - q));

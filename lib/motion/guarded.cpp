@@ -9,11 +9,11 @@ namespace tanktread::motion {
 
 namespace {
 
-enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes of one rank; the largest of all ranks is the common outcome
+enum Outcome { fine, told_to_stop, failed, exhausted };  // outcomes on one rank, from best to worst; the worst on any rank is the common outcome
 
 }  // namespace
 
-/// Returns whether `act` succeeded on all ranks; `act` returns whether its result is finite. `told`: whether a stop signal was received.
+/// Returns whether `act` succeeded on all ranks; `act` returns whether its result is finite. `told`: whether this rank received a stop signal.
 bool GuardedDynamics::done(bool told, const std::function<bool()>& act) {
   int mine = told ? told_to_stop : fine;
   std::string reason;

@@ -13,7 +13,8 @@ struct Stopped {};
 
 /// Wraps another motion for the integrators. An evaluation at a trial shape may fail on some ranks, because a solver does not converge, the surface
 /// is folded or open, or values are not finite. The result is then NaN on all ranks, and every scheme shortens its step. If memory runs out, all
-/// ranks throw RunFailure. Decisions of a scheme depend on norms; every rank uses the norms of the first rank. Collective, like the motion.
+/// ranks throw RunFailure. The decisions of a scheme depend on norms. Every rank uses the norms of the first rank, so that all ranks decide alike.
+/// Collective, like the motion.
 class GuardedDynamics : public coupling::Dynamics {
  public:
   /// `told`: function that returns whether this rank is to stop, because of a signal or a limit. If so, the next velocity evaluation throws Stopped

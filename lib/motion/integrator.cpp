@@ -91,7 +91,7 @@ double first_step(coupling::Dynamics& dynamics, const State& state, const TimeOp
   const double trial = 1e-3 / speed;
   dynamics.at(state.time + trial, state.time);
   const double change = dynamics.norm(dynamics.velocity(state.x + trial * slope) - slope) / trial;
-  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // a NaN in `change` has no effect
+  const double step = std::cbrt(0.1 * options.tolerance / (speed * std::max(speed * speed, change)));  // std::max ignores `change` if NaN
   return std::min({step, options.final_time, options.maximum_step.value_or(1e300)});
 }
 

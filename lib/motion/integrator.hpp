@@ -20,7 +20,8 @@ struct Place {
   Net x;
 };
 
-/// Complete state of a time integration, part of a checkpoint. A run that continues from it gives bitwise identical results.
+/// Complete state of a time integration, part of a checkpoint. A run that continues from this state gives bitwise the results of an uninterrupted
+/// run.
 struct State {
   double time = 0;
   double step = 0;              ///< the step that the controller proposes next
@@ -28,7 +29,7 @@ struct State {
   std::vector<Net> history;     ///< slopes dx/dt that the scheme keeps, latest first; the first is the slope at x
   std::vector<Place> places;    ///< earlier positions that a multistep scheme keeps, latest first
   double slope_error = 0;       ///< error bound of the slope at x, history.front(), in the norm of `Time/tolerance` per unit of time
-  Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if it was not measured
+  Net direction;                ///< last direction of the power iteration for the stiffness (4.7); empty if the stiffness was not measured
   std::vector<double> memory;   ///< memory of the step controller; each scheme defines its content
   coupling::Secants secants;    ///< secant pairs for the Jacobian, collected by the quasi-Newton iterations
   Net frozen;                   ///< control net on which the Jacobian's layer operators were assembled; empty if there are none
@@ -43,13 +44,14 @@ void forget(State& state);
 void begin(coupling::Dynamics& dynamics, State& state);
 
 /// freeze() assembles the layer operators of the Jacobian at the shape and the time of the state. refreeze() assembles them at the shape `frozen` and
-/// its time, if the state has this shape. If the lattice moves, both then set `time`, within a step that begins at the time of the state.
+/// its time, if the state has this shape. If the lattice moves, both functions finally set the time of the motion to `time`, in a step that begins at
+/// the time of the state.
 void freeze(coupling::Dynamics& dynamics, State& state, double time);
 void refreeze(coupling::Dynamics& dynamics, const State& state, double time);
 
 /// If the motion is not smooth in time at the time of the state (a kink), restarts the state and returns true. The restart keeps only position, step
-/// and frozen operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the state has
-/// the slope before the kink.
+/// and frozen layer operator, and computes the slope after the kink. Otherwise returns false. `advance` calls this function first; until then the
+/// state has the slope before the kink.
 bool cross_kink(coupling::Dynamics& dynamics, State& state);
 
 /// Report of one call of `advance`.

@@ -18,7 +18,7 @@ struct TimeOptions {
   std::optional<double> initial_step;      ///< empty: the scheme finds one
   std::optional<double> fixed_step;        ///< size of all steps; if set, there is no error control, and only the last step is shortened
   std::optional<double> maximum_step;      ///< empty: no limit
-  std::optional<double> minimum_step;      ///< smallest step of the step control; the run fails if a smaller step is needed; empty: 1e-9 `unit`
+  std::optional<double> minimum_step;      ///< smallest step of the step control; the run fails if a smaller step is needed; empty: 1e-9 times `unit`
   double unit = 1;                         ///< unit of time of the scene, the inverse rate of its flow; not a key of the deck
   /// the run ends if the shape velocity (6.8), divided by the rate of the flow times R_C, is below this value; empty: never
   std::optional<double> steady_tolerance;
@@ -31,13 +31,14 @@ struct TimeOptions {
   double newton_tolerance = 0.2;           ///< allowed error of the quasi-Newton iteration of a stage, divided by `tolerance`
   int newton_iterations = 6;               ///< largest number of iterations of a stage before the step is halved
   double linear_tolerance = 0.05;          ///< allowed relative residual of the linear solves of a stage
-  double contraction_limit = 0.3;          ///< contraction rate of the iteration above which the frozen layer operator is assembled again
-  double largest_operator = 32;             ///< largest frozen operator that `auto` uses, in GB on all ranks together
+  double contraction_limit = 0.3;          ///< contraction rate of the quasi-Newton iteration above which the frozen layer operator, the boundary
+                                           ///< integrals in the Jacobian (4.3), is assembled again
+  double largest_operator = 32;             ///< memory of the frozen layer operator above which `auto` uses rkc2, GB on all ranks together
   int secants = 2;                         ///< number of corrections stored by the quasi-Newton iteration (4.13)
   int predictor_order = 3;                 ///< largest degree of the polynomial through known slopes that predicts a stage of tr-bdf2
 
   double least_step() const { return minimum_step.value_or(1e-9 * unit); }
-  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< true if the scheme always uses the frozen operator (4.3)
+  bool assembles() const { return scheme == "tr-bdf2" || scheme == "bdf3"; }  ///< true if the scheme always assembles the frozen layer operator (4.3)
   /// Returns true if crank-nicolson controls its step by the error (4.10), false if by the number of iterations (4.1).
   bool by_error() const { return step_control ? *step_control == "error" : nonlinear_solver != "plain"; }
 

@@ -71,8 +71,8 @@ struct PeriodicReport {
   double rest = 0;  ///< distance between the shape and its image under the return map
 };
 
-/// Returns the shape three times PeriodicOptions::period later, where the shape is rotated back by the angle `turn` of the options after each period.
-/// The result serves as the point c of the plane in ReturnMap (Poincare section). Collective.
+/// Returns the shape to which the motion leads from x in three times PeriodicOptions::period. After each period, the shape is rotated back by the
+/// angle `turn` of the options. The result serves as the point c of the plane in ReturnMap (Poincare section). Collective.
 Net after_periods(coupling::Dynamics& dynamics, const TimeOptions& time, const std::shared_ptr<Teuchos::ParameterList>& nox,
                   const PeriodicOptions& options, Net x);
 
@@ -85,10 +85,10 @@ struct Multiplier {
   Net real, imaginary;
 };
 
-/// Returns the largest eigenvalues of the derivative of the return map P (`map`) at its fixed point x, by central differences and Arnoldi's method
-/// started from the displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted`: removes from a displacement the
-/// parts that break the symmetry of `start`. Eigenvalues smaller than the noise of a run divided by the option `difference` are not significant.
-/// Collective.
+/// Returns the `number` largest eigenvalues of the derivative of the return map P (`map`) at its fixed point x, by central differences and Arnoldi's
+/// method started from the displacement `start`. These are the Floquet multipliers except the trivial one, 1. `admitted`: removes from a displacement
+/// the parts that break the symmetry of `start`. Eigenvalues smaller than the numerical noise of a run divided by the option `difference` are not
+/// significant. Collective.
 std::vector<Multiplier> multipliers(ReturnMap& map, const Net& x, const Net& start, const std::function<Net(const Net&)>& admitted, int number);
 
 }  // namespace tanktread::motion

@@ -26,8 +26,8 @@ struct Stage {
   double rate_or_assumed() const { return rate > 0 ? rate : 0.5; }
 };
 
-/// Solves a stage by quasi-Newton iteration. The approximate Jacobian is the frozen-geometry Jacobian (4.3), whose membrane tangent H is updated in
-/// every iteration, with the secants (4.13). Adds one pair to the secants. With d_k the correction of iteration k,
+/// Solves a stage by quasi-Newton iteration. The approximate Jacobian is the frozen-geometry Jacobian (4.3), improved by the secants (4.13); its
+/// membrane tangent H is updated in every iteration. A second iteration adds one pair to the secants. With d_k the correction of iteration k,
 ///
 ///   rate = |d_k|/|d_(k-1)|,   error = rate/(1 - rate) |d_k|                                                                       (4.28)
 ///
@@ -40,7 +40,7 @@ void solve(coupling::Dynamics& dynamics, const TimeOptions& options, const Net& 
 /// Decision on an attempted step.
 struct Verdict {
   bool accepted = false;
-  double factor = 0.5;  ///< size of the next attempt divided by the size of this one
+  double factor = 0.5;  ///< size of the next attempt divided by the size of this attempt
 };
 
 /// Decides on an attempted step that ended with the stage `last`. `error`: local error of the step divided by the tolerance; it is proportional to

@@ -92,8 +92,8 @@ class Bs3 : public Scheme {
 ///
 ///   s = 1 + sqrt(1 + 1.54 dt rho),   stable for dt rho <= 0.653 (s^2 - 1)                                                  (4.8)
 ///
-/// So the work of a long step grows only with the square root of the stiffness (4.7). Nothing is assembled, and no system is solved. The stiffness is
-/// measured by differences of velocities at the start, every 25 steps, and after a failed attempt.
+/// The work of a long step therefore grows only with the square root of the stiffness (4.7). Nothing is assembled, and no system is solved. The
+/// stiffness is measured by differences of velocities at the start, every 25 steps, and after a failed attempt.
 class Rkc2 : public Scheme {
  public:
   using Scheme::Scheme;
@@ -145,11 +145,11 @@ class CrankNicolson : public Scheme {
 ///   d = 1 - 1/sqrt(2), w = sqrt(2)/4; stages at 0, 2d, 1; b = (w, w, d); embedded b^ = ((1 - w)/3, (3w + 1)/3, d/3)               (4.4)
 ///   e1 = (I - d dt J)^-1 dt sum (b_i - b^_i) k_i,   e2 = (I - d dt J)^-1 e1,   x_(n+1) = x_n + dt sum b_i k_i - e2                 (4.30)
 ///
-/// The formula b^ is of third order but not stable. e2 is the difference between the results of b and b^, after two solves that damp its stiff modes.
-/// A step multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the stability functions of b and b^. The modulus of this
-/// factor is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3) changes only the error of fourth order, so its secants are
-/// not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of the extrapolated result, plus the errors of the two stages
-/// (4.28).
+/// Here k_i are the slopes of the three stages. The formula b^ is of third order but not stable. e2 is the difference between the results of b and
+/// b^, after two solves that damp its stiff modes. A step multiplies a mode with z = dt J by R(z) + (R^ - R)/(1 - d z)^2, where R and R^ are the
+/// stability functions of b and b^. The modulus of this factor is at most 1 in the left half plane and 0 at infinity. The frozen Jacobian (4.3)
+/// changes only the error of fourth order, so its secants are not used for e1 and e2. The local error is a quarter of |e1|, which bounds the error of
+/// the extrapolated result, plus the errors of the two stages (4.28).
 ///
 /// The first slope is the last slope of the previous step. Slopes follow from the stage equations without further evaluations. Stages are predicted
 /// by a polynomial through the known slopes.
@@ -178,7 +178,8 @@ class Bdf3 : public Scheme {
   TrBdf2 starter_;
 };
 
-/// Chooses the scheme of each step from the stiffness rho (4.7). Measuring rho costs less than an evaluation with the frozen operator.
+/// Chooses the scheme of each step from the stiffness rho (4.7). With the frozen operator (4.3), measuring rho costs less than one velocity
+/// evaluation.
 ///
 /// If the frozen operator would be larger than `Time/largest operator`, every step uses RKC2, which needs no frozen operator. If the velocity is the
 /// solution of a linear system but the residual of a stage is computed without a solve (3.14), every step uses TR-BDF2. Otherwise:

@@ -81,7 +81,8 @@ Linearised::Linearised(coupling::Dynamics& dynamics, const coupling::ShapeCoordi
     for (Eigen::Index k = 0; k < by_y.size(); ++k)
       by_y[k] = gradient.cwiseProduct(shapes.displacement(Eigen::VectorXd::Unit(by_y.size(), k)).topRows(gradient.rows())).sum();
     by_y -= kept_.leftCols(n) * (kept_.leftCols(n).transpose() * by_y);
-    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // the modes have another parity, or the quantity belongs to a mirror image
+    if (by_y.norm() <= 1e-6 * gradient.norm()) continue;  // modes of this parity do not change the quantity, or the quantity is a mirror image of an
+                                                          // earlier one
     kept_.col(n++) = by_y.normalized();
   }
   kept_.conservativeResize(Eigen::NoChange, n);
@@ -158,8 +159,8 @@ class Recognition {
   Eigen::MatrixXd translations_, rotations_, labels_;
 };
 
-/// Returns by how much a mode d changes a conserved quantity with the gradient b = `kept`: b.d/(|b| |d|). It is zero for all modes of nonzero rate,
-/// because conservation implies rate x b.d = 0.
+/// Returns the relative change b.d/(|b| |d|) of a conserved quantity with the gradient b = `kept` due to a mode d. The change is zero for all modes
+/// of nonzero rate, because conservation implies rate x b.d = 0.
 double gain(const Net& kept, const Mode& mode) {
   const auto gained = [&](const Net& part) { return kept.cwiseProduct(part.topRows(kept.rows())).sum(); };
   return std::hypot(gained(mode.real), gained(mode.imaginary)) / (kept.norm() * std::hypot(mode.real.norm(), mode.imaginary.norm()));
@@ -183,7 +184,7 @@ namespace {
 
 using Pairs = std::vector<coupling::Eigenpair>;
 
-/// Computes all eigenpairs of the Jacobian J of the velocity in shape coordinates, which is assembled column by column.
+/// Assembles the Jacobian J of the velocity in shape coordinates, column by column, and computes all its eigenpairs.
 Pairs dense(coupling::Dynamics& dynamics, const coupling::ShapeCoordinates& shapes, const Net& x, const std::vector<Conserved>& kept,
             const SpectrumOptions& options) {
   const Eigen::Index n = shapes.size();

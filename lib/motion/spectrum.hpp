@@ -57,11 +57,11 @@ struct Mode {
 /// Adds the columns of a spectrum; modes are numbered from 1. `all_rigid`: no particle deforms, so the modes are rotations.
 void add_columns(const std::vector<Mode>& modes, bool all_rigid, Columns& to);
 
-/// Computes J y, with y the coordinates of a displacement d of x, by a central difference of velocities:
+/// Computes J y, with J the Jacobian of the velocity v and y the coordinates of a displacement d of x, by a central difference of velocities:
 ///
 ///   J y = (v(x + e d) - v(x - e d))/2e,   e max |d| = difference x R_C                                                   (4.16)
 ///
-/// Modes are changes of the shape, not motions of the control points along it. On a steady shape the velocity v is a sum of relabellings
+/// Modes are changes of the shape, not motions of the control points along the surface. On a steady shape the velocity v is a sum of relabellings
 /// (Dynamics::relabellings); these are subtracted from v. Displacements and results are projected so that they do not change the conserved
 /// quantities: the volumes of the particles and the masses of surfactants. Without the projection, two modes of rate 0 would have the same shape at a
 /// fold, and an error of J would change their rates by the square root of the error.

@@ -77,8 +77,8 @@ double SteadyEquations::unit_length() const {
 
 namespace {
 
-/// Makes implicit time steps, each so short that it changes x by less than `little`, until a step of the full length equations.step() would do so.
-/// Returns whether x has changed.
+/// Makes implicit time steps, each so short that it changes x by less than `little`, until a step of the full length equations.step() also changes x
+/// by less than `little`. Returns whether x has changed.
 bool approach(SteadyEquations& equations, Net& x) {
   constexpr double little = 0.2;
   constexpr int most = 100;
@@ -100,8 +100,8 @@ bool approach(SteadyEquations& equations, Net& x) {
   return true;
 }
 
-/// Largest value of (velocity times step)/R_C for which only the correction measures the error. A larger value counts as the error itself. On a
-/// crumpled surface the Jacobian is so large that corrections are small although velocities are not.
+/// If (velocity times step)/R_C is at least this value, it is a lower bound of the error estimate of the shape. Otherwise the estimate depends only
+/// on the correction. On a crumpled surface the Jacobian is so large that corrections are small although velocities are not.
 constexpr double largest_motion = 0.1;
 
 }  // namespace

@@ -34,9 +34,9 @@ struct SteadyReport {
   double rest = 0;  ///< estimated error of the shape
 };
 
-/// Equations of the steady shape x reached from x0. Q is the projection onto the neutral directions, along which steady shapes map to other steady
-/// shapes: the rigid motions about the origin in `free`, and the relabellings of surface points (Dynamics::relabellings). x_V is x with its volume
-/// restored, and s is the implicit step of the preconditioner:
+/// Equations of the steady shape x in a search that starts from the shape x0. Q is the projection onto the neutral directions, along which steady
+/// shapes map to other steady shapes: the rigid motions about the origin in `free`, and the relabellings of surface points (Dynamics::relabellings).
+/// x_V is x with its volume restored, and s is the implicit step of the preconditioner:
 ///
 ///   G(x) = (1 - Q) v(x) + (x_V - x)/s - Q (x - x0)/s = 0                                                           (4.17)
 class SteadyEquations {
@@ -44,7 +44,8 @@ class SteadyEquations {
   /// `step`: implicit step s of the preconditioner in (4.17), a time. `start`: the shape x0. `dynamics` must outlive this object.
   SteadyEquations(coupling::Dynamics& dynamics, std::vector<coupling::RigidMotion> free, double step, Net start);
 
-  Net residual(const Net& x);                          ///< returns G(x) (4.17) times the implicit step s; not finite if it fails. Collective
+  Net residual(const Net& x);                          ///< returns G(x) (4.17) times the implicit step s; not finite if the evaluation fails.
+                                                       ///< Collective
   /// returns (1 - s J)^{-1} r, with the implicit step s (4.17) and the frozen Jacobian J (4.3) linearised at x. Collective
   Net precondition(const Net& x, const Net& r);
   double unit_length() const;                          ///< Euclidean norm of a displacement for which Dynamics::norm is 1
@@ -63,8 +64,8 @@ class SteadyEquations {
 };
 
 /// Solves G(x) = 0 (4.17) by NOX, as the fixed-point equation x = x + s (1 - s J)^{-1} G(x) with the implicit step s and the frozen Jacobian J (4.3).
-/// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by much, implicit time
-/// steps shorter than s are made first. If the iteration does not converge, x is the best iterate. Collective.
+/// The method is Anderson acceleration (`anderson`) or Newton's method (`newton-krylov`). If one iteration would change x by 0.2 R_C or more,
+/// implicit time steps shorter than s are made first. If the iteration does not converge, x is the best iterate. Collective.
 SteadyReport find_steady(SteadyEquations& equations, const SteadyOptions& options, const coupling::SolverOptions& solvers, Net& x);
 
 }  // namespace tanktread::motion

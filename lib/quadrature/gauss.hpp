@@ -7,7 +7,7 @@
 
 namespace tanktread::quadrature {
 
-/// Nodes (ascending) and weights on [0, 1]; the weights sum to 1. Exact for polynomials of degree 2n - 1.
+/// Nodes (ascending) and weights on [0, 1]; the weights sum to 1. A rule with n nodes is exact for polynomials up to degree 2n - 1.
 struct GaussRule {
   Eigen::VectorXd nodes, weights;
   int size() const { return static_cast<int>(nodes.size()); }
@@ -17,10 +17,10 @@ struct GaussRule {
 /// and stored; the reference stays valid for the whole run.
 const GaussRule& gauss(int n);
 
-/// Returns the number of Gauss points that integrates polynomials of this degree exactly.
+/// Returns the smallest number of Gauss points that integrates polynomials of this degree exactly.
 constexpr int gauss_points_for_degree(int degree) { return degree / 2 + 1; }
 
-/// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i.
+/// Nodes (s, t) and weights on the unit square, s fastest: node q = n_s j + i consists of node i (of n_s) in s and node j in t.
 struct TensorRule {
   Eigen::VectorXd s, t, weights;
   int size() const { return static_cast<int>(weights.size()); }

@@ -58,8 +58,8 @@ void add(const Part& p, int n_s, int n_t, Rule& rule) {
       rule.add(p.s + p.width * gs.nodes[i], p.t + p.height * gt.nodes[j], p.width * p.height * gs.weights[i] * gt.weights[j]);
 }
 
-/// Smallest side of a part of an element, divided by the side of the element. Smaller parts are not bisected, because a target that is this close is
-/// practically on the element.
+/// Smallest side of a part of an element, divided by the side of the element. Smaller parts are not bisected, because a target that would require
+/// this is practically on the element.
 constexpr double smallest = 1e-8;
 
 /// A part of an element is bisected in both directions if the ratio of its squared side lengths is below this factor. Without this rule, round-off

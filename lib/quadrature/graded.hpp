@@ -25,9 +25,9 @@ struct Demand {
 };
 
 /// Adds to `rule` tensor Gauss rules on parts of the unit square. A part is bisected along its longer physical edge until moderate orders are enough.
-/// The order in each direction follows from the Bernstein ellipse of the part.
-/// `bezier`: Bezier points of the element, component c of point b at c (p + 1)^2 + b. If the element is not finite, or so crumpled that no reasonable
-/// number of parts is enough, the last weight of the rule is NaN.
+/// The order in each direction follows from the Bernstein ellipse of the part. `bezier`: Bezier points of the element, component c of point b at
+/// index c (p + 1)^2 + b, with the degree p. If the element is not finite, or so crumpled that no reasonable number of parts is enough, the last
+/// weight of the rule is NaN.
 void graded(std::span<const double> bezier, int degree, const Vec3& target, const Demand& demand, Rule& rule);
 
 }  // namespace tanktread::quadrature

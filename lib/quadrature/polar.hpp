@@ -20,7 +20,7 @@ struct Shear {
   auto operator<=>(const Shear&) const = default;
 };
 
-/// Returns the metric g_ab = x_,a . x_,b rounded to a Shear; the unit metric if g is degenerate or not finite.
+/// Returns the Shear nearest to the metric g_ab = x_,a . x_,b. If g is degenerate or not finite, returns the Shear of the unit metric.
 Shear shear(double g_ss, double g_st, double g_tt);
 
 /// Numbers of Gauss points of a polar rule: in the radial direction, and in the angular direction over each side of the square (t = 0, s = 1, t = 1,
