@@ -14,8 +14,8 @@
 
 namespace tanktread::output {
 
-/// Lagrange mesh of a surface: one cell per element, of the element's degree p, with (p + 1)^2 nodes at (i/p, j/p). Neighbouring cells share
-/// coinciding nodes.
+/// Lagrange mesh of a surface: one cell per element, of the element's degree p, with (p + 1)^2 nodes at the parameters (i/p, j/p), i, j = 0 ... p.
+/// Neighbouring cells share coinciding nodes.
 ///
 /// Order of the nodes of a cell (VTK): corners (0,0) (p,0) (p,p) (0,p); edges j = 0, i = p, j = p, i = 0, each with increasing index; then the
 /// interior, i fastest. Nodes are numbered in the order in which they first occur, cell by cell.
