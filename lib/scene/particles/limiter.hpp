@@ -37,7 +37,8 @@ class Limiter {
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
-  /// A contact, its force as a multiple of `unit`, and the displacement of all points in one step by a contact force of one `unit`.
+  /// A contact and its force, as a multiple of `unit`, before and after hold(). `work`: load vector (virtual work per control point) of a contact
+  /// force of one `unit`. `response`: displacement of all points in one step by this force; empty until it is computed.
   struct Held {
     coupling::Contact contact;
     double gap, target;  // gap, and its required value
@@ -62,7 +63,7 @@ class Limiter {
   double step_ = 0;
   std::vector<Held> held_;
   Net load_;                                  // load vector (virtual work per control point) of the contact forces that acted during the step
-  std::shared_ptr<coupling::Evaluation> base_;  // evaluation with this load
+  std::shared_ptr<coupling::Evaluation> base_;  // evaluation of the system with `load_`
 };
 
 }  // namespace tanktread
