@@ -45,7 +45,7 @@ constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
 std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file named by `Particles/<name>/copies/file`
-/// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder.
+/// Returns the name of the copy of a file with an outline or with a channel's points: the name of the original file without its folder.
 std::string kept_name(const std::string& file);
 
 /// Data of a finished run for its summary and its messages.
@@ -91,9 +91,9 @@ class Results {
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the run is twice
-  /// as old as at the last write or one second older, but at intervals of at least fifty times the duration of a write. Sets the row on every rank
-  /// to the values of the first rank, so that all ranks take the same decisions.
+  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the duration of
+  /// the run has doubled or grown by one second since the last write, but at intervals of at least fifty times the duration of a write. Sets the row
+  /// on every rank to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.

@@ -75,8 +75,8 @@ struct Body {
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Builds the body of a scene with one particle. If `alike` is given, its mesh and resting shape are copied and moved to the position of this scene's
-/// particle.
+/// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
+/// position of this scene's particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
@@ -92,8 +92,8 @@ surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 /// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
-/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and for the
-/// strong form.
+/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
+/// load is computed in the strong form.
 stokes::Measure load_measure(const Scene& scene);
 
 }  // namespace tanktread

@@ -62,7 +62,7 @@ class Packing {
  private:
   struct Neighbour {
     std::size_t number;
-    Vec3 image;  // lattice vector that is added to the neighbour's centre to get its nearest image
+    Vec3 image;  // lattice vector from the neighbour's centre to the centre of its image that is close to the sphere
   };
 
   /// Lists for each sphere all spheres that it can overlap before a sphere has moved by more than `skin_`. Rebuilds the lists only if a sphere has
@@ -101,8 +101,8 @@ class Packing {
     return false;
   }
 
-  /// Makes a random step of sphere i of at most `longest`. Undoes the step and returns false if the sphere then overlaps another one, or if it has
-  /// moved by more than the skin (see find_neighbours) since the neighbour lists were built.
+  /// Moves sphere i by a random step of at most the length `longest`. Undoes the step and returns false if the sphere then overlaps another one, or
+  /// if it has moved by more than the skin (see find_neighbours) since the neighbour lists were built.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;
@@ -180,8 +180,8 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Returns copies at random positions in a box or ball. Draws positions one by one, discards those too close to a sphere in `taken`, and adds the
-/// spheres of the others to `taken`.
+/// Returns copies at random positions in a box or ball. Draws positions one by one and discards a position that is too close to a sphere in `taken`.
+/// Adds the spheres of the copies to `taken`.
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));

@@ -27,7 +27,7 @@ struct ExactBody {
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
-  /// Returns true if the pressure is not zero everywhere. It is zero if the body only rotates about axes of revolution.
+  /// Returns false if the pressure is zero everywhere, which is the case if the body only rotates about axes of revolution.
   bool presses() const;
 
  private:

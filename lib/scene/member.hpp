@@ -23,8 +23,8 @@ struct Member {
   Scene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
-  std::shared_ptr<const membrane::Membrane> membrane;
+  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
+  std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
   spline::Place place;    ///< parametric point of the material point whose phase angle is recorded; it does not change if the mesh adapts
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;

@@ -287,9 +287,9 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// Returns true if the unknowns of rigid bodies are tractions (`first kind`). `auto` selects `first kind` for up to 1500 control points if there are
-/// several rigid bodies, all with adaptive meshes, or if the only particle is a rigid body in a duct. To resolve a film of a tenth of the radius,
-/// `first kind` needs a third of the control points of `second kind`. Factoring its matrix is then faster than iterating on the finer mesh.
+/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for up to 1500 control
+/// points if there are several rigid bodies, all with adaptive meshes, or if the only particle is a rigid body in a duct. To resolve a film of a
+/// tenth of the radius, `first kind` needs a third of the control points of `second kind`. Factoring its matrix is then faster than iterating.
 bool Scene::by_tractions() const {
   constexpr double most_points = 1500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";

@@ -76,7 +76,7 @@ struct ParticleKind {
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< true if the deck has the section Membrane
-  double field_length = 0;      ///< length by which values of surface fields are multiplied in a state of the motion; 0: R_C of the particle
+  double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
 
   void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
                                                ///< Surface, Interface and Adaptation
@@ -179,7 +179,7 @@ struct Scene : ParticleKind {
   std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
   double snapshot_interval() const;  ///< simulated time between snapshots
-  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, or the final time
+  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
 /// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all

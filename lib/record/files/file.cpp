@@ -44,7 +44,7 @@ std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
   return found;
 }
 
-/// Runs `act` on a directory and converts errors of the file system to a UserError.
+/// Calls act() and converts errors of the file system to a UserError that names the directory.
 template <class Act>
 void in_directory(const fs::path& directory, const Act& act) try {
   act();

@@ -13,7 +13,7 @@
 
 namespace tanktread::output {
 
-/// Checksum that depends on every bit of its words (a chain of invertible steps, with the constants of FNV-1a).
+/// Checksum that depends on every bit of the added data (a chain of invertible steps, with the constants of FNV-1a).
 class Checksum {
  public:
   void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
@@ -34,11 +34,12 @@ class Checksum {
   std::uint64_t sum_ = 0xcbf29ce484222325u;
 };
 
-/// Durability of a write: `yes` flushes the bytes of the file to the disk before the write returns, so that they survive a power failure.
+/// Durability of a write: `yes` flushes the bytes of the file to the disk before the write returns, so that they survive a power failure; `no` leaves
+/// the flushing to the system.
 enum class Durable { no, yes };
 
-/// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed here. Throws RunFailure (disk
-/// full, no permission).
+/// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed during the write. Throws
+/// RunFailure (disk full, no permission).
 void write_whole(const std::filesystem::path& path, std::string_view bytes, Durable durable = Durable::no);
 
 /// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
@@ -71,7 +72,7 @@ void tidy_directory(const std::filesystem::path& directory);
 /// it ends, and leaves no file behind. If the file system has no locks or the directory cannot be opened, nothing is locked.
 class Occupation {
  public:
-  /// Throws UserError if another process has locked the directory.
+  /// Locks the directory. Throws UserError if another process has locked it.
   explicit Occupation(const std::filesystem::path& directory);
   ~Occupation();
   Occupation(const Occupation&) = delete;

@@ -30,8 +30,8 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors
-/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not copied. They are valid until
+/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors,
+/// from which HDF5 does not recover, occur outside of HDF5 and are reported with the system's reason. The bytes are not copied. They are valid until
 /// the file is changed or closed.
 Id new_file();
 std::string_view image(const Id& file);

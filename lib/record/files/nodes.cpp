@@ -16,8 +16,8 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each point, the index of the first point that coincides with it. To find them, the points are sorted along a direction that is
-/// unrelated to the symmetries of meshes, so that few points have nearly equal coordinates along it.
+/// Returns, for each point, the index of the first point with the same position, which may be the point itself. For this search, the points are
+/// sorted along a direction that is unrelated to the symmetries of meshes, so that few points have nearly equal coordinates along it.
 std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;

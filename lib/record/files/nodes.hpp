@@ -26,8 +26,8 @@ struct LagrangeMesh {
                                            ///< are not spline fields
 };
 
-/// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it
-/// does not change and never touches itself.
+/// Builds the Lagrange mesh of a surface. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the
+/// best choice because it does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
 /// Returns the indices (i, j) of the nodes of a cell of degree p, in VTK's order (LagrangeMesh).

@@ -12,7 +12,7 @@ struct Options {
   std::optional<double> interval;          ///< simulated time between snapshots; empty: a twentieth of the final time
   std::optional<std::string> between_steps;  ///< `land`: steps end at snapshots; `interpolate`: snapshots interpolate between steps; empty:
                                              ///< `interpolate` with fixed time step and fixed mesh, otherwise `land`
-  std::optional<double> wall_clock_limit;  ///< seconds after which the run stops with a checkpoint; empty: none
+  std::optional<double> wall_clock_limit;  ///< seconds of real time after which the run stops with a checkpoint; empty: no limit
 
   bool power_balance = false;              ///< true if each row of the series holds the power balance
   bool surface_text = false;               ///< true if the final surface is written as Bezier-extraction text, `surface.iga`

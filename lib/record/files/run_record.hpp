@@ -16,7 +16,7 @@ namespace tanktread::output {
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one value per row; row 0 is the initial state
-  std::string si;  ///< unit of the series expressed in SI units, if the deck sets its units
+  std::string si;  ///< unit of the series in SI units, for example `1e-06 m/s`; empty if the deck does not set its units
 };
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes

@@ -122,8 +122,8 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the smallest value on each element of the T-mesh, which may consist of several Bezier elements. `values`: one per Bezier element; if
-/// empty, the result is empty.
+/// Returns for each element of the T-mesh the smallest of the values on its Bezier elements. `values`: one value per Bezier element; if empty, the
+/// result is empty.
 std::vector<double> least_of_mesh(const Body& body, std::span<const double> values) {
   std::vector<double> least;
   if (values.empty()) return least;

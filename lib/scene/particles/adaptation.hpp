@@ -26,8 +26,8 @@ struct Adapted {
 };
 
 /// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the
-/// current surface, the unstressed surface, the slopes of the time scheme and the geometry of the frozen operator to the new mesh. `block`: rows of
-/// this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
+/// current surface, the unstressed surface, the slopes of the time scheme and the control net of the frozen operator to the new mesh. `block`: rows
+/// of this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
 /// surface if `per_unstressed_area`. `films`: width of the film at each element of the space body.nested(), or empty. `fields`: values of the fields
 /// on the surface, scaled to order 1. The results of all ranks are equal.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,

@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by the particle radius R_C
+constexpr double gap_accuracy = 1e-7;  // allowed absolute error of gaps, divided by the particle radius R_C
 
 /// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
@@ -124,7 +124,7 @@ class NearestPair {
     }
   }
 
-  double gap() const { return gap_; }  ///< smallest gap; infinite if there are no pairs
+  double gap() const { return gap_; }  ///< smallest gap of the searched pairs; infinite if there are none
 
   /// Returns the index of the pair to be reported, where `least` is the smallest gap of all ranks. If several pairs have this gap, for example in a
   /// symmetric scene, selects the pair whose particles come first in the deck, so that rounding does not decide. The result is the number of pairs if

@@ -25,7 +25,7 @@ namespace tanktread {
 class Limiter {
  public:
   /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. `set_loads`:
-  /// sets the loads of the fields on the surfaces in the state that is passed to `hold`; called before the first evaluation of the system. Objects
+  /// function that sets the loads by surface fields in the state that is passed to `hold`; called before the first evaluation of the system. Objects
   /// passed by reference must outlive this object.
   Limiter(const std::vector<Member>& members, coupling::Capsule& capsule, const coupling::Ranks& ranks, double limit, double unit,
           double rate, std::function<void()> set_loads)
