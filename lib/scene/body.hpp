@@ -24,8 +24,8 @@ namespace tanktread {
 /// the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. It is set only
-                                 ///< if the flow is a simple shear whose directions are not the rows of `axes`
+  std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a
+                                 ///< simple shear of the flow type `linear`; for the type `simple shear`, these directions are the rows of `axes`
   bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
                            ///< axis of inertia
 

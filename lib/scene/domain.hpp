@@ -24,8 +24,8 @@ struct DomainOptions {
 
   void declare(deck::Section& section);
 
-  /// Throws UserError if keys contradict each other or are missing, or if the flow is not compatible with a lattice. `duct`: section that describes a
-  /// periodic duct, `Tube` or `Channel`; empty without a duct.
+  /// Throws UserError if keys contradict each other or are missing, if the lattice vectors span no cell, or if `Flow/type` is `duct` without a duct.
+  /// `duct`: section that describes a periodic duct, `Tube` or `Channel`; empty without a duct.
   void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice

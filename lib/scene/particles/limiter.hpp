@@ -31,9 +31,9 @@ class Limiter {
           double rate, std::function<void()> set_loads)
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate), set_loads_(std::move(set_loads)) {}
 
-  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or if no forces
-  /// restore the limit. In this case the call has changed only cached data of the system, and the caller must repeat the step with a smaller size.
-  /// Collective.
+  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit, if no forces
+  /// restore the limit, or if an evaluation fails. The caller must then discard `state` and `contacts`, set the previous contact forces in the system
+  /// again, and repeat the step with a smaller size. Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
