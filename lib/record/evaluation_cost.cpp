@@ -14,7 +14,7 @@ namespace {
 
 constexpr double longest = 5;  // largest allowed duration of a timed evaluation, in seconds
 
-/// Measured cost of one velocity evaluation: seconds of the setup before it, its seconds, its kernel evaluations on all ranks, and the number of mesh
+/// Measured cost of one velocity evaluation: seconds of the setup and of the evaluation, kernel evaluations on all ranks, and number of mesh
 /// elements.
 struct Cost {
   double setup, seconds, kernel_evaluations, elements;

@@ -92,8 +92,8 @@ class Results {
   void remesh(const Body& body, const surface::BezierMap& map);
 
   /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the duration of
-  /// the run has doubled or grown by one second since the last write, but at intervals of at least fifty times the duration of a write. Sets the row
-  /// on every rank to the values of the first rank, so that all ranks take the same decisions.
+  /// the run has doubled, or grown by one second, since the last write. The interval is at least fifty times the duration of a write. Sets the row on
+  /// every rank to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.

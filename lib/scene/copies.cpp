@@ -101,8 +101,8 @@ class Packing {
     return false;
   }
 
-  /// Moves sphere i by a random step of at most the length `longest`. Undoes the step and returns false if the sphere then overlaps another one, or
-  /// if it has moved by more than the skin (see find_neighbours) since the neighbour lists were built.
+  /// Moves sphere i by a random step of at most the length `longest`. Undoes the step and returns false if the sphere then overlaps another sphere.
+  /// The same applies if the sphere has moved by more than `skin_` since find_neighbours() built the neighbour lists.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;

@@ -45,8 +45,9 @@ void write_whole(const std::filesystem::path& path, std::string_view bytes, Dura
 /// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
 
-/// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe), and
-/// check_readable() also if it cannot be read to its end. A file that passes both checks but cannot be interpreted is damaged.
+/// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe).
+/// check_readable() also throws RunFailure if the file cannot be read to its end. A file that passes both checks but cannot be interpreted is
+/// damaged.
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 

@@ -25,8 +25,8 @@ struct Series {
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///
-/// The rows are kept in memory, and `write` writes all of them atomically (write_whole). The reason: HDF5 1.10 cannot append to a file in such a way
-/// that every reader can open the file after the process was killed (the single-writer mode of HDF5 leaves a mark that readers refuse). Serial: with
+/// The rows are kept in memory, and `write` writes all of them atomically (write_whole). The reason: if a process is killed while it appends to a
+/// file by HDF5 1.10, not every reader can open the file afterwards. The single-writer mode of HDF5 leaves a mark that readers refuse. Serial: with
 /// several ranks only the first one has a record.
 class RunRecord {
  public:
@@ -58,7 +58,7 @@ class RunRecord {
   void write(Durable durable = Durable::no) const;
 
   /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum). A series whose values in
-  /// these rows are all NaN does not contribute, so that a series that a resumed run adds does not change the checksum of earlier rows.
+  /// these rows are all NaN does not contribute. Thus a series that a resumed run adds does not change the checksum of earlier rows.
   /// `with_undefined`: true to include such series, as checkpoints of earlier versions do.
   std::string checksum(std::size_t rows, bool with_undefined = false) const;
 
