@@ -30,7 +30,8 @@ std::vector<double> line(double low, double high) {
   return out;
 }
 
-/// Returns the axial velocity v_1 at all grid points, NaN outside of the section. All points inside are evaluated by one call.
+/// Returns the velocity v_1 along the tube at all points (x2, x3) of the grid, x2 fastest; NaN outside of the cross-section. One call evaluates all
+/// points inside.
 std::vector<double> velocities(const stokes::DuctFlow& flow, const std::vector<double>& x2, const std::vector<double>& x3) {
   std::vector<double> out(x2.size() * x3.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<std::size_t> inside;
@@ -75,15 +76,15 @@ namespace {
 
 constexpr int places_along = 301, sections = 10;
 
-/// Returns the components of points in one array, x1, x2, x3 of each point after the other.
+/// Returns the coordinates x1, x2, x3 of all points in one array, point after point.
 std::vector<double> flat(const std::vector<Vec3>& rows) {
   std::vector<double> out;
   for (const Vec3& row : rows) out.insert(out.end(), row.data(), row.data() + 3);
   return out;
 }
 
-/// Data along the line on the channel's wall that begins at the first point of the outline. s: arc length along the centre line. shear: magnitude of
-/// the tangential traction.
+/// Data on the line along the channel's wall through the first point of the outline. s: arc length along the centre line. shear: magnitude of the
+/// tangential traction.
 struct WallLine {
   std::vector<double> s, shear, pressure;
 };
@@ -152,7 +153,7 @@ std::vector<output::Array> channel_picture(const coupling::ChannelFlow& flow) {
        {flow.extra_pressure_drop()},
        {}}};
   if (channel.repeats())
-    return all;  // the layer density on the wall of a periodic channel is not the traction, so it is not plotted
+    return all;  // the layer density on the wall of a periodic channel is not the traction, so no wall data are plotted
   const WallLine wall = along_wall(flow);
   all.push_back({"wall_s", "length", "arc length along the line of the wall on which the outline begins", wall.s, {wall.s.size()}});
   all.push_back({"wall_shear_stress",

@@ -14,13 +14,14 @@ namespace {
 
 constexpr double longest = 5;  // largest allowed duration of a timed evaluation, in seconds
 
-/// Measured cost of one velocity evaluation, over all ranks.
+/// Measured cost of one velocity evaluation: seconds of the setup and of the evaluation, kernel evaluations on all ranks, and number of mesh
+/// elements.
 struct Cost {
   double setup, seconds, kernel_evaluations, elements;
   long memory;  // peak memory of all ranks in bytes
 };
 
-/// Builds a scene, and times the evaluation of its initial velocity. Collective.
+/// Builds the particles of a scene, and returns the cost of evaluating their velocity once, in the initial shape. Collective.
 Cost measured(const Scene& scene) {
   coupling::Ranks ranks;
   Phases phases;
@@ -41,7 +42,8 @@ Cost measured(const Scene& scene) {
   return cost;
 }
 
-/// Divides the numbers of elements of a mesh by `divisor`, with at least three elements left per side. Returns true if a number has changed.
+/// Divides the numbers of elements of a mesh by `divisor`, but keeps at least six azimuthal elements and at least three along other directions.
+/// Returns true if a number has changed.
 bool coarsen(surface::MeshOptions& mesh, int divisor) {
   bool changed = false;
   for (auto* elements : {&mesh.elements_per_side, &mesh.azimuthal_elements, &mesh.meridional_elements}) {
@@ -77,7 +79,7 @@ output::Entries<std::string> evaluation_cost(const Scene& scene) {
     try {
       cost = measured(coarse);
     } catch (const UserError&) {
-      continue;  // the scene is not valid on this coarse mesh: tries the next finer one
+      continue;  // the scene is not valid on this coarse mesh: tries the next finer mesh
     }
     const double ratio = elements(scene) / cost.elements, seconds = cost.seconds * ratio * ratio;
     if (seconds > longest)

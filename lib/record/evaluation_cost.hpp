@@ -7,8 +7,9 @@
 namespace tanktread {
 
 /// Returns lines for the plan with the memory, the kernel evaluations and the seconds of one velocity evaluation of a scene in its initial shape. If
-/// an evaluation would take longer than five seconds, its seconds are extrapolated from a coarser mesh. They are taken as proportional to the square
-/// of the number of elements. A scene without velocity, such as the resistance problem of a body with prescribed motion, has no lines. Collective.
+/// an evaluation would take longer than five seconds, returns only its seconds, extrapolated from a coarser mesh in proportion to the square of the
+/// number of elements. Returns no lines if the scene has no velocity to evaluate, as in the resistance problem of a body with prescribed motion.
+/// Collective.
 output::Entries<std::string> evaluation_cost(const Scene& scene);
 
 }  // namespace tanktread

@@ -103,7 +103,7 @@ std::string surface_line(const Body& body) {
                    body.space.description.c_str());
 }
 
-/// Returns how the equations for the unknown tractions of a tube's wall are solved, for the plan.
+/// Returns the words of the plan that state how the equations for the unknown tractions of a tube's wall are solved.
 std::string wall_solver(const Scene& scene) {
   if (!scene.in_system()) return "eliminated from the system of the traction";
   if (scene.solvers.tube != "schur") return "one system of velocity, traction, pressure drop and volume: " + scene.solvers.tube;
@@ -189,7 +189,8 @@ std::string mesh_line(const Scene& scene) {
   return std::string("refined as the particle deforms") + (scene.adaptation.indicator == "error" ? ", by estimated errors (1.5)" : " (P-37)");
 }
 
-/// Returns the time scheme and the size of the frozen operator. `pairs`: number of pairs of control points in the frozen operator.
+/// Returns the line of the plan about the time scheme and the size of the frozen operator (the single layer in the Jacobian of implicit steps).
+/// `pairs`: number of pairs of control points in the frozen operator.
 std::string time_line(const Scene& scene, double pairs, int ranks) {
   const bool chosen = scene.time.scheme == "auto";
   const std::string scheme = scene.time.scheme + (chosen ? ", bs3 or tr-bdf2 by the measured stiffness" : "");
@@ -198,7 +199,7 @@ std::string time_line(const Scene& scene, double pairs, int ranks) {
   return scheme + formatted(", frozen single layer of %.1f MB ", 1e-6 * coupling::FrozenOperator::bytes_a_pair * pairs) + on_ranks(ranks);
 }
 
-/// Adds the lines about a search for steady shapes or a spectrum, which replace the line `time` of the plan.
+/// Adds the lines about steady shapes, periodic motions, branches and spectra, which replace the line `time` of the plan.
 void add_steady(Lines& lines, const Scene& scene, const Body& body) {
   if (scene.steady.present)
     lines.emplace_back("steady", "the steady shape, by " + scene.steady.method + " of NOX on implicit steps with the frozen Jacobian");
@@ -225,7 +226,7 @@ std::string symmetry_line(const Scene& scene, const Body& body) {
              evaluated, body.space.n_points, double(body.space.n_points) / evaluated);
 }
 
-/// Returns the line of the plan about a rigid particle with prescribed or free motion: the unknowns of its motion.
+/// Returns the line of the plan about a rigid particle: that its motion is prescribed, or how its free motion is computed.
 std::string rigid_line(const Scene& scene, const Body& body) {
   if (scene.particle.motion == Motion::prescribed) return "rigid, its motion prescribed: no membrane, nothing moves in time";
   if (body.wall || scene.wall.present) return "rigid and free, no membrane: its motion is computed with the traction, at each position";
@@ -279,9 +280,9 @@ Lines plan_of_rigid(const Scene& scene, const Body& body, int ranks) {
   return lines;
 }
 
-/// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `responds`: true if the tractions of
-/// rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming particle whose velocity is found from a linear
-/// system.
+/// Returns the lines of the plan about one particle. `n_points`: number of control points of all particles. `tree`: true if far-field sums use
+/// clusters. `responds`: true if the tractions of rigid bodies are found by GMRES, because the scene has a tube, a periodic domain, or a deforming
+/// particle whose velocity is found from a linear system.
 Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
   if (!one.particle.rigid()) {
     Lines lines = {{"viscosity", viscosity_line(one, n_points, tree)}, {"membrane", membrane_line(one)}};
@@ -296,8 +297,8 @@ Lines particle_lines(const Scene& one, int n_points, bool tree, bool responds) {
                        (first_kind ? by_traction : formatted("a double layer, in a system of %d unknowns per velocity (2.23)", 3 * n_points))}};
 }
 
-/// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, each has one line, into
-/// which its lines are joined; consecutive particles with equal lines share one line.
+/// Adds the lines about all particles to the plan. A single particle has several lines. If there are several particles, the lines of each are joined
+/// into one, and consecutive particles with equal lines share one line.
 void add_particles(Lines& lines, const std::vector<Scene>& alone, int n_points, bool tree) {
   std::string last;
   const bool responds = std::ranges::any_of(alone, [](const Scene& one) {

@@ -218,7 +218,7 @@ void Results::record(Columns& row) {
   });
 }
 
-/// Writes `run.h5`, unless the file has all rows, then the snapshots that wait.
+/// Writes `run.h5` if rows are missing in the file, then the snapshots that wait in memory.
 void Results::write_files() {
   if (rows_written_ != record_->rows()) {
     const auto begun = Clock::now();

@@ -30,9 +30,10 @@ struct RunRequest {
   std::string output;           ///< directory of the results
   bool resume = false;          ///< true to resume from the newest checkpoint in the directory
   bool overwrite = false;       ///< true to delete the results of an earlier run in the directory first
-  bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only its shape, slope and step are then used
+  bool another_scheme = false;  ///< true if the checkpoint has another time scheme; only the data that all schemes use are then kept
   bool quiet = false;           ///< true to show no progress bar
-  bool of_ladder = false;       ///< true for a level of an accuracy ladder; the ladder itself reports why it ended and how to resume it
+  bool of_ladder = false;       ///< true for a level of an accuracy ladder; the run then does not report why it ended and how to resume it, because
+                                ///< the ladder does
   std::string deck_text;        ///< the effective deck, to be stored with the results
   /// Returns the scene of this deck with some keys changed by `settings`, each of which is `Section/key=value`.
   std::function<Scene(const std::vector<std::string>& settings)> changed;
@@ -43,8 +44,8 @@ struct RunRequest {
 constexpr const char* kept_flow_history = "flow_history.csv";
 std::string kept_surface(const ParticleKind& kind);  ///< returns the name of the copy of a particle's shape file
 std::string kept_stress_free(const ParticleKind& kind);  ///< returns the name of the copy of the file of the stress-free shape
-std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file with the positions of a particle's copies
-/// Returns the name for the file of an outline or of a channel's points: the name of the original file without its folder.
+std::string kept_places(const ParticleKind& kind);   ///< returns the name of the copy of the file named by `Particles/<name>/copies/file`
+/// Returns the name of the copy of a file with an outline or with a channel's points: the name of the original file without its folder.
 std::string kept_name(const std::string& file);
 
 /// Data of a finished run for its summary and its messages.
@@ -53,7 +54,7 @@ struct Account {
   output::Entries<long> counts;
   std::string status = "done";  ///< status in summary.yaml: `done`, `steady`, `stopped: ...` or `failed: ...`
   std::string remark;           ///< why the run ended early, if it did; printed on standard error together with missed expectations
-  bool whole = true;            ///< true if the run reached its end; only then does a missed expectation with empty `not_binding` fail the run
+  bool whole = true;            ///< true if the run reached its end; only then can a missed expectation fail the run
   output::Entries<double> earlier;  ///< seconds by phase of earlier parts of a resumed run
   output::Entries<Vec3> vectors;    ///< drag and torque of a body with prescribed motion, for Summary::final_vectors
   output::Entries<std::string> modes;  ///< modes of a spectrum
@@ -76,23 +77,23 @@ void check_vacant(const RunRequest& request);
 /// together: RunFailure if writing fails, UserError if a run cannot begin in its directory.
 ///
 /// During the first second of a run, files are not flushed to the disk, and snapshots after the first one wait in memory until `run.h5` is written
-/// next: after a kill, repeating the last steps is faster than it would be to write `run.h5` for each snapshot. Afterwards, each snapshot and the
-/// rows of `run.h5` up to its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a
-/// second, all its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
+/// next: repeating the last steps after a kill takes less time than writing `run.h5` for each snapshot. Afterwards, each snapshot and the rows of
+/// `run.h5` up to its step are flushed before the snapshot is added to `run.hdf.series`. At the end of a run that lasted longer than a second, all
+/// its files are flushed. `run.hdf.series` is written for the first time after a second, or at the end of the run.
 class Results {
  public:
   Results(const Scene& scene, const RunRequest& request, const Body& body, const surface::BezierMap& map, const coupling::Ranks& ranks);
 
-  /// Returns the newest checkpoint of the directory if the run is resumed. Removes later rows of `run.h5`. Throws UserError if there is no
-  /// checkpoint.
+  /// Returns the newest checkpoint of the directory if the run is resumed, otherwise nothing. Removes the rows of `run.h5` after this checkpoint.
+  /// Throws UserError if there is no checkpoint.
   std::optional<Resumed> resumed();
 
   /// Sets the body to which later snapshots refer, and its Bezier extraction.
   void remesh(const Body& body, const surface::BezierMap& map);
 
-  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the run is twice
-  /// as old as at the last write or one second older, but at intervals of at least fifty times the duration of a write. Sets the row on every rank
-  /// to the values of the first rank, so that all ranks take the same decisions.
+  /// Adds the row of a finished step to `run.h5`. The file is written before every snapshot. Between snapshots, it is written when the duration of
+  /// the run has doubled, or grown by one second, since the last write. The interval is at least fifty times the duration of a write. Sets the row on
+  /// every rank to the values of the first rank, so that all ranks take the same decisions.
   void record(Columns& row);
 
   /// Prints a warning on standard error and adds it to the summary.

@@ -13,7 +13,7 @@ namespace tanktread {
 
 namespace {
 
-/// Description of a field of the snapshots or of an entry of the summary.
+/// Description of a field of the snapshots or of an entry of the summary. `of`: runs or particles for which it is recorded.
 struct Entry {
   const char *name, *unit, *of, *description;
 };

@@ -135,7 +135,7 @@ Body body(const Scene& scene, const Member* alike) {
     b.rest = surface::initial_shape(b.space, b.mesh, scene.particle.shape);
   }
   const auto before = run_before(scene);
-  std::optional<Body> first;  // body on the mesh of the deck; set if an earlier run may have adapted the mesh
+  std::optional<Body> first;  // body on the mesh of the deck; set if the particle starts from an earlier run that may have adapted the mesh
   if (before && scene.adaptation.enabled) {
     first = b;
     lay_out(scene, stored_mesh(b.mesh, *before), b);

@@ -21,11 +21,11 @@
 namespace tanktread {
 
 /// Plane through the centroid in which the Taylor parameter D and tank-treading are measured. The rows of `axes` are the first in-plane direction a,
-/// the normal b x a and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
+/// the normal (cross product of b and a) and the second in-plane direction b. For the plane x1 x3, `axes` is the identity.
 struct FlowPlane {
   Mat3 axes = Mat3::Identity();
-  std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. It is set only
-                                 ///< if the flow is a simple shear whose directions are not the rows of `axes`
+  std::optional<Mat3> of_shear;  ///< rows: direction of a simple shear flow, normal of the plane, direction of the velocity gradient. Set only for a
+                                 ///< simple shear of the flow type `linear`; for the type `simple shear`, these directions are the rows of `axes`
   bool holds_flow = true;  ///< false if the flow is not planar; the Taylor parameter D is then measured in the plane of the longest and the shortest
                            ///< axis of inertia
 
@@ -60,10 +60,11 @@ struct Body {
   FlowPlane plane;     ///< plane in which the Taylor parameter D and tank-treading are measured
   membrane::Law law;
   double radius = 1;   ///< R_C, radius of the sphere of equal volume
-  /// Reference volume V0: volume of the resting shape, or of the initial shape if the particle keeps that volume. V0 is computed on the first mesh
-  /// and does not change if the mesh changes.
+  /// Reference volume V0: volume of the resting shape, or of the initial shape if the deck requests that the particle keeps that volume. V0 is
+  /// computed on the first mesh and does not change if the mesh changes.
   double volume = 0;
-  double initial_area = 0;  ///< initial mass int c dG of the surfactant, computed on the first mesh at the start of the run; 0 before
+  double initial_area = 0;  ///< initial mass of the surfactant (integral of the concentration over the surface), computed on the first mesh at the
+                            ///< start of the run; 0 before
   double refit_error = 0;  ///< accumulated displacement of the current and the unstressed surface by mesh changes, divided by the radius R_C
   double modulus = 1;  ///< shear modulus G_s, or the surface tension sigma of an interface
   surface::Symmetry symmetry;                       ///< symmetry common to the scene and the particle at all times
@@ -74,25 +75,25 @@ struct Body {
   const spline::Space& nested() const { return plain ? *plain : space; }
 };
 
-/// Builds the body of a scene with one particle. If `alike` is given, its mesh and resting shape are copied and moved to the position of this scene's
-/// particle.
+/// Builds the body of a scene with one particle. If the member `alike` is given, its mesh and resting shape are used, and the shape is moved to the
+/// position of this scene's particle.
 Body body(const Scene& scene, const Member* alike = nullptr);
 
 /// Returns true if body() can copy the mesh and the resting shape from the particle of one scene to the particle of the other.
 bool alike(const Scene& one, const Scene& other);
 
-/// Sets the mesh of the body, and builds the spline space of the kind that the deck requests on this mesh.
+/// Sets the mesh of the body, and builds on it the spline space that the deck requests.
 void lay_out(const Scene& scene, spline::TMesh mesh, Body& body);
 
-/// Returns the symmetry shared by the scene and the current shape x, restricted to the symmetries that the deck allows the program to use.
+/// Returns the common symmetry of the scene, the body and the current shape x, restricted to the symmetries that the deck allows the program to use.
 surface::Symmetry symmetry(const Scene& scene, const Body& body, const Net& x);
 
 /// Returns the loads of a particle on its current mesh, except elasticity and bending. A rigid particle only has the repulsion from the wall. `wall`:
 /// wall of the tube, or null.
 coupling::LoadList loads(const Scene& scene, const Body& body, const surface::TubeWall* wall);
 
-/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and for the
-/// strong form.
+/// Returns the area to which the load refers: unstressed or current. It is the current area for a drop, which has no unstressed state, and if the
+/// load is computed in the strong form.
 stokes::Measure load_measure(const Scene& scene);
 
 }  // namespace tanktread

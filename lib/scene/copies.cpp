@@ -62,11 +62,11 @@ class Packing {
  private:
   struct Neighbour {
     std::size_t number;
-    Vec3 image;  // lattice vector that is added to the neighbour's centre to get its nearest image
+    Vec3 image;  // lattice vector from the neighbour's centre to the centre of its image that is close to the sphere
   };
 
-  /// Lists for each sphere the spheres that it may overlap as long as no sphere has moved by more than the distance `skin_`. Keeps the previous lists
-  /// until a sphere has moved by half of `skin_`.
+  /// Lists for each sphere all spheres that it can overlap before a sphere has moved by more than `skin_`. Rebuilds the lists only if a sphere has
+  /// moved by half of `skin_`.
   void find_neighbours() {
     double farthest = found_at_.empty() ? 2 * skin_ : 0;
     for (std::size_t i = 0; i < found_at_.size(); ++i) farthest = std::max(farthest, (spheres_[i].centre - found_at_[i]).norm());
@@ -101,8 +101,8 @@ class Packing {
     return false;
   }
 
-  /// Makes a random step of sphere i of at most `longest`. Undoes the step and returns false if the sphere then overlaps another one, or if it has
-  /// moved by more than the skin (see find_neighbours) since the neighbour lists were built.
+  /// Moves sphere i by a random step of at most the length `longest`. Undoes the step and returns false if the sphere then overlaps another sphere.
+  /// The same applies if the sphere has moved by more than `skin_` since find_neighbours() built the neighbour lists.
   bool stepped(std::size_t i, double longest) {
     if (spheres_[i].fixed) return false;
     const Vec3 before = spheres_[i].centre;
@@ -171,7 +171,7 @@ std::vector<Copy> in_file(const std::string& file, const std::string& list) {
   return copies;
 }
 
-/// Returns the copies on a lattice whose centre is the origin.
+/// Returns copies on a lattice that is centred at the origin.
 std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   std::vector<Copy> copies;
   for (int i = 0; i < counts[0]; ++i)
@@ -180,7 +180,8 @@ std::vector<Copy> on_lattice(const Vec3& counts, const Vec3& spacing) {
   return copies;
 }
 
-/// Draws random positions one by one and discards positions that are too close to an earlier one.
+/// Returns copies at random positions in a box or ball. Draws positions one by one and discards a position that is too close to a sphere in `taken`.
+/// Adds the spheres of the copies to `taken`.
 std::vector<Copy> at_random(const CopiesOptions& how, int number, double radius, const Vec3& origin, std::vector<PackedSphere>& taken,
                             const std::string& list) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));
@@ -226,8 +227,8 @@ int count(const CopiesOptions& how, double of_one, const std::optional<stokes::P
   return static_cast<int>(number);
 }
 
-/// Draws random positions in the periodic cell. Copies may overlap there; `pack` separates them afterwards. Skips the random numbers that were used
-/// for earlier spheres in the cell (in `taken`), because earlier kinds of particles may have the same seed.
+/// Adds spheres at random positions in the periodic cell to `taken`, and returns as many copies without positions. The spheres may overlap until
+/// pack() separates them. Skips as many random numbers as earlier spheres have used, because earlier kinds of particles may have the same seed.
 std::vector<Copy> in_cell(const CopiesOptions& how, int number, double radius, const Vec3& origin, const stokes::PeriodicCell& cell,
                           std::vector<PackedSphere>& taken) {
   std::mt19937_64 random(static_cast<std::uint64_t>(how.seed));

@@ -15,7 +15,7 @@
 
 namespace tanktread {
 
-/// Sphere of a packing: its radius, its least gap to other spheres divided by its radius, and whether it may move.
+/// Sphere of a packing: its centre and radius, its least gap to another sphere divided by the larger of the two radii, and whether it is fixed.
 struct PackedSphere {
   Vec3 centre;
   double radius = 1, least_gap = 0;
@@ -30,10 +30,10 @@ double uniform(std::mt19937_64& random);
 double least_distance(const PackedSphere& a, const PackedSphere& b, double gap);
 inline double least_distance(const PackedSphere& a, const PackedSphere& b) { return least_distance(a, b, std::max(a.least_gap, b.least_gap)); }
 
-/// Moves spheres from arbitrary positions to an arrangement in which none overlaps another one or an image, distributed as hard spheres in thermal
-/// equilibrium. First, overlapping pairs are pushed apart until none overlap (after Jodrey & Tory 1985). Then all take random steps, and steps that
-/// end in an overlap are undone (Metropolis et al. 1953). For equal spheres, pack() succeeds up to a volume fraction of about 0.6, gaps included.
-/// Returns false if overlaps remain.
+/// Moves spheres from arbitrary positions to an arrangement without overlaps of spheres and periodic images, distributed as hard spheres in thermal
+/// equilibrium. First, overlapping pairs are pushed apart until none overlap (after Jodrey & Tory 1985). Then all spheres take random steps, and
+/// steps that end in an overlap are undone (Metropolis et al. 1953). For equal spheres, pack() succeeds up to a volume fraction of about 0.6, gaps
+/// included. Returns false if overlaps remain.
 bool pack(std::vector<PackedSphere>& spheres, const stokes::PeriodicCell& cell, std::uint64_t seed);
 
 struct ParticleKind;
@@ -47,8 +47,8 @@ struct CopiesOptions {
   std::optional<int> number;          ///< number of copies placed at random
   std::optional<double> volume_fraction;  ///< volume fraction of the copies, from which the number of copies follows
   std::optional<Vec3> box;            ///< side lengths of the box that contains all copies entirely
-  /// Radius of the ball that contains all copies. Without `box` and `ball`, copies at random positions fill the periodic cell. This requires three
-  /// periods.
+  /// Radius of the ball that contains all copies. Without `box` and `ball`, copies at random positions fill the periodic cell, which must then be
+  /// periodic in three directions.
   std::optional<double> ball;
   double least_gap = 0.05;            ///< least gap between the circumscribed spheres of two copies, divided by the larger radius
   int seed = 1;
@@ -58,7 +58,8 @@ struct CopiesOptions {
   bool random() const { return number || volume_fraction; }
   bool in_cell() const { return random() && !box && !ball; }
 
-  /// Throws UserError if keys contradict each other. The message is one sentence. `cell`: true if the lattice has three directions.
+  /// Throws UserError, with a message of one sentence, if keys contradict each other. `list`: path of the section `copies`. `cell`: true if the scene
+  /// is periodic in three directions.
   void check(const std::string& list, bool cell) const;
 };
 

@@ -42,8 +42,8 @@ Mat3 DomainOptions::vectors() const {
 
 namespace {
 
-/// Returns whether the flow fits the lattice: it is affine, or its velocity is equal in all cells. If the direction of the flow changes in time, the
-/// velocities are compared for several directions. `vectors`: the lattice vectors as columns.
+/// Returns true if the flow fits the lattice: if it is affine, or if its velocity is equal in all cells. If the direction of the flow changes in
+/// time, the velocities are compared for several directions. `vectors`: the lattice vectors as columns.
 bool repeats(const stokes::AmbientFlow& flow, const Eigen::Ref<const Eigen::MatrixXd>& vectors) {
   if (flow.affine()) return true;
   const Net places = vectors.norm() * (Net(4, 3) << 0.1, 0.2, -0.3, 0.5, -0.1, 0.2, -0.4, 0.3, 0.6, 0.2, 0.7, 0.1).finished();

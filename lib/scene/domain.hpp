@@ -24,8 +24,8 @@ struct DomainOptions {
 
   void declare(deck::Section& section);
 
-  /// Throws UserError if keys contradict each other or are missing, or if the flow is not compatible with a lattice. `duct`: name of the periodic
-  /// duct, or empty.
+  /// Throws UserError if keys contradict each other or are missing, if the lattice vectors span no cell, or if `Flow/type` is `duct` without a duct.
+  /// `duct`: section that describes a periodic duct, `Tube` or `Channel`; empty without a duct.
   void check(const stokes::FlowOptions& flow, const std::string& duct) const;
 
   void reject(const Scene& scene, Rejections& to) const;  ///< adds the choices of the scene that contradict a lattice
@@ -33,11 +33,11 @@ struct DomainOptions {
   /// Returns the number of periodic directions.
   int directions() const;
 
-  /// Returns the cell at the start; none if the scene is not periodic.
+  /// Returns the periodic cell at the start of the run; nothing if the scene is not periodic.
   std::optional<stokes::PeriodicCell> cell() const;
 
  private:
-  /// Returns whether the flow at amplitude 1 changes the lattice vectors. The time dependence `Flow/history` is not considered.
+  /// Returns true if the flow changes the lattice vectors. The amplitude is taken as 1, and the time dependence `Flow/history` is ignored.
   bool deforms(const stokes::FlowOptions& flow) const;
   Mat3 vectors() const;
   void check_duct(const std::string& duct) const;

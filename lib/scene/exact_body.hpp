@@ -22,12 +22,12 @@ struct ExactBody {
   Vec3 force() const;   ///< returns the force on the body
   Vec3 torque() const;  ///< returns the torque on the body about its centre
 
-  /// Return quantities at the point of the exact surface in the direction of x from the centre: the pressure p = -t.n up to a constant, with t the
-  /// traction on the body, and the unit normal.
+  /// Return quantities at the point of the exact surface that lies in the direction of x from the centre: the pressure p = -t.n up to a constant,
+  /// with t the traction on the body, and the unit normal.
   double pressure(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
 
-  /// Returns true if the pressure is not zero everywhere. It is zero if the body only rotates about axes of revolution.
+  /// Returns false if the pressure is zero everywhere, which is the case if the body only rotates about axes of revolution.
   bool presses() const;
 
  private:
@@ -41,12 +41,13 @@ coupling::RigidMotion prescribed_motion(const Scene& scene);
 /// nonzero rate of strain, and for a scene with a tube or wall.
 std::optional<ExactBody> exact_body(const Scene& scene);
 
-/// Errors of the force density f on the fluid (control values) and of the normal n_h of the numerical surface, whose control net is `surface`.
+/// Errors of the pressure p, which follows from the force density f on the fluid, and of the normal n_h of the numerical surface. surface_errors()
+/// computes them from the control net `surface` and the control values `f`.
 struct SurfaceErrors {
-  double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h plus the constant for which int (p - p_exact)
-                        ///< dG = 0
+  double pressure = 0;  ///< L2 norm of p - p_exact divided by the L2 norm of p_exact (6.3); p = f.n_h + c, where the constant c makes the mean of p -
+                        ///< p_exact over the surface zero
   double normal = 0;    ///< L2 norm of the error n_h - n of the numerical normal, divided by the L2 norm of the exact normal n
-  double constant = 0;  ///< constant c in the numerical pressure p = f.n_h + c, with the force density f and the numerical normal n_h
+  double constant = 0;  ///< the constant c in the numerical pressure p = f.n_h + c
 };
 SurfaceErrors surface_errors(const spline::Space& space, const Net& surface, const Net& f, const ExactBody& exact);
 

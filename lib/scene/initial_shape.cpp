@@ -20,7 +20,7 @@ namespace {
 
 const std::string key = "Particle/initial shape/";
 
-/// Returns the image of a surface under a linear map about the point `middle`. If the map is the identity, the result is bitwise the same.
+/// Returns the image of a surface under a linear map about the point `middle`. If the map is the identity, the result is bitwise equal to `net`.
 Net image(const Net& net, const Vec3& middle, const Mat3& map) {
   return net + (net.rowwise() - middle.transpose()) * (map - Mat3::Identity()).transpose();
 }
@@ -42,8 +42,8 @@ Net net_of_file(const spline::Space& space, const std::string& name, const std::
   return surface.net;
 }
 
-/// Throws UserError if the run has several particles, if the mesh options of the run and the scene differ or, if the mesh adapts, their resting
-/// shapes differ. Material properties may differ.
+/// Throws UserError if the scene cannot start from the surface of the run: the run has several particles, its mesh options differ from the scene's,
+/// or the mesh adapts and the resting shapes differ. Material properties may differ.
 void check_surface(const Scene& scene, const output::Checkpoint& run, const std::string& name) {
   Scene of_run(*scene.registry);
   deck::Document deck = deck::read_text(run.texts.at("deck"), "The deck of " + name);
@@ -57,7 +57,7 @@ void check_surface(const Scene& scene, const output::Checkpoint& run, const std:
   if (now.enabled && !before.particle.shape.same_rest(scene.particle.shape)) refuse("Particle's resting shape on a mesh that adapts");
 }
 
-/// Returns the shape in the last state of a run. The rows of x after the shape, if any, are coefficients of surface fields.
+/// Returns the control net in the last state x of a run. The rows of x after this net, if any, are coefficients of surface fields.
 Net shape_of(const output::Checkpoint& run) {
   const Eigen::MatrixXd& x = run.arrays.at("x");
   const auto alone = run.arrays.find("unstressed");

@@ -39,7 +39,7 @@ bool translated(const Net& a, const Net& b) {
   return (change.rowwise() - change.row(0)).cwiseAbs().maxCoeff() < 1e-14 * (a.cwiseAbs().maxCoeff() + b.cwiseAbs().maxCoeff());
 }
 
-/// Sets the geometry and the membrane of member p. Shares each with an earlier member for which it is equal, or constructs a new one.
+/// Sets the geometry and the membrane of member p. Shares each of them with an earlier member for which it is equal, or constructs it.
 void share_or_make(std::vector<Member>& members, std::size_t p) {
   Member& member = members[p];
   const Body& body = *member.body;

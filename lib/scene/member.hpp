@@ -23,8 +23,8 @@ struct Member {
   Scene scene;
   std::unique_ptr<Body> body;
   spline::Block block;
-  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; members with equal spaces share this object and `membrane`
-  std::shared_ptr<const membrane::Membrane> membrane;
+  std::shared_ptr<const surface::Geometry> geometry;  ///< geometry; this object is shared by members with equal spaces
+  std::shared_ptr<const membrane::Membrane> membrane;  ///< membrane; shared if also the materials and the unstressed shapes are equal
   spline::Place place;    ///< parametric point of the material point whose phase angle is recorded; it does not change if the mesh adapts
   spline::Site followed;  ///< site (element and parameters) of the followed material point on the current mesh
   PhaseAngle phase_angle;
@@ -54,21 +54,22 @@ void arrange(std::vector<Member>& members);
 /// total volume. Returns null if there is only one member.
 std::unique_ptr<Body> stacked_body(const std::vector<Member>& members);
 
-/// Builds the coupled system of all members, in a tube or among plates and posts if there are any, with only the operators that they need. `all`:
-/// body of all members (see stacked_body).
+/// Builds the coupled system of all members, with the given tube or solids (plates and posts) if there are any. Only the operators that the members
+/// need are built. `all`: body of all members (see stacked_body).
 std::unique_ptr<coupling::Capsule> capsule(const std::vector<Member>& members, const Body& all, coupling::Ranks& ranks, Phases& phases,
                                            std::unique_ptr<coupling::Tube> tube,
                                            const std::optional<coupling::SolidScene>& solids);
 
-/// Returns the particles at the shape x and the fluid velocity v, for user-defined series. Empty if the deck asks for no user-defined series.
+/// Returns the particles in the shape x with the fluid velocity v, as user-defined series receive them. Empty if the deck asks for no such series.
 std::vector<RecordedParticle> recorded_particles(const std::vector<Member>& members, const Net& x, const Net& v);
 
 /// Writes to a checkpoint, or reads from it, the data of the members in addition to the state: volumes, nets and adapted meshes. Throws
-/// std::out_of_range if the checkpoint lacks a part.
+/// std::out_of_range if the checkpoint lacks a part of these data.
 void store(const std::vector<Member>& members, output::Checkpoint& checkpoint);
 bool restore(const output::Checkpoint& checkpoint, std::vector<Member>& members);  ///< returns true if the mesh of any member was read
 
-/// Returns the mesh with the edges stored in the checkpoint, on the lattice of `mesh`. Throws UserError if the checkpoint has another lattice.
+/// Returns the mesh with the edges stored in the checkpoint, on the lattice of possible edges of `mesh`. Throws UserError if the stored mesh has
+/// another lattice.
 spline::TMesh stored_mesh(spline::TMesh mesh, const output::Checkpoint& checkpoint, const std::string& prefix = {});
 
 }  // namespace tanktread

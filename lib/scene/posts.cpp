@@ -14,7 +14,7 @@ namespace {
 
 bool is_post(const ParticleKind& kind) { return kind.particle.shape.shape == "cylinder"; }
 
-/// Throws UserError if a key has no meaning for a post.
+/// Throws UserError if the deck sets a key that has no meaning for a post.
 void check_keys(const ParticleKind& kind, const Post& post) {
   const ParticleOptions& particle = kind.particle;
   const auto refuse_key = [&](const char* key, bool given) {

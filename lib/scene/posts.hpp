@@ -18,7 +18,7 @@ struct Post {
   double radius = 1;
   int axis = 0;  ///< index of the coordinate axis parallel to the post
   Vec3 center = Vec3::Zero();
-  int around = 24;           ///< number of elements around it
+  int around = 24;           ///< number of elements around the post
   std::optional<int> along;  ///< number of elements of the post along its period
 
   std::string path(const std::string& key = {}) const;  ///< returns the path of the post's section or of a key in it, for messages

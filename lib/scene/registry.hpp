@@ -25,7 +25,7 @@ struct RecordedParticle {
 using ParticleSeries = std::function<std::vector<double>(double time, const RecordedParticle&)>;
 using RunSeries = std::function<std::vector<double>(double time, std::span<const RecordedParticle>)>;
 
-/// The registered series. Each is computed per particle, or once for the whole run.
+/// The registered series. Each is computed per particle, or once for all particles together.
 using SeriesParts = deck::Parts<std::variant<ParticleSeries, RunSeries>()>;
 
 /// User-defined parts of the program, by name: loads, fields, flows and series. Each part declares its keys of the deck. `main` (app/program.hpp)

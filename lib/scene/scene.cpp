@@ -98,7 +98,7 @@ double bytes_a_pair(const Scene& scene) {
 }
 
 /// Throws UserError if the viscosity ratio is too large. The system for the velocity loses one digit to round-off per factor of ten in the ratio. The
-/// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without one.
+/// solver stagnates at a ratio of 1e15 times the tolerance in a tube, and at higher ratios without a tube.
 void check_viscosity_ratio(const Scene& scene) {
   const double ratio = scene.particle.viscosity_ratio, most = 1e14 * scene.solvers.tolerance;
   if (ratio > most)
@@ -179,7 +179,7 @@ void check_motion(const Scene& scene) {
   }
 }
 
-/// Throws UserError if the first-kind equation for rigid bodies does not apply to the scene.
+/// Throws UserError if the scene has no rigid bodies for the first-kind equation, or if the matrix of this equation is too large.
 void check_first_kind(const Scene& scene) {
   double n_points = 0;
   for (const Scene& one : scene.alone())
@@ -188,13 +188,13 @@ void check_first_kind(const Scene& scene) {
   check_bytes("Solvers/rigid bodies", "be `second kind`", n_points, 2 * doubles);
 }
 
-/// Checks a scene of several particles: each particle as a scene of its own, and whether the particles can be combined in one scene. Throws
-/// UserError, with the name of the particle in the message.
+/// Checks each of several particles as a separate scene, and checks that the particles can be combined in one scene. Throws UserError with the name
+/// of the particle in the message.
 void check_several(const Scene& scene) {
   const std::vector<Scene> alone = scene.alone();
   const bool strong = alone.front().load_is_strong();
   for (Scene one : alone) {
-    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies to deformable particles
+    one.volume_given = one.volume_given && !one.particle.rigid();  // the section Volume applies only to deformable particles
     const std::string list = "Particles/" + one.name;
     if (one.load_is_strong() != strong) throw UserError(list + "/Membrane/load must be the same for all particles.");
     try {
@@ -287,9 +287,9 @@ std::vector<Scene> Scene::alone() const {
   return scenes;
 }
 
-/// Returns true if the unknowns of rigid bodies are tractions (`first kind`). `auto` selects `first kind` for up to 1500 control points if there are
-/// several rigid bodies, all with adaptive meshes, or if the only particle is a rigid body in a duct. To resolve a film of a tenth of the radius,
-/// `first kind` needs a third of the control points of `second kind`. Factoring its matrix is then faster than iterating on the finer mesh.
+/// Returns true if the unknowns of rigid bodies are tractions (Solvers/rigid bodies `first kind`). `auto` selects `first kind` for up to 1500 control
+/// points if there are several rigid bodies, all with adaptive meshes, or if the only particle is a rigid body in a duct. To resolve a film of a
+/// tenth of the radius, `first kind` needs a third of the control points of `second kind`. Factoring its matrix is then faster than iterating.
 bool Scene::by_tractions() const {
   constexpr double most_points = 1500;
   if (solvers.rigid_bodies != "auto" || !runs_in_time()) return solvers.rigid_bodies == "first kind";

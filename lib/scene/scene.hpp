@@ -53,7 +53,7 @@ struct ParticleOptions {
   std::optional<Vec3> angular_velocity;  ///< angular velocity of a body with `prescribed` motion about its centre; zero if not set
   std::optional<Vec3> force, torque;     ///< force and torque on a `free` body; zero if not set
   std::optional<double> density_difference;  ///< inner minus outer density, for the body force of `Flow/gravity`; zero if not set
-  std::optional<std::string> drift;      ///< `free`, `held`; see holds_centre
+  std::optional<std::string> drift;      ///< motion of the centroid, `free` or `held`; if not set, holds_centre() decides
   std::optional<std::string> forces;     ///< how forces on a `prescribed` body are computed: `reciprocal`, `integral`
 
   bool rigid() const { return motion != Motion::deforming; }
@@ -76,7 +76,7 @@ struct ParticleKind {
   motion::AdaptationOptions adaptation;
   CopiesOptions copies;
   bool membrane_given = false;  ///< true if the deck has the section Membrane
-  double field_length = 0;      ///< length by which values of surface fields are multiplied in a state of the motion; 0: R_C of the particle
+  double field_length = 0;      ///< length by which values of surface fields are multiplied to become rows of a state x; 0: R_C of the particle
 
   void declare(deck::Section& section);        ///< declares Particles/<name>: the keys of Particle, and the inner sections `copies`, Membrane,
                                                ///< Surface, Interface and Adaptation
@@ -104,7 +104,7 @@ struct Scene : ParticleKind {
   ContactOptions contact;
   DomainOptions domain;
   WallOptions wall;
-  std::vector<Post> posts;    ///< cylinders among the particles of the deck, in their order
+  std::vector<Post> posts;    ///< cylinders among the particles of the deck, in the order of the deck
   bool only_solids = false;   ///< true if all particles of the deck are posts; then nothing moves
   surface::TubeOptions tube;
   coupling::VolumeOptions volume;
@@ -154,9 +154,9 @@ struct Scene : ParticleKind {
 
   /// Returns one scene for each particle, with the options of this particle only.
   std::vector<Scene> alone() const;
-  bool by_tractions() const;  ///< returns whether rigid bodies are solved for by tractions, the integral equation of the first kind (2.40)
+  bool by_tractions() const;  ///< returns true if the unknowns of rigid bodies are tractions, by the integral equation of the first kind (2.40)
 
-  /// Returns the options of the time integration, with the unit of time of the scene.
+  /// Returns the options of the time integration, with `unit` set to the time scale 1/rate() of the scene.
   motion::TimeOptions time_options() const {
     motion::TimeOptions in_its_unit = time;
     in_its_unit.unit = 1 / rate();
@@ -166,7 +166,7 @@ struct Scene : ParticleKind {
   double radius() const;             ///< R_C, radius of the sphere of equal volume
   double least_radius() const;       ///< smallest radius R_C of all particles, by which gaps are divided
   double rate() const;               ///< speed/R_C; if the speed is 0, modulus/(viscosity x R_C), or 1 for a rigid body; units 1/time
-  double speed() const;              ///< speed that defines Ca: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
+  double speed() const;              ///< speed in the capillary number: rate of the flow x R_C, or the mean velocity in a tube; 0 for a flow without
                                      ///< gradient
   double modulus() const;            ///< shear modulus G_s, or the surface tension of a drop; units force/length; 0 for a rigid body
   bool elastic() const { return !particle.rigid() && membrane.law != "surface tension"; }  ///< true for a membrane, false for a drop or rigid body
@@ -179,14 +179,14 @@ struct Scene : ParticleKind {
   std::string interface_motion() const;  ///< motion of the control points along the interface: as set in the deck, or the default of the law
   bool lands_on_snapshots() const;   ///< true if steps are shortened so that they end at snapshots
   double snapshot_interval() const;  ///< simulated time between snapshots
-  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, or the final time
+  double next_snapshot(double now) const;  ///< next multiple of snapshot_interval() after `now`, but at most the final time
 };
 
 /// Returns the largest number of control points that the wall of a tube may have. Each rank stores the factors of the wall, and the factors of all
 /// ranks together must fit into the allowed memory.
 double most_wall_points();
 
-/// Returns whether the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.
+/// Returns true if the key at this path may change when a run is resumed, because the data of the checkpoint do not depend on it.
 bool may_change_on_resume(const std::string& path);
 
 /// Returns the table of all rejected combinations as Markdown, sorted by the first choice.

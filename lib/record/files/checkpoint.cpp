@@ -32,7 +32,7 @@ int step_of(const std::string& name) {
   return error == std::errc() && end == last ? step : -1;
 }
 
-/// Returns the numbers of a checkpoint by their names, which are stored one per line.
+/// Returns the numbers of a checkpoint by name. The file stores all names in one text, one name per line.
 std::map<std::string, double> numbers(const hdf::Id& file) {
   hdf::Shape shape;
   const std::vector<double> values = hdf::read_doubles(file, "checkpoint/numbers", shape);
@@ -75,7 +75,7 @@ Checkpoint read_checkpoint(const fs::path& path) {
   }
   checkpoint.numbers = numbers(file);
   for (const auto& name : hdf::datasets(file, "checkpoint/texts")) checkpoint.texts[name] = hdf::read_text(file, "checkpoint/texts/" + name);
-  const auto keys = hdf::attribute_names(file, "checkpoint");  // the checksum is not checked if there is none, as in checkpoints of earlier versions
+  const auto keys = hdf::attribute_names(file, "checkpoint");  // checkpoints of earlier versions have no checksum to check
   if (std::ranges::count(keys, "checksum") > 0 && hdf::read_attribute(file, "checkpoint", "checksum") != checksum(checkpoint))
     throw std::runtime_error(path.string() + ": the checkpoint is damaged, because its checksum differs");
   return checkpoint;

@@ -13,22 +13,23 @@
 
 namespace tanktread::output {
 
-/// Data from which a run is resumed with bitwise the same results: control nets, the geometry of the frozen operator, the memory of the step
-/// controller, the effective deck. Names must not contain '/'. Doubles are stored exactly.
+/// Data from which a run is resumed with bitwise the same results: control nets, the shape on which the frozen operator of implicit steps was
+/// assembled, the memory of the step controller, the effective deck. Names must not contain '/'. Doubles are stored exactly.
 struct Checkpoint {
   std::map<std::string, Eigen::MatrixXd> arrays;
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
 };
 
-/// Returns a checksum of sixteen digits. Checkpoints that differ by a bit have different checksums, except by an improbable collision. The checksum
-/// is stored as an attribute of `/checkpoint`.
+/// Returns a checksum of sixteen hexadecimal digits. Checkpoints that differ by a bit have different checksums, except by an improbable collision.
+/// The checksum is stored as an attribute of `/checkpoint`.
 std::string checksum(const Checkpoint& checkpoint);
 
 /// Returns the file name of a snapshot: `snapshot_000123.hdf` for step 123.
 std::string snapshot_name(int step);
 
-/// Reads the checkpoint of a snapshot. Throws RunFailure if the system cannot open it, std::runtime_error if it is damaged, even by one bit.
+/// Reads the checkpoint of a snapshot. Throws RunFailure if the system cannot open the file, std::runtime_error if the file is damaged, even by one
+/// bit.
 Checkpoint read_checkpoint(const std::filesystem::path& path);
 
 /// Snapshot file in a directory.
@@ -37,7 +38,7 @@ struct Snapshot {
   int step = 0;
 };
 
-/// Returns all snapshot files of a directory, sorted by step, readable or not.
+/// Returns all snapshot files of a directory, sorted by step. Unreadable files are included.
 std::vector<Snapshot> snapshots(const std::filesystem::path& directory);
 
 /// Data of a snapshot that are needed for the list of all snapshots.
@@ -64,10 +65,10 @@ struct Saved {
 /// a newer snapshot file (permission, a failing disk), because the newer file may be undamaged.
 std::optional<Saved> newest_checkpoint(const std::filesystem::path& directory);
 
-/// Adds all data of a time integration to the checkpoint.
+/// Adds the complete state of a time integration to the checkpoint.
 void store(const motion::State& state, Checkpoint& checkpoint);
 
-/// Returns the stored state, bitwise the same. Throws std::out_of_range if the checkpoint lacks a part of it.
+/// Returns the state that store() added to the checkpoint, bitwise the same. Throws std::out_of_range if a part of the state is missing.
 motion::State stored_state(const Checkpoint& checkpoint);
 
 /// Returns true if all ranks hold bitwise the same state. Collective.

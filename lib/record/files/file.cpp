@@ -30,7 +30,7 @@ bool is_unfinished(const std::string& name) {
   return name.ends_with(unfinished) && is_result(name.substr(0, name.size() - unfinished.size()));
 }
 
-/// Returns whether the entry of a directory is the folder `level_<k>` of a run of an accuracy ladder (lib/accuracy).
+/// Returns true if the entry of a directory is a folder `level_<k>`, which holds one run of an accuracy ladder (lib/accuracy).
 bool is_level(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename();
   return entry.is_directory() && name.size() > level.size() && name.starts_with(level) && name[level.size()] >= '0' && name[level.size()] <= '9';
@@ -44,7 +44,7 @@ std::vector<fs::path> files_where(const fs::path& directory, const Test& test) {
   return found;
 }
 
-/// Runs `act` on a directory and converts errors of the file system to a UserError.
+/// Calls act() and converts errors of the file system to a UserError that names the directory.
 template <class Act>
 void in_directory(const fs::path& directory, const Act& act) try {
   act();
@@ -56,10 +56,10 @@ void in_directory(const fs::path& directory, const Act& act) try {
   throw RunFailure(std::string("cannot ") + what + " " + path.string() + ": " + std::strerror(errno));
 }
 
-/// Flushes a file to the disk. Errors of file systems without fsync, in particular for directories, are ignored.
+/// Flushes a file to the disk. Returns false if that fails. Errors of file systems without fsync, in particular for directories, are ignored.
 bool synced(int file) { return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS; }
 
-/// Opens an existing file or directory for reading, without blocking on a pipe.
+/// Opens an existing file or directory for reading, without blocking on a pipe. Throws RunFailure if that fails. `number`: file descriptor.
 struct Opened {
   explicit Opened(const fs::path& path) : number(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     if (number < 0) fail("read", path);

@@ -13,7 +13,7 @@
 
 namespace tanktread::output {
 
-/// Checksum that depends on every bit of its words (a chain of invertible steps, with the constants of FNV-1a).
+/// Checksum that depends on every bit of the added data (a chain of invertible steps, with the constants of FNV-1a).
 class Checksum {
  public:
   void add(std::uint64_t word) { sum_ = std::rotl((sum_ ^ word) * 0x00000100000001b3u, 29); }
@@ -34,18 +34,20 @@ class Checksum {
   std::uint64_t sum_ = 0xcbf29ce484222325u;
 };
 
-/// Durability of a write: `yes` flushes the bytes of the file to the disk before the write returns, so that they survive a power failure.
+/// Durability of a write: `yes` flushes the bytes of the file to the disk before the write returns, so that they survive a power failure; `no` leaves
+/// the flushing to the system.
 enum class Durable { no, yes };
 
-/// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed here. Throws RunFailure (disk
-/// full, no permission).
+/// Writes `bytes` to `path` atomically: a reader finds either the old or the new file, even if the process is killed during the write. Throws
+/// RunFailure (disk full, no permission).
 void write_whole(const std::filesystem::path& path, std::string_view bytes, Durable durable = Durable::no);
 
 /// Waits until a file, or the entries of a directory, are on the disk. Throws RunFailure.
 void sync(const std::filesystem::path& path);
 
-/// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe), and
-/// check_readable() also if it cannot be read to its end. A file that passes but cannot be interpreted is damaged.
+/// check_opens() throws RunFailure with the system's reason if a file cannot be opened (absent, no permission, too many open files, a pipe).
+/// check_readable() also throws RunFailure if the file cannot be read to its end. A file that passes both checks but cannot be interpreted is
+/// damaged.
 void check_opens(const std::filesystem::path& path);
 void check_readable(const std::filesystem::path& path);
 
@@ -60,18 +62,18 @@ void check_vacant(const std::filesystem::path& directory);
 /// unfinished files. Removes only files with names that a run writes. Throws UserError if that fails.
 void start_directory(const std::filesystem::path& directory);
 
-/// Removes the results in `directory`, but keeps the runs of an accuracy ladder (lib/accuracy: one deck at increasing resolution). Throws UserError
-/// if that fails.
+/// Creates `directory` if necessary and removes the results and unfinished files in it, but keeps the runs of an accuracy ladder (lib/accuracy: one
+/// deck at increasing resolution). Throws UserError if that fails.
 void start_results(const std::filesystem::path& directory);
 
 /// Prepares `directory` for `--resume`: removes only unfinished files. Throws UserError if that fails.
 void tidy_directory(const std::filesystem::path& directory);
 
-/// Lock that reserves a directory for this process, and creates it if necessary. The lock ends with this object or with the process, however it ends,
-/// and leaves no file behind. If the file system has no locks or the directory cannot be opened, nothing is locked.
+/// Lock that reserves a directory for this process. Creates the directory if necessary. The lock ends with this object or with the process, however
+/// it ends, and leaves no file behind. If the file system has no locks or the directory cannot be opened, nothing is locked.
 class Occupation {
  public:
-  /// Throws UserError if another process has locked the directory.
+  /// Locks the directory. Throws UserError if another process has locked it.
   explicit Occupation(const std::filesystem::path& directory);
   ~Occupation();
   Occupation(const Occupation&) = delete;
@@ -88,7 +90,8 @@ struct Array {
   std::vector<std::size_t> shape;
 };
 
-/// Writes arrays to an HDF5 file, atomically (write_whole): `/<name>`, doubles with attributes `unit` and `description`. Throws RunFailure.
+/// Writes each array to the dataset `/<name>` of an HDF5 file: doubles with the attributes `unit` and `description`. Writes the file atomically
+/// (write_whole). Throws RunFailure.
 void write_arrays(const std::filesystem::path& path, const std::vector<Array>& arrays);
 
 }  // namespace tanktread::output

@@ -20,8 +20,8 @@ Id space_of(const Shape& shape) {
   return {rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(rank, shape.data(), nullptr), H5Sclose, "no data space"};
 }
 
-/// Returns the HDF5 type of a text: of fixed length, padded with null characters. HDF5 does not allow the length zero, so an empty text is one null
-/// character.
+/// Returns the HDF5 type for a text: strings of its length, padded with null characters. HDF5 does not allow the length zero, so an empty text is one
+/// null character.
 Id text_type(const std::string& text) {
   const bool ascii = std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
   const hid_t type = H5Tcopy(H5T_C_S1);
@@ -65,7 +65,7 @@ Id::Id(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), clo
 
 Id new_file() {
   silence();
-  static int files = 0;  // number of files in memory so far: HDF5 distinguishes open files by their names, so each gets a name of its own
+  static int files = 0;  // number of files in memory so far: HDF5 distinguishes open files by name, so each needs a unique name
   if (files == 0) H5set_free_list_limits(-1, -1, -1, -1, -1, -1);  // no limits: the caches of closed files, half a megabyte each, are kept for reuse
   const std::string name = "memory " + std::to_string(++files);
   const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "no access list");

@@ -13,7 +13,7 @@
 
 namespace tanktread::output::hdf {
 
-/// Owner of one HDF5 identifier. Throws std::runtime_error with `what` if the identifier is invalid.
+/// Owner of one HDF5 identifier, which it closes by `close`. Throws std::runtime_error with the message `what` if the identifier is invalid.
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t), const std::string& what);
@@ -30,8 +30,8 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors
-/// occur outside of HDF5, which does not recover from them, and are reported with the system's reason. The bytes are not copied. They are valid until
+/// new_file() creates an HDF5 file in memory. image() returns its bytes, which write_whole() then writes to the disk in one piece. So write errors,
+/// from which HDF5 does not recover, occur outside of HDF5 and are reported with the system's reason. The bytes are not copied. They are valid until
 /// the file is changed or closed.
 Id new_file();
 std::string_view image(const Id& file);
@@ -44,8 +44,8 @@ Id open_copy(const std::filesystem::path& path);
 
 using Shape = std::vector<hsize_t>;  ///< shape of a dataset; empty for a scalar
 
-/// Write or read datasets of a file, row-major. `write` returns the dataset. Missing groups of a name `group/name` are created. `read_doubles` sets
-/// `shape` to the shape of the dataset.
+/// Write or read datasets of a file, row-major. `write` returns the dataset. It creates the missing groups of a name `group/name`. `read_doubles`
+/// sets `shape` to the shape of the dataset.
 Id write(hid_t file, const std::string& name, std::span<const double> values, const Shape& shape);
 Id write(hid_t file, const std::string& name, std::span<const std::int64_t> values);
 Id write(hid_t file, const std::string& name, std::span<const std::uint8_t> values);
@@ -61,7 +61,7 @@ std::vector<std::string> datasets(hid_t file, const std::string& group);
 void attribute(const Id& object, const std::string& key, const std::string& text);
 void attribute(const Id& object, const std::string& key, std::span<const std::int64_t> values);
 
-/// Read attributes of the dataset or group `name`.
+/// Return the text of the attribute `key` of the dataset or group `name`, and the names of all its attributes.
 std::string read_attribute(hid_t file, const std::string& name, const std::string& key);
 std::vector<std::string> attribute_names(hid_t file, const std::string& name);
 

@@ -16,8 +16,8 @@ namespace tanktread::output {
 
 namespace {
 
-/// Returns, for each point, the index of the first point that coincides with it. To find them, the points are sorted along a direction that is
-/// unrelated to the symmetries of meshes, so that few points have nearly equal positions in this order.
+/// Returns, for each point, the index of the first point with the same position, which may be the point itself. For this search, the points are
+/// sorted along a direction that is unrelated to the symmetries of meshes, so that few points have nearly equal coordinates along it.
 std::vector<std::size_t> first_of_equals(const std::vector<Vec3>& places) {
   const Vec3 direction(0.8137, 0.4691, 0.3433);
   double size = 0;
@@ -104,7 +104,7 @@ std::vector<double> jet_table(int p) {
 
 /// Returns normals at the nodes of an element, not normalised. `jets`: position and derivatives at the nodes.
 std::vector<Vec3> cell_normals(const surface::Patch& patch, std::span<const surface::Jet> jets) {
-  constexpr double degenerate = 1e-6;  // a node is a pole if |x_,s x x_,t| is below this fraction of max|x_,s| max|x_,t| of the element
+  constexpr double degenerate = 1e-6;  // a node is a pole if the cross product of x_,s and x_,t is below this fraction of max|x_,s| max|x_,t|
   constexpr double inset = 1e-4;       // normals at a pole are evaluated at a point moved by this fraction of the way to the element's middle
   double longest_1 = 0, longest_2 = 0;
   std::vector<Vec3> normals;

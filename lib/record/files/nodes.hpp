@@ -14,8 +14,8 @@
 
 namespace tanktread::output {
 
-/// Lagrange mesh of a surface: one cell per element, of the element's degree p, with (p + 1)^2 nodes at (i/p, j/p). Neighbouring cells share
-/// coinciding nodes.
+/// Lagrange mesh of a surface: one cell per element, of the element's degree p, with (p + 1)^2 nodes at the parameters (i/p, j/p), i, j = 0 ... p.
+/// Neighbouring cells share coinciding nodes.
 ///
 /// Order of the nodes of a cell (VTK): corners (0,0) (p,0) (p,p) (0,p); edges j = 0, i = p, j = p, i = 0, each with increasing index; then the
 /// interior, i fastest. Nodes are numbered in the order in which they first occur, cell by cell.
@@ -26,8 +26,8 @@ struct LagrangeMesh {
                                            ///< are not spline fields
 };
 
-/// Builds the mesh. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the best choice because it
-/// does not change and never touches itself.
+/// Builds the Lagrange mesh of a surface. Nodes are shared if they coincide on the surface with the control net `net`. The unstressed surface is the
+/// best choice because it does not change and never touches itself.
 LagrangeMesh lagrange_mesh(const spline::Space& space, const Net& net);
 
 /// Returns the indices (i, j) of the nodes of a cell of degree p, in VTK's order (LagrangeMesh).

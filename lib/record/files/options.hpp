@@ -11,13 +11,13 @@ namespace tanktread::output {
 struct Options {
   std::optional<double> interval;          ///< simulated time between snapshots; empty: a twentieth of the final time
   std::optional<std::string> between_steps;  ///< `land`: steps end at snapshots; `interpolate`: snapshots interpolate between steps; empty:
-                                             ///< `interpolate` with fixed step and mesh, otherwise `land`
-  std::optional<double> wall_clock_limit;  ///< seconds after which the run stops with a checkpoint; empty: none
+                                             ///< `interpolate` with fixed time step and fixed mesh, otherwise `land`
+  std::optional<double> wall_clock_limit;  ///< seconds of real time after which the run stops with a checkpoint; empty: no limit
 
-  bool power_balance = false;              ///< true if each row holds the balance of power
-  bool surface_text = false;               ///< true if the last surface is written as Bezier-extraction text, `surface.iga`
+  bool power_balance = false;              ///< true if each row of the series holds the power balance
+  bool surface_text = false;               ///< true if the final surface is written as Bezier-extraction text, `surface.iga`
 
-  /// Returns whether a run that has taken this many seconds has passed `wall_clock_limit`.
+  /// Returns true if a run that has taken this many seconds of real time has passed `wall_clock_limit`.
   bool too_late(double seconds) const { return wall_clock_limit && seconds > *wall_clock_limit; }
 
   void declare(deck::Section& section);

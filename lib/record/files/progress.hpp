@@ -20,7 +20,7 @@ struct Moment {
 };
 
 /// Progress display. On a terminal it is a bar that is redrawn in place. Otherwise a plain line is printed when a minute has passed since the last
-/// line, or when at least 3 seconds and 5 % of the run have passed. If `quiet`, nothing is shown.
+/// line, or when at least 3 seconds and 5 % of the run have passed since then. If `quiet`, nothing is shown.
 class Progress {
  public:
   Progress(double begin, double end, bool quiet, std::FILE* out = stderr);

@@ -16,7 +16,7 @@ namespace tanktread::output {
 struct Series {
   std::string name, unit, description;
   std::vector<double> values;  ///< one value per row; row 0 is the initial state
-  std::string si;  ///< unit of the series expressed in SI units, if the deck sets its units
+  std::string si;  ///< unit of the series in SI units, for example `1e-06 m/s`; empty if the deck does not set its units
 };
 
 /// Content of `run.h5`: `/series/<name>`, or `/series/<particle>/<name>` for one of several particles, 1-D doubles of equal length with attributes
@@ -25,9 +25,9 @@ struct Series {
 /// `/deck`, the effective deck as text;
 /// `/provenance`, whose attributes state what made the file (version, git_commit, compiler, ranks) and to which `run` it belongs.
 ///
-/// The rows are kept in memory, and `write` writes all of them atomically (write_whole). The reason: HDF5 1.10 cannot append to a file such that
-/// every reader opens it after the process was killed (its single-writer mode leaves a mark that readers refuse). Serial: with several ranks only the
-/// first one has a record.
+/// The rows are kept in memory, and `write` writes all of them atomically (write_whole). The reason: if a process is killed while it appends to a
+/// file by HDF5 1.10, not every reader can open the file afterwards. The single-writer mode of HDF5 leaves a mark that readers refuse. Serial: with
+/// several ranks only the first one has a record.
 class RunRecord {
  public:
   /// Creates a record without rows.
@@ -37,7 +37,7 @@ class RunRecord {
   static RunRecord load(const std::filesystem::path& path);
 
   /// Declares a series. All series must be declared before the first row, and again after `load`. A series that exists already keeps its values. A
-  /// new one is NaN in the rows that exist.
+  /// new series is NaN in the rows that exist already.
   void declare(std::string name, std::string unit, std::string description, std::string si = {});
 
   /// Appends one row: a value for every series in the order of declaration. Writes nothing to the disk.
@@ -58,8 +58,8 @@ class RunRecord {
   void write(Durable durable = Durable::no) const;
 
   /// Returns the checksum of the first `rows` rows of every series, independent of the order of declaration (Checksum). A series whose values in
-  /// these rows are all NaN does not contribute, so that a series that a resumed run adds does not change the checksum of earlier rows.
-  /// `with_undefined`: includes such series, as checkpoints of earlier versions do.
+  /// these rows are all NaN does not contribute. Thus a series that a resumed run adds does not change the checksum of earlier rows.
+  /// `with_undefined`: true to include such series, as checkpoints of earlier versions do.
   std::string checksum(std::size_t rows, bool with_undefined = false) const;
 
   std::size_t rows() const { return series_.empty() ? 0 : series_.front().values.size(); }

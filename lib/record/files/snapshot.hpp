@@ -16,7 +16,7 @@ namespace tanktread::output {
 /// Values of a field as they are written: one row per node.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Named array at the nodes of a snapshot, shape (nodes, k).
+/// Named array at the nodes of a snapshot, shape (number of nodes, number of components).
 struct Field {
   std::string name;
   Rows values;
@@ -35,7 +35,7 @@ class SnapshotSeries {
  public:
   explicit SnapshotSeries(std::filesystem::path directory);
 
-  /// Returns the snapshots of a resumed run: the readable snapshots up to `step` whose run identifier (Picture::run) is `run`.
+  /// Returns the list for a resumed run: the readable snapshots in `directory` up to `step` whose run identifier (Picture::run) is `run`.
   static SnapshotSeries resumed(std::filesystem::path directory, int step, const std::string& run);
 
   void add(int step, double time);  ///< adds the snapshot of a step, whose file exists already

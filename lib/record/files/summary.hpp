@@ -28,7 +28,7 @@ struct Summary {
   std::vector<std::string> warnings;  ///< warnings about limits of the method that the run came close to
 };
 
-/// Returns the section `expect` of the summary. `estimates`: estimated error of the series of each expectation; left out if empty.
+/// Returns the section `expect` of the summary. `estimates`: estimated error of the series of each expectation; if empty, none is written.
 std::string yaml(const std::vector<deck::Verdict>& verdicts, const std::vector<double>& estimates = {});
 
 /// Returns the text of `summary.yaml`: YAML 1.1, every text in quotes, every double with enough digits to be read back exactly.

@@ -32,8 +32,8 @@ struct Subject {
   std::span<const double> films;
 };
 
-/// Returns an Adapted with the body `target`, in which all nets of the particle and of the state are transferred to the new space. `move` transfers
-/// one net of this particle.
+/// Returns the result with the body `target`, for which all nets of the particle and of the state are transferred to the space of `target`. `move`
+/// transfers one net of this particle.
 template <class Move>
 Adapted carried(const Subject& of, std::unique_ptr<Body> target, const Move& move) {
   Adapted result{std::move(target), of.state};
@@ -88,13 +88,14 @@ Adapted on_finer_mesh(const Subject& of, spline::TMesh mesh) {
   return result;
 }
 
-/// Elements to refine (marks) and elements to merge on the current mesh, as found by the indicator of mesh adaptation (`Adaptation/indicator`).
+/// Result of the indicator of mesh adaptation (`Adaptation/indicator`) on the current mesh: `marks` returns the elements to refine for given limits,
+/// and `merges` are the elements to merge.
 struct Findings {
   std::function<std::vector<spline::Mark>(const motion::AdaptationOptions&)> marks;
   std::vector<spline::Merge> merges;
 };
 
-/// Returns on all ranks the marks or merges that `choose` returns on the first rank.
+/// Calls `choose` on the first rank only and returns its result, a list of marks or merges, on all ranks.
 template <class Choose>
 auto decided(const Choose& choose) {
   using Item = typename decltype(choose())::value_type;
@@ -121,8 +122,8 @@ std::vector<std::array<double, 2>> lengths_of(const std::vector<Indicator>& foun
   return lengths;
 }
 
-/// Returns the smallest value on each element of the T-mesh, which may consist of several Bezier elements. `values`: one per Bezier element; if
-/// empty, the result is empty.
+/// Returns for each element of the T-mesh the smallest of the values on its Bezier elements. `values`: one value per Bezier element; if empty, the
+/// result is empty.
 std::vector<double> least_of_mesh(const Body& body, std::span<const double> values) {
   std::vector<double> least;
   if (values.empty()) return least;

@@ -26,8 +26,8 @@ struct Adapted {
 };
 
 /// Refines the elements that the indicator marks. If no element is refined, merges elements that the indicator allows to be longer. Transfers the
-/// current surface, the unstressed surface, the slopes of the time scheme and the geometry of the frozen operator to the new mesh. `block`: rows of
-/// this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
+/// current surface, the unstressed surface, the slopes of the time scheme and the control net of the frozen operator to the new mesh. `block`: rows
+/// of this particle; the rows of other particles do not change. `load`: control values of this particle's load at state.x, per area of the unstressed
 /// surface if `per_unstressed_area`. `films`: width of the film at each element of the space body.nested(), or empty. `fields`: values of the fields
 /// on the surface, scaled to order 1. The results of all ranks are equal.
 Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block, const motion::State& state, const Net& load,
@@ -38,9 +38,9 @@ Adapted adapted(const Scene& scene, const Body& body, const spline::Block& block
 std::vector<Warning> adaptation_remarks(const Member& member, const Adapted& change, double time);
 
 /// Refines the mesh of an isolated rigid body in its initial position, according to the section Adaptation. The criteria are the shape of the body,
-/// the film between body and wall, and the traction. Then fits the shape again. The mesh does not change afterwards because the body does not deform.
-/// `force_density` returns the force per area on the mesh of its argument, as control values of shape (N, 3). It is called only if Adaptation limits
-/// the error or the variation of the load. Collective.
+/// the film between body and wall, and the traction. After each refinement, fits the known shape on the new mesh. The mesh does not change afterwards
+/// because the body does not deform. `force_density` returns the force per area on the mesh of its argument, as control values of shape (N, 3). It is
+/// called only if Adaptation limits the error or the variation of the load. Collective.
 void refine_alone(const Scene& scene, Body& body, const std::function<Net(const Body& on)>& force_density);
 
 }  // namespace tanktread

@@ -106,7 +106,8 @@ class Deforming : public ParticleSystem {
 
   void hold_by(const coupling::Contacts& contacts) override { contacts_ = contacts, press(); }
 
-  /// Moves the centroid back if the scene holds it in place. Then refines or coarsens the meshes for which an adaptation is due at this step.
+  /// Moves the centroid back to its initial position if `Particle/drift` is `held`. Then refines or coarsens the meshes for which an adaptation is
+  /// due at this step.
   bool adapt(motion::State& state, RunTotals& totals) override {
     before_.clear();
     if (holds_centre_) {
@@ -163,7 +164,7 @@ class Deforming : public ParticleSystem {
     const motion::State& state = fields_->of_shape(whole_state);
     fields_->set_state(whole_state.x, scene_.time.tolerance);
     const auto here = capsule_->evaluation(state.x, state.history.front(), scene_.time.tolerance);
-    // solves again if the velocity is inaccurate, because the response of a tube or solids is computed from it
+    // solves again if the velocity is inaccurate, because tractions on the wall of a tube or on solids are computed from it
     if ((body().wall || solids_) && state.slope_error > accuracy()) here->solve(0.1 * accuracy());
     const Net v = here->fluid_velocity();
     progress.time = state.time, progress.work = capsule_->work();

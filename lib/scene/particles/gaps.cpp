@@ -15,7 +15,7 @@ namespace tanktread {
 
 namespace {
 
-constexpr double gap_accuracy = 1e-7;  // absolute error of gaps, divided by the particle radius R_C
+constexpr double gap_accuracy = 1e-7;  // allowed absolute error of gaps, divided by the particle radius R_C
 
 /// Returns the patches of a particle in the shape x. If the particle has a geometry, uses its Bezier map, which equal particles share.
 surface::Patches patches_of(const Member& member, const Net& x) {
@@ -37,8 +37,8 @@ struct Pair {
   Vec3 beyond;  ///< lattice vector by which the second particle is shifted
 };
 
-/// Returns the lattice vectors that move particle q to images that may be close to p. If q is p itself, only one of each pair of opposite vectors is
-/// returned. In unbounded space the only vector is 0.
+/// Returns the lattice vectors that move the net q to images that may be close to the net p. If p and q belong to the same particle, only one of each
+/// pair of opposite vectors is returned. In unbounded space the only vector is 0.
 std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optional<stokes::PeriodicCell>& cell) {
   if (!cell) return same ? std::vector<Vec3>() : std::vector<Vec3>{Vec3::Zero()};
   std::vector<Vec3> all = cell->around({2, 2, 2});
@@ -48,7 +48,7 @@ std::vector<Vec3> images(const Net& p, const Net& q, bool same, const std::optio
   return all;
 }
 
-/// Pairs of particles whose gap may be smaller than `reach` and may be the smallest gap of all, sorted by a lower bound of their gap.
+/// Pairs of particles, sorted by a lower bound of their gap. Leaves out pairs whose gap exceeds `reach` or cannot be the smallest gap of all.
 class Pairs {
  public:
   Pairs(const std::vector<Member>& members, const std::vector<Net>& x, const std::optional<stokes::PeriodicCell>& cell,
@@ -124,11 +124,11 @@ class NearestPair {
     }
   }
 
-  double gap() const { return gap_; }  ///< smallest gap; infinite if there are no pairs
+  double gap() const { return gap_; }  ///< smallest gap of the searched pairs; infinite if there are none
 
   /// Returns the index of the pair to be reported, where `least` is the smallest gap of all ranks. If several pairs have this gap, for example in a
-  /// symmetric scene, selects the pair of the particles named first, so that rounding does not decide. The result is the number of pairs if no pair
-  /// has this gap.
+  /// symmetric scene, selects the pair whose particles come first in the deck, so that rounding does not decide. The result is the number of pairs if
+  /// no pair has this gap.
   std::size_t with_gap(double least) const {
     std::size_t first = pairs_.all().size();
     for (const auto& [gap, k] : found_)
@@ -136,7 +136,7 @@ class NearestPair {
     return first;
   }
 
-  /// Returns whether pair a is reported rather than pair b.
+  /// Returns true if pair a is reported and not pair b, when both have the smallest gap.
   bool precedes(std::size_t a, std::size_t b) const {
     const std::size_t n = pairs_.all().size();
     if (a == n || b == n) return a < b;
@@ -178,8 +178,8 @@ void narrow(const surface::Patches& surface, const stokes::PlaneWall& wall, doub
     }
 }
 
-/// Returns the net q and its lattice images, but only those with a bounding box within `reach` of the bounding box of the net p. If q is p itself
-/// (`same`), p is not returned.
+/// Returns the net q and its lattice images if their bounding boxes are within `reach` of the bounding box of the net p; without a lattice, returns
+/// q. `same`: true if q is p itself, which is then not returned.
 std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach, const std::optional<stokes::PeriodicCell>& cell) {
   std::vector<Net> found;
   if (!cell) {
@@ -197,7 +197,8 @@ std::vector<Net> neighbours(const Net& p, const Net& q, bool same, double reach,
   return found;
 }
 
-/// Returns true if a point that is not on the surface is inside it. The solid angle of the surface seen from the point is then 4 pi, and 0 outside.
+/// Returns true if a point, which must not be on the surface, is inside. Seen from the point, the solid angle of the surface is then 4 pi, otherwise
+/// 0.
 bool encloses(const surface::Patches& patches, const Vec3& point) {
   constexpr int n = 8;
   double angle = 0;
@@ -210,7 +211,7 @@ bool encloses(const surface::Patches& patches, const Vec3& point) {
   return angle > 2 * std::numbers::pi;
 }
 
-/// Throws UserError if one particle is inside another one. The gap between their surfaces does not show this.
+/// Throws UserError if one particle is inside another one. The gap between their surfaces does not show this, because it is positive.
 void check_not_nested(const std::vector<Member>& members, const std::vector<Net>& x) {
   for (std::size_t p = 0; p < members.size(); ++p) {
     const surface::Patches outer(surface::BezierMap(members[p].body->space), x[p]);

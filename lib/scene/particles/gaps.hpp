@@ -30,19 +30,21 @@ struct Approach {
   double gap = 0;
 };
 
-/// Returns the contact at the local minimum of the distance that is nearest to the two sites of `contact`, with its normal and gap.
+/// Moves the two sites of `contact` to the nearest local minimum of the distance between the surfaces. Returns the contact there, with its normal and
+/// gap.
 Approach approach(const std::vector<Member>& members, const Net& x, coupling::Contact contact);
 
 /// Returns, for every pair of particles whose gap at x is below `reach`, the points of smallest distance and the gap. The gap is 0 if the particles
-/// touch. On a lattice, each image within reach counts as a pair. The ranks share the pairs; the result does not depend on their number. Collective.
+/// touch. On a lattice, each image within reach counts as a pair. The ranks share the pairs; the result does not depend on the number of ranks.
+/// Collective.
 std::vector<Approach> approaches(const std::vector<Member>& members, const Net& x, double reach, const coupling::Ranks& ranks,
                                  const std::optional<stokes::PeriodicCell>& cell);
 
 /// Returns the smallest gap between any two particles at x, accurate to 1e-7 of the largest radius R_C. Ranks share the pairs. Collective.
 Nearest smallest_gap(const std::vector<Member>& members, const Net& x, const coupling::Ranks& ranks, const std::optional<stokes::PeriodicCell>& cell);
 
-/// Returns the film width at each element (of Body::nested()) of particle p at x. It is infinite if the film is so wide that every element of the
-/// current mesh resolves it (AdaptationOptions::film_resolution). `cell`: cell of the lattice; films between the particle and periodic images of
+/// Returns the film width at each element (of Body::nested()) of particle p at x. The width is infinite if the film is so wide that every element of
+/// the current mesh resolves it (AdaptationOptions::film_resolution). `cell`: cell of the lattice; films between the particle and periodic images of
 /// particles and of the wall count, too. `wall`: wall of the tube around the particle, or null; x is given in the coordinates of the wall.
 std::vector<double> films(const std::vector<Member>& members, std::size_t p, const Net& x, const std::optional<stokes::PeriodicCell>& cell = {},
                           const surface::TubeWall* wall = nullptr);

@@ -55,8 +55,8 @@ Limiter::Held Limiter::held(const Approach& found, double target) const {
   return {found.contact, found.gap, target, force, force, {}, {}};
 }
 
-/// Updates the gaps of known contacts in the shape x. Adds a contact at every other gap that is below (1 - slack/10) times the limit. Returns false
-/// if a gap is below half of the limit.
+/// Updates the gaps of known contacts in the shape x. Adds a contact at every other place where a gap is below (1 - slack/10) times the limit.
+/// Returns false if a gap is below half of the limit.
 bool Limiter::find(const Net& x) {
   for (Held& one : held_) one.gap = approach(members_, x, one.contact).gap;
   for (Approach found : approaches(members_, x, limit_, ranks_, capsule_.cell())) {
@@ -72,7 +72,7 @@ bool Limiter::find(const Net& x) {
   return true;
 }
 
-/// Returns the known contact between the same two particles whose distance from `contact` is below half an element size; null if there is none.
+/// Returns the known contact that is between the same two particles and nearer to `contact` than half an element size; null if there is none.
 Limiter::Held* Limiter::beside(const coupling::Contact& contact, const Net& x) {
   const Body& body = *members_[contact.particle[0]].body;
   const double element = body.radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(body.space.elements.size()));

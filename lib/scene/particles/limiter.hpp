@@ -25,19 +25,20 @@ namespace tanktread {
 class Limiter {
  public:
   /// `limit`: smallest allowed gap, a length. `unit`: a force of the order of the viscous forces. `rate`: rate of the motion, 1/time. `set_loads`:
-  /// sets the loads of the fields on the surfaces in the state that is passed to `hold`; called before the first evaluation of the system. Objects
+  /// function that sets the loads by surface fields in the state that is passed to `hold`; called before the first evaluation of the system. Objects
   /// passed by reference must outlive this object.
   Limiter(const std::vector<Member>& members, coupling::Capsule& capsule, const coupling::Ranks& ranks, double limit, double unit,
           double rate, std::function<void()> set_loads)
       : members_(members), capsule_(capsule), ranks_(ranks), limit_(limit), unit_(unit), rate_(rate), set_loads_(std::move(set_loads)) {}
 
-  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit or if no forces
-  /// restore the limit. In this case the call has changed only cached data of the system, and the caller must repeat the step with a smaller size.
-  /// Collective.
+  /// Moves the particles at the end of a step so that no gap is below the limit. Returns false if a gap is below half of the limit, if no forces
+  /// restore the limit, or if an evaluation fails. The caller must then discard `state` and `contacts`, set the previous contact forces in the system
+  /// again, and repeat the step with a smaller size. Collective.
   bool hold(motion::State& state, double step, coupling::Contacts& contacts);
 
  private:
-  /// A contact, its force as a multiple of `unit`, and the displacement of all points in one step by a contact force of one `unit`.
+  /// A contact and its force, as a multiple of `unit`, before and after hold(). `work`: load vector (virtual work per control point) of a contact
+  /// force of one `unit`. `response`: displacement of all points in one step by this force; empty until it is computed.
   struct Held {
     coupling::Contact contact;
     double gap, target;  // gap, and its required value
@@ -62,7 +63,7 @@ class Limiter {
   double step_ = 0;
   std::vector<Held> held_;
   Net load_;                                  // load vector (virtual work per control point) of the contact forces that acted during the step
-  std::shared_ptr<coupling::Evaluation> base_;  // evaluation with this load
+  std::shared_ptr<coupling::Evaluation> base_;  // evaluation of the system with `load_`
 };
 
 }  // namespace tanktread

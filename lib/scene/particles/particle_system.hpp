@@ -27,13 +27,13 @@ struct Resumed {
   output::Checkpoint checkpoint;  ///< checkpoint with the state, the totals and the data that `store` wrote
 };
 
-/// Body, shape and fields of the particles at one time, for a snapshot.
+/// Shape of the particles at one time, and a function that samples their fields at the nodes of a snapshot on the calling rank.
 struct SurfacePicture {
   Net surface;  ///< control net of the surfaces
   std::function<std::vector<output::Field>(const output::Nodes& nodes)> fields;
 };
 
-/// Interface of the particles to the time loop. Every call is collective, except where the fields of a snapshot are sampled.
+/// Interface of the particles to the time loop. Every call is collective, except SurfacePicture::fields.
 class ParticleSystem {
  public:
   virtual ~ParticleSystem() = default;
@@ -57,10 +57,11 @@ class ParticleSystem {
   virtual void undo_adapt(const Net&) {}  ///< returns to the previous mesh, in the given shape, for a last snapshot
   virtual std::vector<Warning> remarks() { return {}; }  ///< returns warnings for the user; each kind is to be shown only once
   virtual coupling::Work work() const = 0;
-  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase of each particle at the latest row
+  virtual std::vector<PhaseAngle> phase_angle() const = 0;                              ///< returns the phase angle of each particle at the latest
+                                                                                        ///< row
   virtual stokes::Evaluations kernel_evaluations() const = 0;
-  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results, including the time and work of the run,
-                                                                              ///< which are set in `progress`
+  virtual Columns row(const motion::State& state, ProgressRow progress) = 0;  ///< returns a row of results: the data of the particles and of
+                                                                              ///< `progress`, with the time and the work of the run
   virtual const surface::BezierMap& bezier() const = 0;                          ///< returns the Bezier extraction of body()
   virtual SurfacePicture picture(const motion::State& state) = 0;
 };

@@ -34,7 +34,7 @@ struct PrescribedRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the equation for the traction on the scene's body. `tube`: the tube around it, or null.
+/// Returns the equation for the traction on the scene's body. `tube`: the tube around the body, or null.
 coupling::RigidTractions tractions_of(const Scene& scene, const Body& body, coupling::Ranks& ranks, coupling::Tube* tube);
 
 /// Solves for the traction on a body with `Particle/motion: prescribed` in the flow of the deck. Collective.

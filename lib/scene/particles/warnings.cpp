@@ -117,7 +117,7 @@ std::string Warnings::choice() const {
 }
 
 /// Returns a warning when waves on a compressed membrane have grown. On a flat membrane under the tension -T with bending modulus B, waves of wave
-/// number k grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/3B). On capsules they grow at six tenths of this rate. The rate of the
+/// number k grow at the rate (T k - B k^3)/(4 mu), fastest at k = sqrt(T/(3 B)). On capsules they grow at six tenths of this rate. The rate of the
 /// flow is subtracted from the growth rate, because the flow carries waves out of the compressed region.
 std::string Warnings::compression(const StepFindings& signs) {
   if (!scene_.elastic()) return {};

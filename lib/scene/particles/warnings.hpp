@@ -34,7 +34,7 @@ struct Warning {
   std::string kind, sentence;
 };
 
-/// Returns the warnings at the start of a run or a search: that surface fields of an earlier run are not used, that snapshots are left out.
+/// Returns the warnings at the start of a run or a search, about surface fields of an earlier run that are not used and snapshots that are left out.
 std::vector<Warning> first_warnings(const Scene& scene);
 
 class Warnings {
