@@ -1,5 +1,5 @@
 #pragma once
-// Series of a run: the columns of its progress, and the order of all columns in a row of the results.
+// Columns (time series) of the results of a run: the columns about its progress, and the order of all columns in a row.
 
 #include <optional>
 #include <span>
@@ -34,8 +34,8 @@ struct SteadyRow {
   void add_columns(const Scene& scene, Columns& to) const;
 };
 
-/// Returns the columns that each row of a run's results has, in their order and without values. The columns of one of several particles are named
-/// `<particle>/<name>`.
+/// Returns the columns that each row of a run's results has, in the order of the rows and without values. If there are several particles, the columns
+/// of each are named `<particle>/<name>`.
 Columns columns(const Scene& scene);
 
 /// Returns the columns of the run as a whole. If `every`, also returns the columns that this scene does not have, for the manual (see Columns).
@@ -45,7 +45,7 @@ Columns run_columns(const Scene& scene, bool every = false);
 /// this particle does not have, for the manual.
 Columns particle_columns(const Scene& one, bool every = false);
 
-/// Add the columns of registered series: per particle, or of the run.
+/// Adds the columns of user-defined series: the first function for one particle, the second for the whole run.
 void add_series(const Scene& scene, double time, const RecordedParticle& particle, Columns& to);
 void add_series(const Scene& scene, double time, std::span<const RecordedParticle> particles, Columns& to);
 
