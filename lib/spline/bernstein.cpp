@@ -6,7 +6,7 @@ namespace tanktread::spline {
 
 namespace {
 
-/// Replaces the values at x of the polynomials of degree k - 1 by those of degree k.
+/// Replaces the values at x of the Bernstein polynomials of degree k - 1 by the values of the Bernstein polynomials of degree k.
 void raise_degree(int k, double x, double* value) {
   const double y = 1 - x;
   double carried = 0;

@@ -37,7 +37,7 @@ class Reader {
     throw UserError("Surface file " + name_ + ", line " + std::to_string(line_) + ": " + what);
   }
 
-  /// Moves to the next line that is not empty. Returns false at the end of the file.
+  /// Moves to the next line that contains more than blanks and a comment. Returns false at the end of the file.
   bool next() {
     std::string text;
     while (std::getline(stream_, text)) {
@@ -111,7 +111,8 @@ Frame frame(const Space& space, const Net& net, const Site& site) {
   return {own.transpose() * b.value, own.transpose() * b.s, own.transpose() * b.t};
 }
 
-/// Returns the point at the fraction x of edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the element on its left.
+/// Returns the point at the fraction x of an edge of `element`: edge 0 (t = 0), 1 (s = 1), 2 (t = 1) or 3 (s = 0). The edge is traversed with the
+/// element on its left.
 Site on_edge(int element, int edge, double x) {
   const auto [s, t] = turned(x, 0., 1., edge);
   return {element, s, t};
@@ -132,7 +133,7 @@ std::vector<int> numbered_places(const Space& space, const Net& net) {
   return numbers;
 }
 
-// Gauss points and weights of order five on [0, 1].
+// Nodes and weights of the five-point Gauss rule on [0, 1].
 constexpr double gauss_x[5] = {0.046910077030668004, 0.230765344947158454, 0.5, 0.769234655052841546, 0.953089922969331996};
 constexpr double gauss_w[5] = {0.118463442528094544, 0.239314335249683234, 0.284444444444444444, 0.239314335249683234,
                                0.118463442528094544};
@@ -208,9 +209,9 @@ std::string fault_of_closed_surface(const Space& space, const Net& net, const st
   return {};
 }
 
-/// Returns a collocation point for each control point, where its function is large. A point is given by its local coordinates on every element that
-/// contains it. Candidate points are assigned in descending order of the value of the function, each to one function. Throws UserError if no
-/// candidate is left for a function.
+/// Returns a collocation point for each control point, at which the basis function of this control point is large. A point is given by its local
+/// coordinates on every element that contains it. Candidate points are assigned in descending order of the value of the function, each to one
+/// function. Throws UserError if no candidate is left for a function.
 std::vector<std::vector<Site>> largest_value_sites(const Space& space, const std::vector<int>& places) {
   std::vector<std::vector<Site>> at_place(places.size());
   struct Candidate {

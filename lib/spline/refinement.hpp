@@ -30,7 +30,8 @@ struct TileImage {
 };
 TileImage image(const Lattice& lattice, const LatticeMap& map, const Tiling& tiling, int tile);
 
-/// Returns the unique symmetry of the lattice that maps the ray `from` to the ray `to` and is mirrored or not, as given; nothing if there is none.
+/// Returns the unique symmetry of the lattice that maps the ray `from` to the ray `to`: a reflection if `mirrored`, otherwise a rotation; nothing if
+/// there is none.
 std::optional<LatticeMap> lattice_map(const Lattice& lattice, Ray from, Ray to, bool mirrored);
 
 /// Returns the map of the lattice that agrees with a map of Bezier elements; nothing if there is no such map. `element`: for every Bezier element e,

@@ -10,7 +10,7 @@ namespace tanktread::spline {
 /// A checkpoint stores `edges` and `spacing`. To restore the mesh, assign them to the mesh that cube() or polar() returns for the same arguments.
 struct TMesh {
   std::shared_ptr<const Lattice> lattice;
-  /// bit k of entry v is set if the unit edge in direction (slot) k at lattice vertex v exists; stored at both ends
+  /// bit k of entry v is set if the unit edge in direction (slot) k at lattice vertex v exists; each edge is stored at both of its ends
   std::vector<std::uint8_t> edges;
   std::vector<int> spacing;  ///< spacing h at each extraordinary point: within 3 h of it the mesh is a uniform lattice of spacing h
 
@@ -19,9 +19,9 @@ struct TMesh {
   void set(Ray edge, bool present) { lattice->set(edges, edge, present); }
 };
 
-/// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n >= 3. The lattice permits `levels` bisections of each element.
-/// Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary points would overlap) or the
-/// lattice is too large: more than 12 levels, or n 2^levels above 1536.
+/// Returns the uniform mesh on the surface of a cube with n^2 elements per face, n = `elements_per_side` >= 3. The lattice permits `levels`
+/// bisections of each element. Spline spaces are in extraction.hpp. Throws UserError if n < 3 (the rings of elements around different extraordinary
+/// points would overlap) or the lattice is too large: more than 12 levels, or n 2^levels above 1536.
 TMesh cube(int elements_per_side, int levels = 0);
 
 /// Returns the uniform mesh on a sphere with two poles: m elements in azimuth and r from pole to pole. The lattice permits `levels` bisections of
@@ -44,8 +44,8 @@ std::vector<int> control_points(const TMesh& mesh);
 struct Rectangle {
   int face, x, y, width, height;
 };
-/// Returns the sides of a rectangle as rays from the corners (x, y), (x+w, y), (x+w, y+h) and (x, y+h), each towards the next corner,
-/// counter-clockwise seen from outside.
+/// Returns the sides of a rectangle as rays from the corners (x, y), (x+w, y), (x+w, y+h) and (x, y+h), with the width w and height h of r. Each ray
+/// points to the next corner, counter-clockwise seen from outside.
 std::array<Ray, 4> sides(const Lattice& lattice, const Rectangle& r);
 
 /// Returns whether a side of the rectangle is collapsed to a pole.

@@ -28,8 +28,9 @@ struct Sample {
   Eigen::VectorXd old_basis, new_basis;
 };
 
-/// Computes the values of the functions at the 4 x 4 Gauss points of some elements of one space, and finds these points in the other space. The
-/// weights include the parametric area of the element, or are equal for all elements.
+/// Computes the values of the functions at the 4 x 4 Gauss points of some elements of one space (`from` if `of_from`, otherwise `to`), and finds
+/// these points in the other space. If `by_area`, the weights contain the parametric area of the element; otherwise they are the same for all
+/// elements.
 class Sampling {
  public:
   Sampling(const Space& from, const Space& to) : from_(from), to_(to), in_from_(from), in_to_(to) {}

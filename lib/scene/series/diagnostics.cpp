@@ -60,8 +60,7 @@ spline::Site straight_ahead(const surface::ElementPoints& element, spline::Site 
     const surface::Jet at = surface::jet(element.patch(), site.s, site.t);
     const Vec3 y = plane.components(at.x - from), ds = plane.components(at.s), dt = plane.components(at.t);
     const double determinant = ds[1] * dt[2] - ds[2] * dt[1];
-    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // ends at a singular Jacobian, also at a pole, where `ds` or `dt` may be
-                                                                         // zero
+    if (!(std::abs(determinant) > 1e-9 * ds.norm() * dt.norm())) break;  // ends if the Jacobian is singular, as at a pole, where `ds` or `dt` is 0
     site.s = stepped(site.s, -(y[1] * dt[2] - y[2] * dt[1]) / determinant);
     site.t = stepped(site.t, -(ds[1] * y[2] - ds[2] * y[1]) / determinant);
   }

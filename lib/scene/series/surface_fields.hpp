@@ -25,8 +25,8 @@ struct SurfactantRow {
   void add_columns(Columns& to) const;
 };
 
-/// Returns `scene` with the value of `field_length` from the scene `first`. Field values are multiplied by this length in a state. It is therefore
-/// the same for all states of a branch of steady shapes, even if a parameter of the branch changes R_C.
+/// Returns `scene` with the `field_length` of each particle, by which field values are multiplied in a state, set to R_C of this particle in the
+/// scene `first`. All states of a branch of steady shapes thus use the same lengths, even if a parameter of the branch changes R_C.
 Scene with_field_lengths_of(const Scene& first, Scene scene);
 
 /// Fields on the current meshes of all members (particles). If there is no field, states consist only of the control nets of the shapes, and this

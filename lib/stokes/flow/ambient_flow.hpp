@@ -23,7 +23,7 @@ namespace tanktread::stokes {
 ///
 /// or a registered flow (UserFlow). Between plates at p and p + D n that move with V1 and V2, with a pressure gradient g along them, the flow is
 ///
-///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d = V - v on each plate                               (2.48)
+///   v + d1 + (d2 - d1) z/D + g z (z - D)/(2 mu),   z = n.(x - p),   d1 = V1 - v, d2 = V2 - v on the plates                (2.48)
 ///
 /// The amplitude of every flow may change in time, and so may its direction, except in a duct (FlowHistory).
 class AmbientFlow {
@@ -70,7 +70,8 @@ class AmbientFlow {
 
   double amplitude() const { return moment_.amplitude; }  ///< amplitude at the time set last
 
-  /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by it.
+  /// Returns the matrix a Q, amplitude times rotation, at the time set last. Velocities of walls and pressure gradients are multiplied by this
+  /// matrix.
   Mat3 change() const { return moment_.amplitude * moment_.turn; }
 
   /// Returns the duct flow; null if there is none.
@@ -88,7 +89,7 @@ class AmbientFlow {
   AmbientFlow turned(const Mat3& q, double a) const;
 
   std::shared_ptr<const DuctFlow> duct_;
-  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to it, and is 0 without plates
+  std::shared_ptr<const UserFlow> user_;  // user-defined flow, null for built-in types. field_ is added to this flow, and is 0 if there are no plates
   std::optional<FlowHistory> history_;
   Field steady_, field_;  // steady_: field at amplitude 1. field_: field at the current time
   FlowHistory::Moment moment_;

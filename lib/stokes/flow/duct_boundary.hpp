@@ -72,7 +72,7 @@ class OutlineSpace {
 ///   int G sigma dt + kappa = int (v_c - v_c(x0)) dG/dn dl,   int sigma dt = 0,   G = -ln|x - x0|/(2 pi)                     (2.15)
 /// Without kappa and the condition int sigma dt = 0, the matrix is singular if the outline has logarithmic capacity 1, as a unit circle has.
 /// Inside, v_c is the real part of the analytic function F (2.17) with the boundary values v_c + i psi, psi = int q dl. The flow rate is
-///   int u dA = int r^2 x.n/16 dl + int psi x/2.dx                                                                              (2.16)
+///   int u dA = int r^2 x.n/16 dl + int psi/2 x.dx                                                                              (2.16)
 class BoundaryProfile : public DuctProfile {
  public:
   BoundaryProfile(const surface::Outline& outline, int elements);

@@ -12,7 +12,7 @@ namespace tanktread::stokes {
 /// Velocity in the fluid due to a plane end of a channel, without the contribution of the pressure at the end. The duct flow u(y2, y3) passes through
 /// the end in the direction `along`:
 ///
-///   P_i(x0) = -1/8 pi int G_ij(x, x0) (n.along) u_,a e_a dS + 1/8 pi int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3            (2.29)
+///   P_i(x0) = -1/(8 pi) int G_ij(x, x0) (n.along) u_,a (e_a)_j dS + 1/(8 pi) int u along_j T_ijk(x, x0) n_k dS,   a = 2, 3  (2.29)
 ///
 /// where n points into the fluid and e_a are the axes of the section. Velocity and traction of the duct flow are exact. The plane is integrated by
 /// Gauss points on rays from the centroid, with cells that are halved near a close target.

@@ -34,7 +34,7 @@ struct FlowOptions {
   std::optional<double> maximum_velocity;  ///< velocity of `parabolic` at x2 = x3 = 0, units length/time
   std::optional<double> half_width;        ///< distance from the axis or mid-plane at which the velocity of `parabolic` vanishes, length
   std::optional<Vec3> pressure_gradient;   ///< gradient of the mean pressure over a periodic cell with plates or posts, units force/length^3
-  std::optional<Plates> plates;            ///< plates of the scene, whose motion and pressure gradient change the flow; set by the scene
+  std::optional<Plates> plates;            ///< plates, set by the scene; their motion and the pressure gradient change the flow as in (2.48)
   std::optional<FlowHistory> history;      ///< time dependence of the flow; if not set, the flow is steady
   const UserFlows* registered = nullptr;   ///< user-defined types of flow, with keys in `Flow/<type>`; null if there are none
   std::shared_ptr<const UserFlow> user;    ///< set if the type is user-defined
